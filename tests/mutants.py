@@ -1,6 +1,7 @@
 """Do the tests bite? Small faults, one at a time, in a copy of the tree; who notices them?
 
     python tests/mutants.py infestation monitoring --each 60 --output mutants.csv
+    python tests/mutants.py infestation --again mutants.csv --output again.csv
 
 A mutant is one small change of a module: ``<`` made ``<=``, ``+`` made ``-``, a number another, a
 condition turned round, a call left out. The tests of the module are run on it, then those of its
@@ -41,8 +42,8 @@ ROOMS = {
         "fieldmon/monitoring",
         ("tests/monitoring/test_season_file.py", "tests/monitoring/test_outside_changes.py"),
     ),
-    "writers": ("fieldmon/io/writers", ()),
-    "simulation": ("fieldmon/simulation", ()),
+    "writers": ("fieldmon/io/writers", ("tests/io/writers/test_every_field.py",)),
+    "simulation": ("fieldmon/simulation", ("tests/simulation/test_treating.py",)),
 }
 _WARM = ("numpy", "numba", "scipy.sparse", "scipy.stats", "shapely", "pyproj", "pandas",
          "geopandas", "pytest", "pyogrio", "jinja2")  # fmt: skip
@@ -309,6 +310,19 @@ def chosen(room, each, seed):
     return every[:each], len(every)
 
 
+def survivors(file, room):
+    """Return the mutants of a room that a file of outcomes says survived, as they are now."""
+    with file.open(newline="", encoding="utf-8") as lines:
+        told = {(m, said) for r, outcome, m, _, said in csv.reader(lines)
+                if (r, outcome) == (room, "survived")}  # fmt: skip
+    found = []
+    for module in sorted({m for m, _ in told}):
+        source = (ROOT / module).read_text("utf-8")
+        found += [m for m in mutants_of(ROOT / module)
+                  if (module, mutated(source, m.place)[1]) in told]  # fmt: skip
+    return found, len(told)
+
+
 def main():
     """Try mutants of the rooms named; write a line a mutant, and say the score of each room."""
     asked = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -316,6 +330,7 @@ def main():
     asked.add_argument("--each", type=int, default=10**9, help="most mutants of a room; else all")
     asked.add_argument("--seed", type=int, default=1)
     asked.add_argument("--minutes", type=float, default=10**6, help="most minutes a room")
+    asked.add_argument("--again", type=Path, help="only those that this file says survived")
     asked.add_argument("--room-tests", action="store_true", help="try survivors on all of the room")
     asked.add_argument("--output", type=Path, default=Path("mutants.csv"))
     told = asked.parse_args()
@@ -330,7 +345,11 @@ def main():
         table, trial = csv.writer(file), Trial(copied)
         for room in told.rooms:
             until, counted = time.monotonic() + 60 * told.minutes, {}
-            mutants, n_all = chosen(room, told.each, told.seed)
+            mutants, n_all = (
+                chosen(room, told.each, told.seed)
+                if told.again is None
+                else survivors(told.again, room)
+            )
             for mutant in mutants:
                 if time.monotonic() > until:
                     break

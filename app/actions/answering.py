@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING
 
 from fieldmon.errors import ChoiceNeeded
 
-from ..show import answers_map, field_map
+from ..show import answers_map, answers_of_records, field_map
 from ..show.map_view import MapAnswers
 from ..state import brought_files, browser
-from ..state.tried_answers import tried
+from ..state.tried_answers import tried, tried_of_records
 from . import bringing_files
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
 
+    from ..show.map_view import MapContent
+    from ..state.brought_files import LeftOut
+    from ..state.choices import Choices
     from ..state.tried_answers import TriedAnswer
 
 
@@ -26,6 +29,25 @@ def show(problem: FieldmonError) -> None:
     looked_at = answers_map.content(answers, browser.is_dark())
     if looked_at is not None:
         field_map.want(looked_at, MapAnswers(tapped=partial(take, problem, answers)))
+
+
+def of_records(choices: Choices) -> tuple[MapContent, MapAnswers] | None:
+    """Return the map of what answers to a question about records lead to; None: none is asked."""
+    for one in choices.left_out:
+        answers = tried_of_records(one, choices.plot.field)
+        looked_at = answers_of_records.content(answers, choices.plot, dark=choices.dark)
+        if looked_at is not None:
+            return looked_at, MapAnswers(tapped=partial(_take_of_records, one, answers))
+    return None
+
+
+def _take_of_records(
+    left_out: LeftOut, answers: tuple[TriedAnswer, ...], layer: str, n: int
+) -> None:
+    """Take the answer about records that was tapped on the map."""
+    answer, problem = answers_of_records.tapped(answers, layer, n), left_out.problem
+    if isinstance(problem, ChoiceNeeded) and answer is not None:
+        brought_files.answer(left_out.file.asked, problem.option, answer)
 
 
 def take(problem: FieldmonError, answers: tuple[TriedAnswer, ...], layer: str, n: int) -> None:

@@ -10,6 +10,7 @@ from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 
 from ..state import chosen_day, living, notices, plot_source, seasons_folder, work_day
 from ..words import texts
+from . import acting
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -21,7 +22,8 @@ def show(choices: Choices) -> None:
         st.markdown(f"### {texts.BEGIN_TITLE}")
         st.caption(texts.BEGIN_NOTE)
         st.text_input(texts.SEASON_NAME, _proposed(choices), key="season_name")
-        st.form_submit_button(texts.BEGIN, on_click=begin, args=(choices,))
+        pressed = st.form_submit_button(texts.BEGIN)
+    acting.once(pressed, begin, choices)
 
 
 def _proposed(choices: Choices) -> str:
@@ -31,7 +33,7 @@ def _proposed(choices: Choices) -> str:
 
 @notices.reporting
 def begin(choices: Choices) -> str:
-    """Keep what is chosen as a season from now on (for callbacks)."""
+    """Keep what is chosen as a season from now on."""
     name = st.session_state.get("season_name", _proposed(choices)).strip()
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,

@@ -10,6 +10,7 @@ from fieldmon.errors import ChoiceNeeded
 
 from ..state import brought_files, rasters
 from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
+from ..state.tried_answers import tried_of_records
 from ..words import texts
 from ..words.language import in_words, of_error
 
@@ -92,7 +93,7 @@ def show_left_out(choices: Choices) -> None:
     for one in choices.left_out:
         with st.container(border=True):
             st.markdown(texts.LEFT_OUT.format(name=texts.isolated(one.file.name)))
-            say(one.problem, one.file.asked)
+            say(one.problem, one.file.asked, tried_of_records(one, choices.plot.field))
 
 
 def say(
@@ -104,9 +105,10 @@ def say(
     """
     asking = brought_files.asking() if asked is None else asked
     if isinstance(error, ChoiceNeeded):
-        tried = tried if any(one.plots for one in tried) else ()
+        tried = tried if any(one.leads for one in tried) else ()
         if tried:
-            st.markdown(f"### {texts.CHOOSE_ON_MAP}")
+            of_records = any(one.records is not None for one in tried)
+            st.markdown(f"### {texts.RECORDS_ON_MAP if of_records else texts.CHOOSE_ON_MAP}")
             with st.expander(texts.CHOOSE):
                 st.warning(of_error(error))
         else:
@@ -139,7 +141,10 @@ def _label(number: int, answer: str, one: TriedAnswer | None) -> str:
     """Return what a button says: what is answered and, where it was tried, where that leads."""
     if one is None:
         return answer
-    where = one.zone.replace("_", " ") if one.plots else texts.CHOOSE_NOWHERE
+    where = one.zone.replace("_", " ") if one.leads else texts.CHOOSE_NOWHERE
+    if one.records is not None:
+        said = texts.ANSWER_RECORDS.format(near=one.near, n=len(one.records), found=one.finds)
+        where = said if one.near else f"{where}, {said}"
     return f"{number} · {answer} · {where}"
 
 

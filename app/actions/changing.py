@@ -12,6 +12,7 @@ from fieldmon.plot.robot import Robot, scout
 from ..state import notices
 from ..words import texts
 from ..words.strategies import sampler_does, sampler_name, strategy_name
+from . import robot_boxes
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings, Season
@@ -65,6 +66,8 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
                       key=f"hours {key}")  # fmt: skip
     inspection_s = st.slider(texts.INSPECTION_S, min(20.0, usual_s), max(60.0, usual_s), usual_s,
                              5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
+    if who != SCOUT:
+        robot = robot_boxes.of_season(robot, key)
     names = list(texts.SAMPLERS)
     sampler = st.selectbox(
         texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **named()
@@ -91,8 +94,9 @@ def _offer_undo(season: Season) -> None:
 
 
 @notices.reporting
-def use(choices: Choices, strategy: Strategy) -> str:
-    """Work by this strategy from now on (for callbacks)."""
+def use(choices: Choices, box: str) -> str:
+    """Work by the strategy that the box of this key holds from now on (for callbacks)."""
+    strategy: Strategy = st.session_state[box]
     sampler, hours, inspection_s = strategy.sampler, strategy.hours, strategy.inspection_s
     if choices.season is not None:
         settings = choices.season.settings

@@ -36,7 +36,7 @@ from ..state.work_day import Calendar
 from ..words import language, texts
 from ..words.strategies import sampler_does
 from ..words.units import AREAS_M2, DATES, LENGTHS
-from . import changing
+from . import changing, robot_boxes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -217,6 +217,8 @@ def _work() -> tuple[Robot, str]:
             st.slider, texts.INSPECTION_S, 20, 60, step=5, key=f"inspection_s {who}",
             default=int(base.look_s),
         )  # fmt: skip
+        if who != changing.SCOUT:
+            base = robot_boxes.of_files(base)
         sampler = widget_memory.show(
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
             default=USUAL, **changing.named(),

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 def settings(choices: Choices, pest: PestInWeather | None = None) -> ComparisonSettings:
     """Show what can be compared; return what is asked for."""
-    left, middle, right = st.columns([2, 1, 1])
     samplers = widget_memory.show(
-        left.multiselect, texts.STRATEGY_SAMPLERS, list(texts.SAMPLERS), key="strategy_samplers",
+        st.multiselect, texts.STRATEGY_SAMPLERS, list(texts.SAMPLERS), key="strategy_samplers",
         default=["adaptive", "dynamic", "naive"], format_func=sampler_name,
     )  # fmt: skip
+    left, middle, right = st.columns(3)
     own_hours, own_s = float(choices.robot.hours), int(choices.robot.look_s)
     hours = middle.multiselect(
         texts.STRATEGY_HOURS, sorted({2.0, 4.0, 6.0, 8.0, 10.0, 12.0, own_hours}), [own_hours],

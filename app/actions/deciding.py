@@ -9,19 +9,21 @@ import shapely
 import streamlit as st
 
 from fieldmon.decisions.leaves import of_leaves
-from fieldmon.decisions.thresholds import published, threshold_of
+from fieldmon.decisions.thresholds import read_thresholds
 from fieldmon.errors import FieldmonError
+from fieldmon.io.options import Upload
 from fieldmon.io.writers.treatment_map import treatment_map_bytes
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
 
-from ..state import deciding, widget_memory
+from ..state import deciding, notices, widget_memory
 from ..words import language, texts
 from ..words.language import in_words, of_error
 from . import treating
 
 if TYPE_CHECKING:
+    from fieldmon.decisions.thresholds import Threshold
     from fieldmon.monitoring.advice import Advice
 
     from ..state.choices import Choices
@@ -75,30 +77,64 @@ def _box(key: str) -> None:
     )  # fmt: skip
 
 
-def leaves() -> None:
-    """Offer a verdict by leaves for the thresholds that count leaves, with their sources."""
+def known_thresholds() -> None:
+    """Offer the published thresholds and those of one's own, each with its source.
+
+    A share of the plants is taken for the answer above; of leaves there is a verdict here.
+    """
     with st.expander(texts.DECIDE_LEAVES):
-        names = [one.name for one in published()]
+        known = deciding.thresholds()
         name = widget_memory.show(
-            st.selectbox, texts.DECIDE_THRESHOLD, names, key="decide leaves of", default=names[0],
+            st.selectbox, texts.DECIDE_THRESHOLD, list(known), key="decide leaves of",
+            default=next(iter(known)),
             format_func=lambda one: texts.DECIDE_THRESHOLDS.get(one, one),
         )  # fmt: skip
-        asked = threshold_of(name)
-        st.caption(asked.source)
-        looked_at = widget_memory.show(st.number_input, texts.DECIDE_LOOKED_AT, 0, 10_000,
-                                       key="decide leaves", default=0)  # fmt: skip
-        presence = asked.is_share or widget_memory.show(
-            st.toggle, texts.DECIDE_PRESENCE, key="decide presence", default=False
-        )
-        label = texts.DECIDE_LEAVES_INFESTED if presence else texts.DECIDE_COUNTED
-        counted = widget_memory.show(st.number_input, label, 0, 1_000_000,
-                                     key="decide counted", default=0)  # fmt: skip
-        try:
-            said = of_leaves(asked, int(looked_at), float(counted), presence=presence)
-        except FieldmonError as error:
-            st.warning(of_error(error))
+        asked = known[name]
+        st.caption(texts.isolated(asked.source))
+        if asked.measure == "share of plants":
+            st.button(texts.DECIDE_TAKE.format(share=asked.level), key="take threshold",
+                      on_click=widget_memory.put,
+                      args=(deciding.LEVEL, 100 * asked.level))  # fmt: skip
         else:
-            st.markdown(in_words(said))
+            _leaves(asked)
+        _own()
+
+
+def _own() -> None:
+    """Take in thresholds of one's own."""
+    brought = st.file_uploader(
+        texts.DECIDE_OWN, type=["csv"], key="thresholds_file", help=texts.DECIDE_OWN_HELP
+    )
+    if brought is not None:
+        st.button(texts.DECIDE_OWN_TAKE, key="take_thresholds", on_click=_take,
+                  args=(Upload(brought.name, brought.getvalue()),))  # fmt: skip
+
+
+@notices.reporting
+def _take(table: Upload) -> str:
+    own = read_thresholds(table)
+    deciding.keep_thresholds(own)
+    if own:
+        widget_memory.put("decide leaves of", own[0].name)
+    return texts.DECIDE_OWN_KEPT.format(n=len(own))
+
+
+def _leaves(asked: Threshold) -> None:
+    """Offer a verdict by leaves for a threshold that counts leaves."""
+    looked_at = widget_memory.show(st.number_input, texts.DECIDE_LOOKED_AT, 0, 10_000,
+                                   key="decide leaves", default=0)  # fmt: skip
+    presence = asked.is_share or widget_memory.show(
+        st.toggle, texts.DECIDE_PRESENCE, key="decide presence", default=False
+    )
+    label = texts.DECIDE_LEAVES_INFESTED if presence else texts.DECIDE_COUNTED
+    counted = widget_memory.show(st.number_input, label, 0, 1_000_000,
+                                 key="decide counted", default=0)  # fmt: skip
+    try:
+        said = of_leaves(asked, int(looked_at), float(counted), presence=presence)
+    except FieldmonError as error:
+        st.warning(of_error(error))
+    else:
+        st.markdown(in_words(said))
 
 
 def files(choices: Choices, advice: Advice) -> None:

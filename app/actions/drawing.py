@@ -9,6 +9,7 @@ import shapely
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
+from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.layout import Planting
 
 from ..show import field_map, map_layers
@@ -51,6 +52,11 @@ def rows(plot_key: str, *, measured: bool = False) -> None:
             st.number_input, texts.HEADLAND.format(unit=texts.UNITS[now.length]),
             *now.limits(0.1, 50.0), step=0.1, key=f"headland {plot_key}",
             default=now.shown(usual_m),
+        )  # fmt: skip
+        widget_memory.show(
+            st.number_input, texts.HALF_CANOPY.format(unit=texts.UNITS[now.length]),
+            *now.limits(0.0, 10.0), step=0.05, key=f"half_canopy {plot_key}",
+            help=texts.HALF_CANOPY_HELP.format(usual=now.metres(USUAL_HALF_CANOPY_M, 2)),
         )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
 

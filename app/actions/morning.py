@@ -22,8 +22,9 @@ from ..state import (
     work_day,
 )
 from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
+from ..state.work_day import Calendar
 from ..words import texts
-from . import beginning, handing_out
+from . import acting, beginning, handing_out
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,6 +99,11 @@ def _button(step: Step, label: str, action: Callable[..., object], *arguments: o
               on_click=action, args=arguments)  # fmt: skip
 
 
+def _pressed(step: Step, label: str) -> bool:
+    kind = "primary" if step.next else "secondary"
+    return bool(st.button(label, key=f"do_{step.name}", type=kind))
+
+
 def _look_back(choices: Choices, _: DayPlan, step: Step) -> None:
     if step.next:
         _button(step, texts.STEP_BUTTONS[RECORD], _record_day_before, choices)
@@ -106,13 +112,15 @@ def _look_back(choices: Choices, _: DayPlan, step: Step) -> None:
 
 
 def _record_day_before(choices: Choices) -> None:
-    work_day.choose(plot_source.chosen(), choices.on - timedelta(days=1))
+    source = plot_source.chosen()
+    on = work_day.of(source, Calendar(choices.today or choices.on))
+    work_day.choose(source, on - timedelta(days=1))
     rooms.open_part("record")
 
 
 def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
     if len(plan.route):
-        _button(step, texts.STEP_BUTTONS[PLAN], _use_plan, choices)
+        acting.once(_pressed(step, texts.STEP_BUTTONS[PLAN]), _use_plan, choices)
 
 
 @notices.reporting
@@ -123,7 +131,7 @@ def _use_plan(choices: Choices) -> str:
 
 
 def _begin(choices: Choices, _: DayPlan, step: Step) -> None:
-    _button(step, texts.STEP_BUTTONS[BEGIN], beginning.begin, choices)
+    acting.once(_pressed(step, texts.STEP_BUTTONS[BEGIN]), beginning.begin, choices)
 
 
 def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
@@ -152,8 +160,8 @@ def _report(choices: Choices, _: DayPlan, step: Step) -> None:
 
 
 def _next_day(choices: Choices, _: DayPlan, step: Step) -> None:
-    _button(step, texts.STEP_BUTTONS[NEXT_DAY], work_day.choose, plot_source.chosen(),
-            choices.on + timedelta(days=1))  # fmt: skip
+    pressed = _pressed(step, texts.STEP_BUTTONS[NEXT_DAY])
+    acting.once(pressed, work_day.choose, plot_source.chosen(), choices.on + timedelta(days=1))
 
 
 _BUTTONS: dict[str, Callable[[Choices, DayPlan, Step], None]] = {

@@ -19,7 +19,7 @@ from ..state import chosen_day, notices, unconfirmed
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
 from ..words.language import in_words
-from . import treating
+from . import acting, treating
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -70,7 +70,8 @@ def _show_one(choices: Choices) -> None:
             format_func=texts.RESULTS_OF.__getitem__,
         )  # fmt: skip
         st.number_input(texts.COUNT, 0, None, None, key="one_count")
-        st.form_submit_button(texts.RECORD_BUTTON, on_click=_record_one, args=(choices,))
+        pressed = st.form_submit_button(texts.RECORD_BUTTON)
+    acting.once(pressed, _record_one, choices)
 
 
 @notices.reporting
@@ -111,10 +112,8 @@ def _show_route(choices: Choices) -> None:
             marked = st.data_editor(table, height=230, disabled=list(table.columns[:-1]),
                                     key=f"marks {choices.day} {len(plants)}")  # fmt: skip
         pressed = st.form_submit_button(texts.RECORD_BUTTON, type="primary")
-    if pressed:
-        found = marked.index[marked[texts.LEGEND_STATES["found"]]].tolist()
-        _record_stops(choices, plants, found)
-        st.rerun()
+    found = marked.index[marked[texts.LEGEND_STATES["found"]]].tolist()
+    acting.once(pressed, _record_stops, choices, plants, found)
 
 
 @notices.reporting
@@ -137,8 +136,8 @@ def _show_file(choices: Choices) -> None:
     brought = st.file_uploader(texts.RECORD_FILE_IN, key="findings_file")
     st.checkbox(texts.TAKE_DOUBTFUL, key="take_doubtful")
     if brought is not None:
-        st.button(texts.RECORD_BUTTON, key="record_file", type="primary", on_click=_record_file,
-                  args=(choices, brought.name, brought.getvalue()))  # fmt: skip
+        pressed = st.button(texts.RECORD_BUTTON, key="record_file", type="primary")
+        acting.once(pressed, _record_file, choices, brought.name, brought.getvalue())
 
 
 @notices.reporting
@@ -248,16 +247,17 @@ def show_batches(choices: Choices) -> None:
     for batch in choices.season.batches()[:_MOST]:
         if not batch.rows:
             continue
-        left, right = st.columns([4, 1], vertical_alignment="center")
         at = choices.clock.at(datetime.fromisoformat(batch.at))
         said = texts.BATCHES_SAID[batch.kind].format(
             day=choices.units.day(at.date()), time=f"{at:%H:%M}", n=batch.rows,
             source=texts.isolated(batch.source) if batch.source else "",
         )  # fmt: skip
-        left.markdown(said + (f" ({texts.UNDONE})" if batch.undone else ""))
-        if not batch.undone:
-            right.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo,
-                         args=(choices, batch.number))  # fmt: skip
+        # side by side, not in columns: a button takes what its word needs in each language
+        with st.container(horizontal=True, vertical_alignment="center"):
+            st.markdown(said + (f" ({texts.UNDONE})" if batch.undone else ""), width="stretch")
+            if not batch.undone:
+                st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo,
+                          args=(choices, batch.number))  # fmt: skip
 
 
 @notices.reporting

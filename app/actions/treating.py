@@ -16,6 +16,7 @@ from fieldmon.monitoring import Application
 from ..state import notices
 from ..words import texts
 from ..words.language import in_words
+from . import acting
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon
@@ -23,7 +24,10 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 #: boxes of the form for what was said of an application, by what they are about
-_TEXTS = ("operator", "reason", "machinery", "crop", "pest", "authorised_by")
+_TEXTS = (
+    *("active_ingredient", "operator", "reason", "machinery", "weather", "crop", "pest"),
+    "authorised_by",
+)
 
 
 def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") -> None:
@@ -43,8 +47,8 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
         st.text_input(texts.TREAT_PRODUCT, key="product")
         with st.expander(texts.TREAT_RECORD):
             _boxes()
-        st.form_submit_button(texts.TREAT_BUTTON, on_click=_treat,
-                              args=(choices, area, advised))  # fmt: skip
+        pressed = st.form_submit_button(texts.TREAT_BUTTON)
+    acting.once(pressed, _treat, choices, area, advised)
     _harvest(choices)
     with st.expander(texts.LABELS):
         _labels(choices)
@@ -142,8 +146,8 @@ def _labels(choices: Choices) -> None:
         st.markdown(", ".join(dict.fromkeys(texts.isolated(one.product) for one in known)))
     brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key="labels_file")
     if brought is not None:
-        st.button(texts.LABELS_BUTTON, key="take_labels", on_click=_take_labels,
-                  args=(choices, Upload(brought.name, brought.getvalue())))  # fmt: skip
+        pressed = st.button(texts.LABELS_BUTTON, key="take_labels")
+        acting.once(pressed, _take_labels, choices, Upload(brought.name, brought.getvalue()))
 
 
 @notices.reporting

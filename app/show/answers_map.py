@@ -27,7 +27,7 @@ SHAPES, PLACES = "answer-shapes", "answer-places"
 _COLOURS: tuple[Colour, ...] = (
     (0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (230, 159, 0), (86, 180, 233),
 )  # fmt: skip
-_GROUND: Colour = (130, 140, 135)
+GROUND: Colour = (130, 140, 135)
 # as far as this, outlines are too small to be told from dots
 _FAR_DEG = 1.0
 # outlines of countries, as exact as they are seen
@@ -41,11 +41,10 @@ def content(tried: tuple[TriedAnswer, ...], dark: bool) -> MapContent | None:  #
     if not seen:
         return None
     bounds = np.array(shapely.total_bounds([shapes[k] for k in seen]))
-    far = bool((bounds[2:] - bounds[:2] > _FAR_DEG).any())
-    bounds = _with_room(bounds)
-    ground = _ground(bounds, dark=dark) if far else []
+    ground = ground_of(bounds, dark=dark)
+    bounds = with_room(bounds)
     labels = [{"p": _middle(shapes[k]), "t": f"{k + 1}", "k": "leg"} for k in seen]
-    items = [("line", _GROUND, texts.LEGEND_ZONE)] if ground else []
+    items = [("line", GROUND, texts.LEGEND_ZONE)] if ground else []
     return MapContent(
         f"answers {[one.answer for one in tried]}", bounds.tolist(),
         texts.ANSWERS_ALT.format(n=len(seen)), [*ground, *_answers(tried, shapes, seen)],
@@ -103,10 +102,16 @@ def _answers(
     ]  # fmt: skip
 
 
-def _ground(bounds: NDArray[np.float64], *, dark: bool) -> list[Layer]:
-    """Return the time zones about: without a map, their borders show where on earth one is."""
+def ground_of(bounds: NDArray[np.float64], *, dark: bool) -> list[Layer]:
+    """Return the time zones about, where answers lie far apart.
+
+    Without a map, their borders show where on earth one is.
+    """
+    if (bounds[2:] - bounds[:2] <= _FAR_DEG).all():
+        return []
+    bounds = with_room(bounds)
     west, south, east, north = bounds.clip([-180, -85, -180, -85], [180, 85, 180, 85]).tolist()
-    view = shapely.box(*_with_room(np.array([west, south, east, north])))
+    view = shapely.box(*with_room(np.array([west, south, east, north])))
     rows = [
         {"p": np.round(shapely.get_coordinates(ring), 3).tolist(), "t": zone}
         for zone in zones_within((west, south, east, north))
@@ -118,11 +123,11 @@ def _ground(bounds: NDArray[np.float64], *, dark: bool) -> list[Layer]:
     return [
         Layer("PolygonLayer", rows, id="zones", get_polygon="p", stroked=True,
               get_fill_color=[40, 50, 50] if dark else [250, 250, 246],
-              get_line_color=list(_GROUND), line_width_min_pixels=1, get_line_width=1)
+              get_line_color=list(GROUND), line_width_min_pixels=1, get_line_width=1)
     ]  # fmt: skip
 
 
-def _with_room(bounds: NDArray[np.float64]) -> NDArray[np.float64]:
+def with_room(bounds: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the bounds with some room about them."""
     room = 0.15 * np.maximum(bounds[2:] - bounds[:2], 1e-4)
     return np.concatenate([bounds[:2] - room, bounds[2:] + room])

@@ -36,6 +36,8 @@ def _words(one: Assumed, units: UnitsInLanguage) -> str:
         value = in_words(in_unit(units.shown(one.value), "g", units.length))
     elif one.setting == "speed_m_s":
         value = number(3.6 * one.value, ".3g")
+    elif one.setting == "row_change_s":
+        value = number(one.value, "g")
     else:
         value = number(100 * one.value, "g")
     return texts.ASSUMED_WHAT[one.setting].format(value=value)

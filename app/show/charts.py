@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from fieldmon.pests.development import Development
     from fieldmon.simulation.metrics import SeasonMetrics
 
+    #: names a day on an axis, without its year
+    DayName = Callable[[date], str]
 
 # Okabe & Ito's colours for the colour-blind
 # the last one grey, not black, which the dark page swallows
@@ -32,25 +34,46 @@ _DASHES = [[1, 0], [6, 3], [2, 2]]
 _LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbolType="stroke",
                      symbolSize=300, symbolStrokeWidth=3, symbolOpacity=1)  # fmt: skip
 _GREY = "#7F7F7F"
+# as far beside its line the words above an axis begin
+_ASIDE_PX = 30
 # as many dates fit side by side in the narrow panel
 _FEW_LABELS = 6
 
 
 def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
-    """Return charts whose numbers are written as in the language, their axes where it begins."""
+    """Return charts whose numbers are written as in the language, their axes where it begins.
+
+    What an axis counts stands above it, level: turned and beside it, it was cut where it is long.
+    """
 
     @wraps(make)
     def made(*args: object, **settings: object) -> alt.Chart:
-        chart = make(*args, **settings)
+        chart = make(*args, **settings).configure(background="transparent")
+        level = {"titleAngle": 0, "titleBaseline": "bottom", "titleY": -8}
+        chart = chart.configure_axisLeft(titleAlign="left", titleX=-_ASIDE_PX, **level)
+        chart = chart.configure_axisRight(titleAlign="right", titleX=_ASIDE_PX, **level)
         if language.current() == language.ENGLISH:
             return chart
         fraction, thousands = language.separators()
         number = {"decimal": fraction, "thousands": thousands, "grouping": [3],
                   "currency": ["", ""]}  # fmt: skip
-        chart = chart.configure(locale={"number": number})
+        chart.config.locale = alt.Locale(number=number)
         return chart.configure_axisY(orient=_sides()[0])
 
     return made
+
+
+def _month_and_day(on: date) -> str:
+    return f"{on:%m-%d}"
+
+
+def _days(labels: pd.Series, title: str) -> alt.X:
+    """Return the axis of days by their names, in the table's order, with as many as have room.
+
+    Layers do not agree which names to leave out: so few never overlap.
+    """
+    some = list(labels[:: math.ceil(len(labels) / _FEW_LABELS)])
+    return alt.X("day:O", title=title, sort=None, axis=alt.Axis(labelAngle=0, values=some))
 
 
 def _sides() -> tuple[str, str]:
@@ -153,16 +176,18 @@ def bands(
 
 
 @_in_language
-def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.LayerChart:
+def season_days(
+    days: list[DayFigures], axes: tuple[str, str, str], named: DayName = _month_and_day
+) -> alt.LayerChart:
     """Return plants inspected and found on each day of a season; a day without work is a gap."""
     worked = {one.on: one for one in days if one.inspected}
     table = pd.DataFrame(
-        [(str(on)[5:], one and one.inspected, one and one.found)
+        [(named(on), one and one.inspected, one and one.found)
          for on in _dates(days) for one in [worked.get(on)]],
         columns=["day", "inspected", "found"],
     )  # fmt: skip
     table = table.astype({"inspected": "Int64", "found": "Int64"})
-    x = alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True))
+    x = _days(table["day"], axes[0])
     tip = [alt.Tooltip("day", title=axes[0]), alt.Tooltip("inspected:Q", title=axes[1]),
            alt.Tooltip("found:Q", title=axes[2])]  # fmt: skip
     bars = (
@@ -186,24 +211,30 @@ def season_days(days: list[DayFigures], axes: tuple[str, str, str]) -> alt.Layer
     return alt.layer(bars, found_).resolve_scale(y="independent").properties(height=220)
 
 
+def _as_dates(days: NDArray[np.datetime64]) -> list[date]:
+    return [at.date() for at in pd.to_datetime(days)]
+
+
 def _dates(days: list[DayFigures]) -> list[date]:
     """Return every date from the first of some days to the last."""
     return [at.date() for at in pd.date_range(days[0].on, days[-1].on)]
 
 
 @_in_language
-def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
+def still_out(
+    days: list[DayFigures], axes: tuple[str, str], named: DayName = _month_and_day
+) -> alt.LayerChart:
     """Return the expected number of infested plants by day, with its interval."""
     table = pd.DataFrame(
         {
-            "day": [str(s.on)[5:] for s in days],
+            "day": [named(s.on) for s in days],
             "expected": [s.expected for s in days],
             "low": [s.low for s in days],
             "high": [s.high for s in days],
         }
     )
     base = alt.Chart(table).encode(
-        x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True)),
+        x=_days(table["day"], axes[0]),
         tooltip=[
             alt.Tooltip("day", title=axes[0]),
             alt.Tooltip("expected:Q", title=axes[1], format=".1f"),
@@ -222,7 +253,10 @@ def still_out(days: list[DayFigures], axes: tuple[str, str]) -> alt.LayerChart:
 
 @_in_language
 def development(
-    there: Development, marks: list[tuple[str, float]], axes: tuple[str, str]
+    there: Development,
+    marks: list[tuple[str, float]],
+    axes: tuple[str, str],
+    named: DayName = _month_and_day,
 ) -> alt.LayerChart:
     """Return degree-days by day against marks: names of stages and generations, and how many.
 
@@ -230,14 +264,12 @@ def development(
     """
     table = pd.DataFrame(
         {
-            "day": [str(day)[5:] for day in there.days],
+            "day": [named(day) for day in _as_dates(there.days)],
             "gathered": there.degree_days,
             "guessed": there.guessed,
         }
     )
-    # layers do not agree which labels to leave out: so few never overlap
-    some = list(table["day"][:: math.ceil(len(table) / _FEW_LABELS)])
-    days = alt.X("day:O", title=axes[0], sort=None, axis=alt.Axis(labelAngle=0, values=some))
+    days = _days(table["day"], axes[0])
     base = alt.Chart(table).encode(
         x=days,
         y=alt.Y("gathered:Q", title=axes[1]),
@@ -254,28 +286,30 @@ def development(
         for part, dashes in parts
         if len(part)
     ]
-    named = pd.DataFrame(marks, columns=["name", "gathered"])
-    rules = alt.Chart(named).mark_rule(color=_GREY, strokeDash=[2, 2]).encode(y="gathered:Q")
+    marked = pd.DataFrame(marks, columns=["name", "gathered"])
+    rules = alt.Chart(marked).mark_rule(color=_GREY, strokeDash=[2, 2]).encode(y="gathered:Q")
     side = _sides()[0]
     words = (
-        alt.Chart(named)
+        alt.Chart(marked)
         .mark_text(align=side, dy=8, color=_GREY, fontSize=11)
         .encode(y="gathered:Q", text="name:N", x=alt.value(0 if side == "left" else "width"))
     )
-    today = pd.DataFrame({"day": [str(there.on)[5:]]})
+    today = pd.DataFrame({"day": [named(there.on)]})
     now = alt.Chart(today).mark_rule(color=_GREY).encode(x=days)
     return alt.layer(*lines, rules, words, now).properties(height=260)
 
 
 @_in_language
-def ahead(day: str, forecast: Forecast, axes: tuple[str, str]) -> alt.LayerChart:
+def ahead(
+    day: str, forecast: Forecast, axes: tuple[str, str], named: DayName = _month_and_day
+) -> alt.LayerChart:
     """Return the infested plants expected on the mornings after a day, with their interval."""
-    dates = [str(at.date())[5:] for at in pd.date_range(day, periods=len(forecast.expected))]
+    dates = [named(at.date()) for at in pd.date_range(day, periods=len(forecast.expected))]
     table = pd.DataFrame(
         {"day": dates, "expected": forecast.expected, "low": forecast.low, "high": forecast.high}
     )
     base = alt.Chart(table).encode(
-        x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0, labelOverlap=True)),
+        x=_days(table["day"], axes[0]),
         tooltip=[
             alt.Tooltip("day", title=axes[0]),
             alt.Tooltip("expected:Q", title=axes[1], format=".0f"),

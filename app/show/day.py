@@ -77,7 +77,12 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:
-    """Say what was recorded of the day, and why there is no route where there is none."""
+    """Say what was recorded of the day, and why there is no route where there is none.
+
+    And which rows the robot is too wide for.
+    """
+    if told := plan.route.aisles.told_shut():
+        st.warning(in_words(told))
     said = "" if len(plan.route) else texts.NO_STOPS
     if choices.season is not None:
         now = chosen_day.progress(choices)

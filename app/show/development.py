@@ -31,7 +31,8 @@ def show(choices: Choices) -> None:
     st.markdown(_sentence(choices, there))
     axes = (texts.DATE_AXIS, texts.DEGREE_DAYS)
     lines = [(pest_figures.stage_name(name), at) for name, at in _marks(pest, there)]
-    chart = charts.development(there, [*lines, *_generations(there)], axes)
+    named = choices.units.short_day
+    chart = charts.development(there, [*lines, *_generations(there)], axes, named)
     st.altair_chart(chart, alt=texts.DEGREE_DAYS)
     if guessed := int(there.guessed[: there.elapsed].sum()):
         st.caption(texts.DAYS_FILLED.format(n=guessed))

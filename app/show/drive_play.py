@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from fieldmon.drive.trace import Trace
+
+from ..state.driving import DayInTime
 from ..state.map_store import JSON, STORE
 from ..words import texts
 from . import field_map, map_layers
@@ -19,7 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
 
     from ..state.choices import Choices
-    from ..state.driving import DayInTime
+    from ..state.live_drive import LiveDrive
 
 #: how tall plants are drawn
 _TALL_M = 1.5
@@ -44,6 +48,47 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
         legend=[{**legends.by_chance(dark=dark), "of": ""}, {**seen, "of": "", "title": ""}],
         drive=None if day is None else published(scene, day),
     )  # fmt: skip
+
+
+def live_content(choices: Choices, live: LiveDrive, key: str) -> MapContent:
+    """Return the plot, and where the browser asks every second how a robot's day goes."""
+
+    def now() -> bytes:
+        return json.dumps(as_live(live), separators=(",", ":")).encode()
+
+    scene = live.scene
+    nothing = as_data(scene, DayInTime(Trace(np.empty((0, 4)), ()), []))
+    begins = _standing_at_gate(scene) | {"poll": STORE.attach(key, now)}
+    first = STORE.publish(json.dumps(nothing | begins, separators=(",", ":")).encode(), JSON)
+    alt = texts.DRIVE_ALT.format(name=choices.plot.field.name)
+    return replace(content(choices, scene, None), drive=first, alt=alt)
+
+
+def as_live(live: LiveDrive) -> dict[str, object]:
+    """Return a day so far as `as_data` does, the way ordered, and how long ago it was heard."""
+    day, (way, released), heard = live.seen()
+    standing = heard.standing if live.running else "ended"
+    scene, data = live.scene, as_data(live.scene, day)
+    if len(day.trace.poses) < 2:  # nothing to move between
+        data |= _standing_at_gate(scene, day.trace)
+    return data | {
+        "way": np.round(way, 7).tolist(),
+        "released": released,
+        "heard": {
+            "standing": standing,
+            "lag": None if heard.lag_s is None else round(heard.lag_s, 1),
+            "said": heard.said,
+        },
+    }
+
+
+def _standing_at_gate(scene: Scene, trace: Trace | None = None) -> dict[str, object]:
+    """Return two poses at one place: the one that is known, or the gate."""
+    if trace is not None and len(trace.poses):
+        _, lon, lat, heading = trace.poses[0].tolist()
+    else:
+        (lon, lat), heading = scene.grid.frame.lonlat(scene.aisles.gate_m[None])[0].tolist(), 0.0
+    return {"at": [0, 0.1], "lon": [lon] * 2, "lat": [lat] * 2, "heading": [heading] * 2}
 
 
 def published(scene: Scene, day: DayInTime) -> str:

@@ -22,7 +22,7 @@ def show(choices: Choices) -> None:
     ahead = chosen_day.forecast(choices)
     st.markdown(f"**{texts.AHEAD_TITLE}**")
     axes = (texts.DATE_AXIS, texts.AHEAD_AXIS)
-    chart = charts.ahead(_day(choices), ahead, axes)
+    chart = charts.ahead(choices.day, ahead, axes, choices.units.short_day)
     st.altair_chart(chart, alt=texts.AHEAD_TITLE)
     last, low, high, now = (
         number(value, ",.0f")
@@ -31,10 +31,6 @@ def show(choices: Choices) -> None:
     nights = number(ahead.nights, "d")
     st.markdown(texts.AHEAD.format(last=last, low=low, high=high, now=now, nights=nights))
     st.caption(_basis(ahead))
-
-
-def _day(choices: Choices) -> str:
-    return choices.day
 
 
 def _basis(ahead: Forecast) -> str:

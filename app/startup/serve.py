@@ -170,6 +170,10 @@ def _closed_in(send: Send, scope: Message) -> Send:
 
 
 async def _hand_out_map(path: str, send: Send) -> None:
+    if (made := map_store.STORE.changing(path)) is not None:
+        now = await asyncio.to_thread(made)
+        await _answer(send, 200, map_store.JSON, now, [(b"cache-control", b"no-store")])
+        return
     found = map_store.STORE.get(path)
     if found is None:
         await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])

@@ -37,6 +37,7 @@ from ..words.language import Late
 from . import opened_seasons
 from .comparison import Comparison
 from .driving import DayInTime, DriveRun
+from .live_drive import LiveDrive
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.units import Units
     from fieldmon.drive.simulated import MadeUp
+    from fieldmon.drive.vda5050.wire import Broker, RobotName
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.observations import Observations
@@ -78,6 +80,7 @@ if TYPE_CHECKING:
     from fieldmon.simulation.worker import LaidPlot
 
     from .comparison import ComparisonSettings
+    from .tried_answers import TriedAnswer
 
     Array = NDArray[np.float64]
 
@@ -112,6 +115,15 @@ def records(
     They may name one of `_fields`, or rows and plants, the measured ones by their own labels.
     """
     return prepare.records_on(_plot, _source, lambda: _fields, _measured)
+
+
+@st.cache_resource(max_entries=_MAPS, show_spinner=_WORKING)
+def tried(key: str, _make: Callable[[], TriedAnswer]) -> TriedAnswer:  # noqa: ARG001
+    """Return what an answer to an import's question leads to, be it nowhere.
+
+    `key` stands for the file, what was answered before, and the answer.
+    """
+    return _make()
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
@@ -451,6 +463,12 @@ def drive_run(
 ) -> DriveRun:
     """Return a day driven by a simulated robot, done or to be; `key` stands for the scene."""
     return DriveRun(kind, _plot, _scene, _sampler, made_up)
+
+
+@st.cache_resource(max_entries=8)
+def live_drive(key: str, broker: Broker, robot: RobotName, _scene: Scene) -> LiveDrive:  # noqa: ARG001
+    """Return a robot's day as it is driven; `key` stands for the plot and the day."""
+    return LiveDrive(broker, robot, _scene)
 
 
 @st.cache_resource(max_entries=8, show_spinner=_WORKING)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import streamlit as st
+
+from fieldmon.decisions.thresholds import published
 from fieldmon.decisions.zones import Sprayer, TreatmentCosts
 from fieldmon.monitoring.advice import AdviceSettings
 
 from . import cached, widget_memory
 
 if TYPE_CHECKING:
+    from fieldmon.decisions.thresholds import Threshold
     from fieldmon.monitoring.advice import Advice
 
     from .choices import Choices
@@ -33,6 +37,9 @@ BEGINS: dict[str, float] = {
 }
 #: the box of the product's name
 PRODUCT = "decide product"
+#: the box of the share from which treating pays, in percent
+LEVEL = "decide level"
+_OWN = "own thresholds"
 
 
 def asked() -> AdviceSettings:
@@ -49,6 +56,17 @@ def asked() -> AdviceSettings:
                        box["works"] / 100, box["reserve"] / 100),
         box["rate"],
     )  # fmt: skip
+
+
+def thresholds() -> dict[str, Threshold]:
+    """Return the thresholds that are known by their names: the published ones, and one's own."""
+    own: tuple[Threshold, ...] = st.session_state.get(_OWN, ())
+    return {one.name: one for one in (*published(), *own)}
+
+
+def keep_thresholds(own: tuple[Threshold, ...]) -> None:
+    """Keep thresholds of one's own for this visit, in place of those before."""
+    st.session_state[_OWN] = own
 
 
 def product() -> str:

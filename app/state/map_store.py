@@ -10,11 +10,16 @@ import hashlib
 import secrets
 import threading
 from collections import OrderedDict
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 #: where the server hands it out
 PATH = "/map_data/"
 JSON, BYTES = "application/json", "application/octet-stream"
 _AT_MOST = 512 * 2**20
+_MOST_CHANGING = 16
 
 
 class MapStore:
@@ -31,10 +36,11 @@ class MapStore:
         self._at_most, self._size = at_most, 0
         self._kept: OrderedDict[str, tuple[str, bytes]] = OrderedDict()
         self._lock = threading.Lock()
+        self._changing: OrderedDict[str, Callable[[], bytes]] = OrderedDict()
 
     def publish(self, data: bytes, kind: str = BYTES) -> str:
         """Keep some bytes; return the address at which browsers find them."""
-        address = PATH + hashlib.blake2b(data, digest_size=20, key=self._secret).hexdigest()
+        address = self._address(data)
         with self._lock:
             if address in self._kept:
                 self._kept.move_to_end(address)
@@ -45,6 +51,27 @@ class MapStore:
                 _, (_, gone) = self._kept.popitem(last=False)
                 self._size -= len(gone)
         return address
+
+    def _address(self, of: bytes) -> str:
+        return PATH + hashlib.blake2b(of, digest_size=20, key=self._secret).hexdigest()
+
+    def attach(self, name: str, made: Callable[[], bytes]) -> str:
+        """Return an address at which browsers find what is made (JSON) whenever they ask.
+
+        The same name has the same address; only the last few are kept.
+        """
+        address = self._address(name.encode())
+        with self._lock:
+            self._changing[address] = made
+            self._changing.move_to_end(address)
+            while len(self._changing) > _MOST_CHANGING:
+                self._changing.popitem(last=False)
+        return address
+
+    def changing(self, address: str) -> Callable[[], bytes] | None:
+        """Return what makes the bytes at an address that change, or None."""
+        with self._lock:
+            return self._changing.get(address)
 
     def get(self, address: str) -> tuple[str, bytes] | None:
         """Return the kind and the bytes at an address, or None."""

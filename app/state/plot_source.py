@@ -10,11 +10,14 @@ from . import widget_memory
 KEY = "season"
 #: what the box holds beside the names of seasons, and the address, whatever the language
 SAMPLE, FILES = "Sample estate", "My own files"
+_OPENS = "season to open"
 
 
 def begin_from_address() -> None:
     """Let the box begin with what the address says: a season's name leads back to the season."""
     widget_memory.first(KEY, st.query_params.get(KEY))
+    if _OPENS in st.session_state:
+        st.session_state[KEY] = st.session_state.pop(_OPENS)
 
 
 def chosen() -> str:
@@ -32,8 +35,8 @@ def keep_in_address(source: str) -> None:
 
 
 def open_season(name: str) -> None:
-    """Let the season of this name be open from the next run on (for callbacks)."""
-    st.session_state[KEY] = name
+    """Let the season of this name be open from the next run on."""
+    st.session_state[_OPENS] = name
 
 
 def feature_key(file_key: str) -> str:

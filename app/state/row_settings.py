@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ..words.units import UnitsInLanguage
 
 #: the boxes that hold lengths
-LENGTHS = ("row_spacing", "plant_spacing", "headland")
+LENGTHS = ("row_spacing", "plant_spacing", "headland", "half_canopy")
 BLOCK_LENGTHS = ("block_row_spacing", "block_plant_spacing")
 
 
@@ -53,5 +53,6 @@ def carry_over(before: UnitsInLanguage) -> None:
     now = units()
     if now.length != before.length:
         widget_memory.change(
-            (*LENGTHS, *BLOCK_LENGTHS), lambda shown: now.shown(before.in_metres(shown))
+            (*LENGTHS, *BLOCK_LENGTHS, "robot_width"),
+            lambda shown: now.shown(before.in_metres(shown)),
         )

@@ -3,31 +3,75 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fieldmon.errors import ChoiceNeeded, FieldmonError
-from fieldmon.io.options import PlotOptions
-from fieldmon.plot.local_clock import local_clock
+from fieldmon.infestation.observations import PRESENT
+from fieldmon.io.options import PlotOptions, RecordOptions
+from fieldmon.io.read import read_plots, read_records
+from fieldmon.io.readers.nearby import records_on_plot
+from fieldmon.plot.local_clock import clock_at, local_clock
 
 from . import brought_files, cached
 from .brought_files import PLOT, settled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fieldmon.infestation.observations import Observations
     from fieldmon.plot.field import Field
+
+    from .brought_files import File, LeftOut
+
+    #: reads the file as an answer has it
+    Make = Callable[[str], "TriedAnswer"]
 
 #: what leads to plots at different places, or of different shapes
 _SEEN = frozenset({"crs", "swap_axes", "layer", "where", "columns", "units", "member"})
+#: what leads to records at different places, or to other finds
+_SEEN_OF_RECORDS = _SEEN | {"degrees", "encoding", "sheet"}
 # each is read once, in a process of its own
 _MOST = 12
+# one question may lead to another, whose first answer is taken to have something to look at
+_MOST_QUESTIONS = 4
 
 
 @dataclass(frozen=True, eq=False)
 class TriedAnswer:
-    """An answer, the plots that it leads to, and the time zone in which they lie; none: neither."""
+    """An answer and what it leads to; neither plots nor records: nowhere.
+
+    Parameters
+    ----------
+    answer
+        As it is handed back.
+    plots
+        The plots that it leads to.
+    zone
+        The time zone in which they lie; empty: unknown.
+    records
+        The records that it leads to, wherever they lie; None: it is no question about records.
+    near
+        How many of them lie on the plot or near it.
+    """
 
     answer: str
     plots: tuple[Field, ...] = ()
     zone: str = ""
+    records: Observations | None = None
+    near: int = 0
+
+    @property
+    def leads(self) -> bool:
+        """Return whether there is something to look at."""
+        return bool(self.plots) or self.records is not None
+
+    @property
+    def finds(self) -> int:
+        """Return how many of the records are finds."""
+        return 0 if self.records is None else int((self.records.present == PRESENT).sum())
 
 
 def tried(problem: FieldmonError | None) -> tuple[TriedAnswer, ...]:
@@ -37,12 +81,52 @@ def tried(problem: FieldmonError | None) -> tuple[TriedAnswer, ...]:
         return ()
     if brought_files.asking() != file.asked or problem.option not in _SEEN:
         return ()
-    options = settled(file, PlotOptions())
-    made = []
-    for answer in map(str, problem.choices[:_MOST]):
+    return _each(problem, file, partial(_plots, problem.option, file, settled(file, PlotOptions())))
+
+
+def tried_of_records(left_out: LeftOut, field: Field) -> tuple[TriedAnswer, ...]:
+    """Return each answer to a question about records, tried; nothing of other problems."""
+    problem, file = left_out.problem, left_out.file
+    if not isinstance(problem, ChoiceNeeded) or problem.option not in _SEEN_OF_RECORDS:
+        return ()
+    options = settled(file, RecordOptions())
+    return _each(problem, file, partial(_records, problem.option, (file, options), field))
+
+
+def _each(problem: ChoiceNeeded, file: File, make: Make) -> tuple[TriedAnswer, ...]:
+    before = f"{file.asked} {brought_files.answers(file.asked)} {problem.option}"
+    return tuple(
+        cached.tried(f"{before} {answer}", partial(make, answer))
+        for answer in map(str, problem.choices[:_MOST])
+    )
+
+
+def _plots(option: str, file: File, options: PlotOptions, answer: str) -> TriedAnswer:
+    try:
+        plots = read_plots(file.source, options.choose(option, answer)).value
+    except FieldmonError:  # nothing to look at; the answer can be given all the same
+        return TriedAnswer(answer)
+    return TriedAnswer(answer, plots, local_clock(plots[0]).zone)
+
+
+def _records(
+    option: str, of: tuple[File, RecordOptions], field: Field, answer: str
+) -> TriedAnswer:  # fmt: skip
+    file, options = of
+    options = options.choose(option, answer)
+    for _ in range(_MOST_QUESTIONS):
         try:
-            read = cached.plots(file.key, options.choose(problem.option, answer), file.source)
-            made.append(TriedAnswer(answer, read.value, local_clock(read.value[0]).zone))
-        except FieldmonError:  # nothing to look at; the answer can be given all the same
-            made.append(TriedAnswer(answer))
-    return tuple(made)
+            records = read_records(file.source, options).value
+        except ChoiceNeeded as more:
+            if not more.choices:
+                break
+            options = options.choose(more.option, str(more.choices[0]))
+        except FieldmonError:
+            break
+        else:
+            if not len(records):
+                break
+            lon, lat = np.median(records.lonlat, axis=0).tolist()
+            near = len(records_on_plot(records, field))
+            return TriedAnswer(answer, (), clock_at(lon, lat).zone, records, near)
+    return TriedAnswer(answer)

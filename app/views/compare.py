@@ -8,7 +8,7 @@ import streamlit as st
 
 from fieldmon.simulation.worker import LaidPlot
 
-from ..actions import changing, comparing
+from ..actions import background, changing, comparing
 from ..show import charts, field_map, map_layers, verdicts
 from ..state import cached, chosen_day, living
 from ..state.comparison import Comparison, curve, gains, outcomes
@@ -33,11 +33,8 @@ def show(choices: Choices) -> None:
     key = f"{choices.key} {choices.revision} {choices.day} {living.key(pest)}"
     laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
     running = cached.comparison(key, settings, choices.robot, laid)
-    with st.container(horizontal=True):
-        label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
-        st.button(label, type="primary", key="run", on_click=running.start,
-                  disabled=running.running or running.done == running.total)  # fmt: skip
-        st.button(texts.STOP, key="stop", on_click=running.stop, disabled=not running.running)
+    label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
+    background.buttons(running, label, key="run", over=running.done == running.total)
     st.fragment(_results, run_every=1.0 if running.running else None)(
         choices, running, at_work=running.running
     )
@@ -66,9 +63,6 @@ def _results(choices: Choices, running: Comparison, *, at_work: bool) -> None:
     if not alone:
         return
     with st.container(horizontal=True, vertical_alignment="bottom"):
-        strategy = st.selectbox(
-            texts.STRATEGY, alone, format_func=verdicts.name, width=340,
-            key=f"use_strategy {running.settings.strategies}",
-        )  # fmt: skip
-        st.button(texts.USE_THIS, key="use_this", on_click=changing.use,
-                  args=(choices, strategy))  # fmt: skip
+        box = f"use_strategy {running.settings.strategies}"
+        st.selectbox(texts.STRATEGY, alone, format_func=verdicts.name, width=340, key=box)
+        st.button(texts.USE_THIS, key="use_this", on_click=changing.use, args=(choices, box))

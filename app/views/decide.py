@@ -33,5 +33,5 @@ def show(choices: Choices) -> None:
     deciding.files(choices, advice)
     cautions.show(choices)
     deciding.treated(choices, advice)
-    deciding.leaves()
+    deciding.known_thresholds()
     assuming.show(choices)

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.drive.simulated import CHARGED, MUJOCO, MadeUp
-from fieldmon.samplers import sampler
-
+from ..actions import driving, watching
 from ..show import drive_play, field_map
 from ..state import cached, widget_memory
 from ..words import texts
-from ..words.language import of_error
 
 if TYPE_CHECKING:
-    from fieldmon.samplers.base import Scene
-
     from ..state.choices import Choices
-    from ..state.driving import DriveRun
 
 
 def show(choices: Choices) -> None:
@@ -34,9 +27,12 @@ def show(choices: Choices) -> None:
     shown = f"{choices.key} {choices.revision} {choices.day} {choices.who} {choices.robot}"
     shown = f"{shown} {choices.sampler} {choices.wishes} {choices.prior}"
     if source == "planned":
-        run = _run(choices, scene, shown)
-        st.fragment(_progress, run_every=0.5 if run.running else None)(run, at_work=run.running)
-        day = run.day
+        day = driving.run(choices, scene, shown).day
+    elif source == "live":
+        watched = f"{choices.key} {choices.day}"
+        if (live := watching.robot(watched, scene)) is not None and live.running:
+            field_map.want(drive_play.live_content(choices, live, f"{watched} {id(live)}"))
+        return
     elif (brought := st.file_uploader(texts.DRIVE_FILE, type=["mcap", "csv"])) is None:
         return
     else:
@@ -47,33 +43,3 @@ def show(choices: Choices) -> None:
     if day is not None:
         st.caption(texts.DRIVE_KEYS)
         field_map.want(drive_play.content(choices, scene, day))
-
-
-def _run(choices: Choices, scene: Scene, key: str) -> DriveRun:
-    kinds = [CHARGED, *([MUJOCO] if find_spec("mujoco") else [])]
-    kind = widget_memory.show(
-        st.segmented_control, texts.DRIVE_ROBOT, kinds, key="drive_robot", default=CHARGED,
-        required=True, format_func=texts.DRIVE_ROBOTS.__getitem__,
-    )  # fmt: skip
-    share = widget_memory.show(
-        st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key="drive_share", default=2.0
-    )
-    st.caption(texts.DRIVE_MADE_UP)
-    made_up = MadeUp(share / 100)
-    run = cached.drive_run(key, kind, made_up, choices.plot, scene, sampler(choices.sampler))
-    with st.container(horizontal=True):
-        st.button(texts.DRIVE_RUN, type="primary", key="drive_run", on_click=run.start,
-                  disabled=run.running or run.day is not None)  # fmt: skip
-        st.button(texts.STOP, key="drive_stop", on_click=run.stop, disabled=not run.running)
-    return run
-
-
-def _progress(run: DriveRun, *, at_work: bool) -> None:
-    if at_work and not run.running:
-        st.rerun()  # the map must know
-    if run.problem is not None:
-        st.error(of_error(run.problem))
-    if run.running:
-        st.progress(run.share, texts.DRIVE_PROGRESS.format(share=round(100 * run.share)))
-    if run.said:
-        st.warning(run.said)

@@ -76,4 +76,4 @@ def show(choices: Choices) -> None:
         for message in chosen_day.messages_on_records(choices):
             st.markdown(f"- {in_words(message)}")
     records_shown.say(choices, said)
-    field_map.want(*drawing.content(choices, records, before))
+    field_map.want(*answering.of_records(choices) or drawing.content(choices, records, before))

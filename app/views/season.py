@@ -60,15 +60,15 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
 def _again(progress: Progress) -> None:
     """Say why the days' finds are more than the plants found, where they are."""
     if progress.finds > progress.found:
-        again = progress.finds - progress.found
-        said = texts.FOUND_AGAIN.format(finds=progress.finds, plants=progress.found, again=again)
-        st.caption(said)
+        finds, plants = progress.finds, progress.found
+        st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:
-    axes = (texts.DATE_AXIS, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
-    st.altair_chart(charts.season_days(days, axes), alt=texts.FOUND_AXIS)
-    st.altair_chart(charts.still_out(days, (texts.DATE_AXIS, texts.OUT_AXIS)), alt=texts.OUT_AXIS)
+    named, day, out = choices.units.short_day, texts.DATE_AXIS, texts.OUT_AXIS
+    axes = (day, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
+    st.altair_chart(charts.season_days(days, axes, named), alt=texts.FOUND_AXIS)
+    st.altair_chart(charts.still_out(days, (day, out), named), alt=out)
     st.markdown(f"**{texts.ROW_AGES}**")
     line = choices.plot.grid.row_line.astype(np.int64) + 1
     never = len(np.unique(line)) - len(np.unique(line[~np.isnan(progress.days_since)]))

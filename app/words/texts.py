@@ -61,10 +61,26 @@ BEARING = "Row bearing (degrees from north)"
 BEARING_HELP = "Leave empty to have it found from the boundary or the plants."
 ROW_SPACING, PLANT_SPACING = "Row to row ({unit})", "Plant to plant ({unit})"
 HEADLAND = "Headland ({unit})"
+HALF_CANOPY = "Half a canopy ({unit})"
+HALF_CANOPY_HELP = (
+    "How far plants reach to each side of their middle. It counts for a robot whose width is said. "
+    "Leave empty for {usual}."
+)
 SPACING_HELP = "Leave empty for what the file says, or else {rows} and {plants}."
 WHO = "Who inspects"
 ROBOT, SCOUT = "Robot", "Scout on foot"
 HOURS, INSPECTION_S = "Working hours", "Seconds at a plant"
+ROBOT_WIDTH = "Width of the robot ({unit})"
+ROBOT_WIDTH_HELP = (
+    "Ways keep half of it off the canopies of plants, and aisles that are too narrow are not "
+    "entered. Left empty, the robot is a point."
+)
+ROBOT_TIMES_LABEL = "Times charged"
+ROBOT_TIMES_NAMES = {
+    "thesis": "The thesis's: {row} s a row change, {turn} s a turn",
+    "measured": "Measured in simulated drives: {row} s a row change, {stop} s a stop",
+    "own": "As set by command: {row} s a row change, {turn} s a turn, {stop} s a stop",
+}
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
 DATE = "Day"
@@ -83,6 +99,7 @@ ASSUMED_WHAT = {
     "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
+    "row_change_s": "a row change takes {value} s more",
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
 }
@@ -110,6 +127,15 @@ CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
 LEGEND_ZONE = "border of a time zone"
 ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
                      "Map of {n} places where the plot could lie.")  # fmt: skip
+RECORDS_ON_MAP = (
+    "Which of these is right? *Plot & data* shows on the map where the records then lie, with a "
+    "ring round each find. Click it there, or choose here."
+)
+ANSWER_RECORDS = "{near} of {n} on the plot, {found} finds"
+ANSWERS_OF_RECORDS_ALT = Plural(
+    "Map of the plot, and of {n} place where the records could lie.",
+    "Map of the plot, and of {n} places where the records could lie.",
+)
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"
 SEVERITIES = {
@@ -146,6 +172,10 @@ MAP_WORDS = {
     "scale": "The scale bar is {bar} long; the arrow points north.",
     "speed": "Speed", "follow": "Follow the robot",
     "driven": "{time} · {stops} stops, {found} found",
+    "live": "live, {seconds} s ago", "paused": "paused, {seconds} s ago",
+    "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
+    "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
+    "away": "the server is not reached",
 }  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
@@ -508,7 +538,14 @@ DECIDE_BOXES = {
     "days": "Days that it stays infested", "works": "Treating cleans, %",
     "reserve": "Never sprayed, for predators, %",
 }  # fmt: skip
-DECIDE_LEAVES, DECIDE_THRESHOLD = "By leaves that were counted", "Threshold"
+DECIDE_LEAVES, DECIDE_THRESHOLD = "By another threshold, or by leaves counted", "Threshold"
+DECIDE_OWN, DECIDE_OWN_TAKE = "Thresholds of your own (CSV)", "Take these thresholds"
+DECIDE_OWN_HELP = (
+    "Columns name, measure, level and source; the measure is share of plants, share of leaves or "
+    "mean per leaf. They are kept until the page is closed."
+)
+DECIDE_OWN_KEPT = Plural("{n} threshold can be chosen now.", "{n} thresholds can be chosen now.")
+DECIDE_TAKE = "Treat from {share:.1%} of the plants on"
 DECIDE_THRESHOLDS = {
     "almond": "almond", "almond with predators": "almond with predators",
     "strawberry before fruit": "strawberry before fruit",
@@ -654,6 +691,8 @@ TREAT_TEXTS = {
     "crop": "Crop",
     "pest": "Pest",
     "authorised_by": "Authorised by",
+    "active_ingredient": "Active ingredient",
+    "weather": "Weather then",
 }
 TREAT_DOSE_UNSAID = (
     "A dose must have a number and a unit, but one of them is empty. Write both, such as 0.5 and "
@@ -748,7 +787,19 @@ DRIVE_INTRO = (
     "change as it learns. Nothing is recorded."
 )
 DRIVE_SOURCE = "Which day"
-DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day"}
+DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
+DRIVE_LIVE = (
+    "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
+    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that."
+)
+DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
+DRIVE_VDA = "Version of VDA 5050"
+DRIVE_WATCH = "Watch"
+DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
+DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
+DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
+DRIVE_PAUSED = "The robot is paused, or driven by hand."
+DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
 DRIVE_ROBOT = "Robot"
 DRIVE_ROBOTS = {"charged": "As charged", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (

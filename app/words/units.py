@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from typing import TYPE_CHECKING
+
 from fieldmon.compute import units as library
 from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
 
 from . import texts
 from .language import in_words, number
+
+if TYPE_CHECKING:
+    from datetime import date
 
 __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 
@@ -26,6 +32,10 @@ class UnitsInLanguage(library.Units):
     def square(self, value_m2: float) -> str:
         """Return an area."""
         return in_words(super().square(value_m2))
+
+    def short_day(self, on: date) -> str:
+        """Return a date without its year, for the axes of charts."""
+        return on.strftime(re.sub(r"\W?%Y\W?", "", DATES[self.date_like]))
 
     def lengths(self) -> list[tuple[float, str]]:
         """Return the round lengths for scale bars, shortest first: in metres and as text."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import time
 from enum import StrEnum
 from pathlib import Path
@@ -35,7 +35,11 @@ if TYPE_CHECKING:
 
     from fieldmon.drive.day import DrivenDay
     from fieldmon.drive.errand import DayToDrive, DrivingRobot
+    from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
+    from fieldmon.drive.vda5050.wire import RobotName
+    from fieldmon.monitoring import Season
+    from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 
@@ -43,6 +47,28 @@ BrokerName = Annotated[
     str, typer.Option("--broker", help="MQTT broker: HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT.")
 ]
 Serial = Annotated[str, typer.Option(help="Serial number of the robot, as in its topics.")]
+RobotModel = Annotated[
+    Path | None,
+    typer.Option(
+        "--robot-model",
+        help="Model of a robot to drive with mujoco, URDF or MJCF (docs: drive say which joints).",
+    ),
+]
+SteeringName = Annotated[
+    str,
+    typer.Option(
+        help="Of mujoco's own robot. differential: two driven wheels. ackermann: a steered axle, "
+        "which turns at corners by arcs and shunts."
+    ),
+]
+Rough = Annotated[
+    float,
+    typer.Option(help="Of mujoco: bumps of the ground, metres (standard deviation of heights)."),
+]
+GroundHeights = Annotated[
+    Path | None, typer.Option("--ground", help="Of mujoco: raster of heights (GeoTIFF), metres.")
+]
+Version = Annotated[str, typer.Option("--vda", help="Version of VDA 5050: 2.1 or 3.0.")]
 Maker = Annotated[str, typer.Option("--manufacturer", help="Manufacturer, as in its topics.")]
 
 
@@ -85,6 +111,10 @@ class DriveOptions:
     gnss: Annotated[
         float, typer.Option(help="Noise of simulated positions, metres (standard deviation).")
     ] = 0.0
+    robot_model: RobotModel = None
+    steering: SteeringName = "differential"
+    rough: Rough = 0.0
+    ground: GroundHeights = None
     made_up: Annotated[
         bool,
         typer.Option("--made-up", help="Record a simulated robot's made-up finds in the season."),
@@ -92,6 +122,7 @@ class DriveOptions:
     broker: BrokerName = "127.0.0.1:1883"
     serial: Serial = "robot1"
     manufacturer: Maker = "fieldmon"
+    vda: Version = "2.1"
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
@@ -103,18 +134,24 @@ def drive(options: DriveOptions) -> None:
     On a plot the finds are simulated, and nothing is kept but what -o and --bag write. In a
     season every plant told is in its file before the next one is asked for: a day is one batch,
     and after a crash the same command goes on from the plant told last. A simulated robot makes
-    its finds up, so that a season takes them only with --made-up.
+    its finds up, so that a season takes them only with --made-up. Of a season with a team all
+    drive by VDA 5050 at once, each under its name as serial number.
 
     Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o day.csv
+    Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann
     Example: fieldmon drive season.gpkg --robot vda5050 --broker farm.local --serial robot1
     """
     from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
 
-    if options.plot is not None and is_season(options.plot):
-        driven, on = _season(options, options.plot)
-    else:
+    if options.plot is None or not is_season(options.plot):
         driven, on = _plot(options)
-    _write(driven, on, options)
+    elif (days := _team(options, options.plot)) is not None:
+        for on, each, own in days:
+            _write(each, on, own, own.serial)
+        return
+    else:
+        driven, on = _season(options, options.plot)
+    _write(driven, on, options, _name(options))
 
 
 def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
@@ -138,7 +175,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     tell_assumed(assumed_by((), prior, worker, plot.grid))
     if told := aisles.told_shut():
         typer.echo(told)
-    with monitor.day() as today, _driver(options, aisles, worker, (chance, on)) as driver:
+    with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         begins = local_clock(plot.field).moment(on, time(6))
         return _driven(options, today, aisles, (worker, driver), begins), on
 
@@ -147,7 +184,6 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
     """Drive what is left of a day of a season, each plant told recorded at once."""
     from fieldmon.drive.season_day import SeasonDay  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
-    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
 
     if options.robot is not Drives.VDA5050 and not options.made_up:
         raise SettingError(
@@ -164,9 +200,50 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
-    with _driver(options, aisles, worker, (season.morning(on), on)) as driver:
-        begins = local_clock(season.plot.field).moment(on, season.settings.starts)
-        return _driven(options, today, aisles, (worker, driver), begins), on
+    with _driver(options, season.plot, worker, (season.morning(on), on)) as driver:
+        return _driven(options, today, aisles, (worker, driver), _begins(season, on)), on
+
+
+def _team(options: DriveOptions, file: Path) -> list[tuple[date, DrivenDay, DriveOptions]] | None:
+    """Let a season's team drive its day by VDA 5050, a robot each; None: it is no such day."""
+    from fieldmon.monitoring import Season  # noqa: PLC0415
+
+    season = Season(file)
+    if options.robot is not Drives.VDA5050 or not season.settings.team:
+        return None
+    from fieldmon.cli.team_files import files_of_each  # noqa: PLC0415
+    from fieldmon.drive.recording import Recording  # noqa: PLC0415
+    from fieldmon.drive.team_season import TeamSeason  # noqa: PLC0415
+    from fieldmon.drive.vda5050.team import drive_team  # noqa: PLC0415
+    from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
+
+    on, team = day_on(season.plot.field, day(options.on)), season.settings.team
+    asked = [path for path in (options.output, options.bag) if path is not None]
+    files = files_of_each(asked, team) if asked else [[] for _ in team]
+    today = TeamSeason(season, on, options.manufacturer)
+    tell_assumed(season.assumed())
+    recordings = {
+        one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
+        for one in team
+    }
+    say = lambda told: typer.echo(told, err=True)  # noqa: E731
+    broker = Broker.of(options.broker)
+    driven = drive_team(today, broker, _robot_name(options), say, recordings)
+    made = []
+    for one, paths in zip(team, files, strict=True):
+        own = [*paths]
+        output = own.pop(0) if options.output is not None else None
+        bag = own.pop(0) if options.bag is not None else None
+        mine = replace(options, output=output, bag=bag, serial=one.name)
+        _write_bag(recordings[one.name], _begins(season, on), mine)
+        made.append((on, driven[one.name], mine))
+    return made
+
+
+def _begins(season: Season, on: date) -> datetime:
+    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+
+    return local_clock(season.plot.field).moment(on, season.settings.starts)
 
 
 def _driven(
@@ -180,50 +257,94 @@ def _driven(
 
     robot, (driver, recording) = who
     driven = drive_day(today, aisles, (robot, driver), recording.note)
-    if options.bag is not None:
-        from fieldmon.drive.bag import write_bag  # noqa: PLC0415
-
-        bag, *layouts = write_bag(recording, begins, options.bag)
-        beside = " and ".join(path.name for path in layouts)
-        typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
+    _write_bag(recording, begins, options)
     return driven
+
+
+def _write_bag(recording: Recording, begins: datetime, options: DriveOptions) -> None:
+    if options.bag is None:
+        return
+    from fieldmon.drive.bag import write_bag  # noqa: PLC0415
+
+    bag, *layouts = write_bag(recording, begins, options.bag)
+    beside = " and ".join(path.name for path in layouts)
+    typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
 
 
 @contextmanager
 def _driver(
-    options: DriveOptions, aisles: Aisles, worker: Robot, believed: tuple[Any, date]
+    options: DriveOptions, plot: Plot, worker: Robot, believed: tuple[Any, date]
 ) -> Iterator[tuple[DrivingRobot, Recording]]:
     """Yield whoever drives, and what it notes."""
     from fieldmon.drive.recording import Recording  # noqa: PLC0415
 
-    recording = Recording(aisles, worker, believed[0])
+    recording = Recording(plot.aisles.for_robot(worker), worker, believed[0])
     if options.robot is Drives.VDA5050:
         from fieldmon.drive.vda5050.fleet import live_robot  # noqa: PLC0415
         from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
 
-        who = options.manufacturer, options.serial
+        who = _robot_name(options)
         say = lambda told: typer.echo(told, err=True)  # noqa: E731
         with live_robot(Broker.of(options.broker), who, str(believed[1]), say) as live:
             yield live, recording
         return
     from fieldmon.drive.simulated import MadeUp, simulated_robot  # noqa: PLC0415
 
-    made_up = MadeUp(options.infested, options.seed, options.gnss)
+    made_up = MadeUp(options.infested, options.seed)
     decides = sampler_of(options.sampler, options.every)
-    yield simulated_robot(options.robot.value, recording, decides, made_up), recording
+    physics = _physics(options, plot, worker)
+    yield simulated_robot(options.robot.value, recording, decides, made_up, physics), recording
 
 
-def _write(driven: DrivenDay, on: date, options: DriveOptions) -> None:
+def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None:
+    """Return what a robot is and meets in MuJoCo; refuse what others have no use for."""
+    said = {
+        "--robot-model": options.robot_model is not None,
+        "--steering": options.steering != "differential",
+        "--rough": options.rough != 0.0,
+        "--ground": options.ground is not None,
+        "--gnss": options.gnss != 0.0,
+    }
+    if options.robot is not Drives.MUJOCO:
+        if vain := [option for option, given in said.items() if given]:
+            raise SettingError(f"{vain[0]} goes with --robot mujoco: nobody else drives by it.")
+        return None
+    if options.ground is not None and options.rough:
+        raise SettingError("Give one of --ground and --rough: heights of a raster are as they are.")
+    if options.robot_model is not None and options.steering != "differential":
+        raise SettingError("The joints of a --robot-model say how it steers: give no --steering.")
+    from fieldmon.drive.ground import ground_of_raster, rough_ground  # noqa: PLC0415
+    from fieldmon.drive.mujoco_robot import Physics  # noqa: PLC0415
+    from fieldmon.drive.robot_body import RobotBody  # noqa: PLC0415
+
+    body = RobotBody.of(worker, options.steering, options.robot_model)
+    heights, ground = options.ground, None
+    if heights is not None:
+        ground = ground_of_raster(plot.grid, plot.field, heights)
+    elif options.rough:
+        ground = rough_ground(plot.grid, options.rough, options.seed)
+    return Physics(body, options.gnss, options.seed, ground)
+
+
+def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str) -> None:
     from fieldmon.drive.account import day_table, in_words, stop_table, stops_beside  # noqa: PLC0415
 
-    typer.echo(f"{on}: {in_words(driven)}")
+    who = f"{name}, {on}" if options.serial == name else f"{on}"
+    typer.echo(f"{who}: {in_words(driven)}")
     if options.output is None:
         return
     from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
 
-    write_whole(options.output, day_table(driven, on, _name(options)))
+    write_whole(options.output, day_table(driven, on, name))
     write_whole(stops_beside(options.output), stop_table(driven))
     typer.echo(f"Written to {options.output} and {stops_beside(options.output)}")
+
+
+def _robot_name(options: DriveOptions) -> RobotName:
+    from fieldmon.drive.vda5050.versions import known_version  # noqa: PLC0415
+    from fieldmon.drive.vda5050.wire import RobotName  # noqa: PLC0415
+
+    return RobotName(options.manufacturer, options.serial, known_version(options.vda))
 
 
 def _name(options: DriveOptions) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.drive import BrokerName, Maker, Serial
+from fieldmon.cli.drive import BrokerName, Maker, Version
 from fieldmon.cli.option_groups import with_options
 from fieldmon.errors import SettingError
 
@@ -17,8 +17,12 @@ class StandInOptions:
     """What `fieldmon stand-in` is told."""
 
     broker: BrokerName = "127.0.0.1:1883"
-    serial: Serial = "robot1"
+    serial: Annotated[
+        list[str] | None,
+        typer.Option(help="Serial number, as in its topics; several for several robots."),
+    ] = None
     manufacturer: Maker = "fieldmon"
+    vda: Version = "2.1"
     speed: Annotated[float, typer.Option(help="Driving speed, km/h.")] = 2.5
     faster: Annotated[float, typer.Option(help="How many times faster than the clock.")] = 60.0
     infested: Annotated[float, typer.Option(help="Share of plants found infested.")] = 0.02
@@ -35,23 +39,36 @@ class StandInOptions:
 def stand_in(options: StandInOptions) -> None:
     """Be a robot that speaks VDA 5050, for trying fieldmon drive --robot vda5050; Ctrl-C ends it.
 
-    It drives what it is ordered, looks, and makes up what it finds.
+    It drives what it is ordered, looks, and makes up what it finds. --faster hurries its clock;
+    while it waits for an order its day stands still.
 
     Example: fieldmon stand-in --broker 127.0.0.1:1883 --faster 100
     """
     from fieldmon.drive.vda5050.stand_in import StandIn  # noqa: PLC0415
-    from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
+    from fieldmon.drive.vda5050.versions import known_version  # noqa: PLC0415
+    from fieldmon.drive.vda5050.wire import Broker, RobotName  # noqa: PLC0415
 
     if not (options.speed > 0 and options.faster > 0 and 0 <= options.infested <= 1):
         raise SettingError("--speed and --faster must be above 0, and --infested in 0..1.")
-    who = options.manufacturer, options.serial
-    robot = StandIn(
-        Broker.of(options.broker), who, options.look, options.speed / 3.6, options.faster
-    )
-    typer.echo(f"{'/'.join(who)} waits for orders at {options.broker}. End it with Ctrl-C.")
+    broker, version = Broker.of(options.broker), known_version(options.vda)
+    robots = [
+        StandIn(
+            broker,
+            RobotName(options.manufacturer, serial, version),
+            options.look,
+            options.speed / 3.6,
+            options.faster,
+        )
+        for serial in dict.fromkeys(options.serial or ["robot1"])
+    ]
+    names = ", ".join(f"{options.manufacturer}/{robot.name.serial}" for robot in robots)
+    typer.echo(f"{names} waits for orders at {options.broker}. End it with Ctrl-C.")
+    for robot in robots[1:]:
+        robot.start()
     try:
-        robot.run()
+        robots[0].run()
     except KeyboardInterrupt:
         typer.echo("Ended.")
     finally:
-        robot.stop()
+        for robot in robots:
+            robot.stop()

@@ -60,6 +60,7 @@ class TreatOptions:
     rows: RowsTreated = None
     on: TheDate = None
     product: Annotated[str, typer.Option(help="What was used.")] = ""
+    active_ingredient: Annotated[str, typer.Option(help="Active ingredient of it.")] = ""
     dose: DoseSaid = None
     water: Annotated[float | None, typer.Option(help="Litres of water a hectare.")] = None
     operator: Annotated[str, typer.Option(help="Who did it.")] = ""
@@ -73,6 +74,7 @@ class TreatOptions:
     crop: Annotated[str, typer.Option(help="Crop it was for.")] = ""
     pest: Annotated[str, typer.Option(help="Pest it was for.")] = ""
     authorised_by: Annotated[str, typer.Option(help="Who authorised it.")] = ""
+    weather: Annotated[str, typer.Option(help="Weather then: '18 °C, wind 2 m/s, dry'.")] = ""
 
     def application(self) -> Application:
         """Return what was applied."""
@@ -94,6 +96,8 @@ class TreatOptions:
             crop=self.crop,
             pest=self.pest,
             authorised_by=self.authorised_by,
+            active_ingredient=self.active_ingredient,
+            weather=self.weather,
         )
 
 

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.options import Upload, source_name
 from fieldmon.io.packaged import packaged_table
 
 if TYPE_CHECKING:
@@ -90,7 +91,7 @@ def published() -> tuple[Threshold, ...]:
     return tuple(map(_of_row, packaged_table("fieldmon/decisions/thresholds.csv")))
 
 
-def read_thresholds(path: Path) -> tuple[Threshold, ...]:
+def read_thresholds(source: Path | Upload) -> tuple[Threshold, ...]:
     """Return thresholds of one's own from a CSV with the columns of the published ones.
 
     Raises
@@ -98,18 +99,20 @@ def read_thresholds(path: Path) -> tuple[Threshold, ...]:
     FileProblem
         If the file cannot be read, or a line is no threshold: the sentence says which.
     """
+    name = source_name(source)
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        data = source.data if isinstance(source, Upload) else source.read_bytes()
+        lines = data.decode("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise FileProblem(f"{path.name}: thresholds must be text in UTF-8 ({error}).") from error
+        raise FileProblem(f"{name}: thresholds must be text in UTF-8 ({error}).") from error
     table = csv.DictReader(line for line in lines if not line.startswith("#"))
     missing = [name for name in _COLUMNS if name not in (table.fieldnames or ())]
     if missing:
         raise FileProblem(
-            f"{path.name}: thresholds need the columns {', '.join(_COLUMNS)}, but there is no "
+            f"{name}: thresholds need the columns {', '.join(_COLUMNS)}, but there is no "
             f"{' and no '.join(missing)}."
         )
-    return tuple(_read(path, number, row) for number, row in enumerate(table, 1))
+    return tuple(_read(name, number, row) for number, row in enumerate(table, 1))
 
 
 def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Threshold:
@@ -150,16 +153,15 @@ def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Thresho
     )
 
 
-def _read(path: Path, number: int, row: Mapping[str, str]) -> Threshold:
+def _read(name: str, number: int, row: Mapping[str, str]) -> Threshold:
     try:
         return _of_row(row)
     except ValueError as error:
         raise FileProblem(
-            f"{path.name}, threshold {number}: the level must be a number, but it is "
-            f"{row['level']!r}."
+            f"{name}, threshold {number}: the level must be a number, but it is {row['level']!r}."
         ) from error
     except SettingError as error:
-        raise FileProblem(f"{path.name}, threshold {number}: {error}") from error
+        raise FileProblem(f"{name}, threshold {number}: {error}") from error
 
 
 def _of_row(row: Mapping[str, str]) -> Threshold:

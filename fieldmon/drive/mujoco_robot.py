@@ -3,30 +3,65 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import shapely
 
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.pursuit import Pace, Pursuit
+from fieldmon.drive.robot_body import RobotBody
+from fieldmon.drive.steered_pursuit import SteeredPursuit
 from fieldmon.drive.track import Track
-from fieldmon.drive.world import Chassis, world_xml
+from fieldmon.drive.turning_circle import Room, way_of
+from fieldmon.drive.world import lay_ground, world_xml
 from fieldmon.errors import SettingError
+from fieldmon.plot.clearance import STRAY_M, half_canopy_m
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fieldmon.drive.errand import Errand, Float
+    from fieldmon.drive.ground import Ground
     from fieldmon.monitoring.monitor import PlantToInspect
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 
 _STEP_S = 0.005
 _CONTROL_S = 0.05
+# what is measured of a model may be so much more than was said
+_MEASURED_M = 0.02
+_SETTLES_S = 1.0
+# a turn may leave the plot by so much
+_BEYOND_M = 0.1
+
+
+class Physics(NamedTuple):
+    """What a robot is and meets in the simulation.
+
+    Parameters
+    ----------
+    body
+        Its model; None: ours of two driven wheels, of the size that was said.
+    gnss_m
+        Standard deviation of each position that it is told, to each side.
+    seed
+        Of that noise.
+    ground
+        Under it; None: level.
+    """
+
+    body: RobotBody | None = None
+    gnss_m: float = 0.0
+    seed: int = 1
+    ground: Ground | None = None
+
+    def __repr__(self) -> str:
+        return f"<Physics: {self.gnss_m:g} m of noise>"
 
 
 class MujocoRobot:
-    """Drives with two wheels past plants that are solid; needs ``pip install fieldmon[sim]``.
+    """Drives on wheels past plants that are solid; needs ``pip install fieldmon[sim]``.
 
     Parameters
     ----------
@@ -34,10 +69,8 @@ class MujocoRobot:
         Its size, speed and seconds of looking.
     look
         Told a plant to inspect; says whether it is found infested.
-    gnss_m
-        Standard deviation of each position that the robot is told, to each side.
-    seed
-        Of that noise.
+    physics
+        What it is and meets.
     track
         Where it notes its way; None: nowhere.
     """
@@ -46,33 +79,56 @@ class MujocoRobot:
         self,
         robot: Robot,
         look: Callable[[PlantToInspect], bool],
-        gnss_m: float = 0.0,
-        seed: int = 1,
+        physics: Physics | None = None,
         track: Track | None = None,
     ) -> None:
-        self._robot, self._look, self._gnss_m = robot, look, gnss_m
-        self._noise = np.random.default_rng(seed)
+        self._robot, self._look = robot, look
+        self._physics = physics or Physics()
+        self._noise = np.random.default_rng(self._physics.seed)
         self._track = track or Track()
-        self._chassis = Chassis.of(robot)
+        self._body = self._physics.body or RobotBody.of(robot)
         self._pace = Pace(robot.speed_m_s)
         self._model: Any = None
 
     def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:
         """Stand at a place of a plot; where to point is chosen on the first way."""
         mujoco = _mujoco()
-        xml = world_xml(aisles.grid, self._chassis, _STEP_S)
-        self._model = mujoco.MjModel.from_xml_string(xml)
+        grid = aisles.grid
+        self._ground = self._physics.ground
+        world = mujoco.MjSpec.from_string(world_xml(grid, _STEP_S, self._ground))
+        self._body.put_into(world, mujoco)
+        self._model = world.compile()
+        if self._ground is not None:
+            lay_ground(self._model, self._ground)
+        self._wheels = self._body.wheels(self._model, mujoco)
+        self._room = self._measured(aisles, mujoco)
         self._data = mujoco.MjData(self._model)
         self._step, self._at_m = mujoco.mj_step, at_m
         names = [mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_GEOM, g) or ""
                  for g in range(self._model.ngeom)]  # fmt: skip
         self._plant_of = np.array([int(n[1:]) if n[:1] == "p" and n[1:].isdigit() else -1
                                    for n in names])  # fmt: skip
-        data = self._data
-        data.time, data.qpos[:3] = gone_s, (*at_m, self._chassis.wheel_m)
-        data.qpos[3:7] = 1.0, 0.0, 0.0, 0.0
-        mujoco.mj_forward(self._model, data)
-        self._placed = False
+        self._data.time, self._placed = gone_s, False
+
+    def _measured(self, aisles: Aisles, mujoco: Any) -> Room:  # noqa: ANN401
+        """Return the room it needs to turn; raise `SettingError` if it is wider than was said."""
+        low, high = self._body.box_m(self._model, mujoco)
+        wide, long = float(high[1] - low[1]), float(high[0] - low[0])
+        said = self._robot.width_m or 0.0
+        said_long = self._robot.length_m or said
+        if self._body.is_of_file and (wide > said + _MEASURED_M or long > said_long + _MEASURED_M):
+            raise SettingError(
+                f"The robot of {self._body.name} is {wide:.2f} m wide and {long:.2f} m long, more "
+                "than the day was planned for. Plan for it: "
+                f"--width {wide + 0.005:.2f} --length {long + 0.005:.2f}"
+            )
+        corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]],
+                            [low[0], high[1]]])  # fmt: skip
+        corners[:, 0] -= self._wheels.axle_m
+        apart_m = half_canopy_m(aisles.grid) + STRAY_M / 2
+        area = shapely.buffer(aisles.grid.drivable_m, _BEYOND_M)
+        shapely.prepare(area)
+        return Room(self._wheels.turning_m, corners, aisles.grid.tree, apart_m, area)
 
     def visit(self, errand: Errand) -> Visit:
         """Drive to a plant and look at it."""
@@ -92,21 +148,22 @@ class MujocoRobot:
 
     def _drive(self, line_m: Float) -> Visit:
         """Drive along a line; it ends at its end, or where the robot is stuck."""
-        data, chassis = self._data, self._chassis
+        data = self._data
         if not self._placed:
             self._point(line_m)
-        way, touched, strayed_m = Pursuit(line_m, self._pace), set[int](), 0.0
+        way, no_room = self._way(line_m)
+        touched, strayed_m = set[int](), 0.0
         length_m = float(np.hypot(*np.diff(line_m, axis=0).T).sum())
-        until_s = data.time + 30.0 + 3.0 * length_m / self._pace.speed_m_s + 10.0 * len(line_m)
-        v, every = 0.0, round(_CONTROL_S / _STEP_S)
+        each_s = 40.0 if self._wheels.base_m else 10.0
+        until_s = data.time + 30.0 + 3.0 * length_m / self._pace.speed_m_s + each_s * len(line_m)
+        v, every, gnss_m = 0.0, round(_CONTROL_S / _STEP_S), self._physics.gnss_m
         while not way.done:
             x, y, yaw = self.pose
-            if self._gnss_m:
-                dx, dy = self._gnss_m * self._noise.standard_normal(2)
+            if gnss_m:
+                dx, dy = gnss_m * self._noise.standard_normal(2)
                 x, y = x + dx, y + dy
             v, turn = way.command((x, y), yaw, v, _CONTROL_S)
-            spin = turn * chassis.track_m / 2
-            data.ctrl[:] = (v - spin) / chassis.wheel_m, (v + spin) / chassis.wheel_m
+            data.ctrl[:] = self._wheels.commands(v, turn)
             self._step(self._model, data, every)
             self._note()
             strayed_m = max(strayed_m, way.off_m(self.pose[:2]))
@@ -117,19 +174,47 @@ class MujocoRobot:
                 where = f"at {x:.1f}, {y:.1f} m of the plot's frame"
                 said = f"It did not get on {where} (touching {sorted(touched) or 'nothing'})."
                 return Visit(None, float(data.time), strayed_m, frozenset(touched), said)
-        return Visit(None, float(data.time), strayed_m, frozenset(touched))
+        return Visit(None, float(data.time), strayed_m, frozenset(touched), no_room)
+
+    def _way(self, line_m: Float) -> tuple[Pursuit | SteeredPursuit, str]:
+        """Return what follows a line, and why it cannot be followed to its end."""
+        radius_m = self._room.radius_m
+        if not radius_m:
+            return Pursuit(line_m, self._pace), ""
+        pieces, corner = way_of(line_m, self.pose[2], self._room)
+        said = ""
+        if corner is not None:
+            x, y = corner.tolist()
+            said = (
+                f"There is no room to turn at {x:.1f}, {y:.1f} m of the plot's frame for a robot "
+                f"with a turning circle of {2 * radius_m:.1f} m."
+            )
+        return SteeredPursuit(pieces, self._pace, self._wheels.sharpest), said
 
     @property
     def pose(self) -> tuple[float, float, float]:
-        """Where the robot is, metres of the plot's frame, and where it points, radians."""
+        """Where the middle of its driven axle is, metres of the plot's frame, and its heading."""
         x, y, _, a, b, c, d = self._data.qpos[:7].tolist()
-        return x, y, math.atan2(2 * (a * d + b * c), 1 - 2 * (c * c + d * d))
+        yaw = math.atan2(2 * (a * d + b * c), 1 - 2 * (c * c + d * d))
+        axle_m = self._wheels.axle_m
+        return x + axle_m * math.cos(yaw), y + axle_m * math.sin(yaw), yaw
 
     def _point(self, line_m: Float) -> None:
-        """Stand as the first way runs."""
+        """Stand as the first way runs, and settle on the ground."""
+        data, wheels = self._data, self._wheels
         dx, dy = line_m[1] - line_m[0] if len(line_m) > 1 else (1.0, 0.0)
-        half = math.atan2(dy, dx) / 2
-        self._data.qpos[3:7] = math.cos(half), 0.0, 0.0, math.sin(half)
+        yaw = math.atan2(dy, dx)
+        at_m = self._at_m - wheels.axle_m * np.array([math.cos(yaw), math.sin(yaw)])
+        high_m = 0.0
+        if self._ground is not None:
+            around = at_m + np.array([[0, 0], [0.3, 0], [-0.3, 0], [0, 0.3], [0, -0.3]])
+            high_m = float(self._ground.at(around).max())
+        data.qpos[:3] = *at_m, high_m + wheels.stand_m
+        data.qpos[3:7] = math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)
+        began_s = float(data.time)
+        if self._ground is not None:
+            self._step(self._model, data, round(_SETTLES_S / _STEP_S))
+            data.time = began_s
         self._placed = True
         self._note()
 

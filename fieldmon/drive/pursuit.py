@@ -62,8 +62,8 @@ class Pursuit:
     """
 
     def __init__(self, line_m: Float, pace: Pace) -> None:
-        self._pace, self._stretches = pace, _stretches(line_m)
-        self._k, self._from, self._aimed = 0, 0, False
+        self._pace, self._stretches = pace, [LineToFollow(one) for one in stretches(line_m)]
+        self._k, self._aimed = 0, False
         self._whole = shapely.linestrings(line_m) if len(line_m) > 1 else None
 
     @property
@@ -88,9 +88,9 @@ class Pursuit:
         if self.done:
             return 0.0, 0.0
         line = self._stretches[self._k]
-        gone_m, left_m = self._gone(line, xy_m)
+        gone_m, left_m = line.place(xy_m)
         if not self._aimed:
-            ahead = line[min(1, len(line) - 1)] - line[0]
+            ahead = line.line_m[1] - line.line_m[0]
             error = self._to_axis(math.atan2(ahead[1], ahead[0]) - yaw)
             if abs(error) > _AIMED_RAD:
                 most = self._pace.turn_rad_s
@@ -98,7 +98,7 @@ class Pursuit:
             self._aimed = True
             self._gear = 1.0 if self._forward else -1.0
         if left_m < REACH_M:
-            self._k, self._from, self._aimed = self._k + 1, 0, False
+            self._k, self._aimed = self._k + 1, False
             return 0.0, 0.0
         return self._along(line, (gone_m, left_m), (*xy_m, yaw), abs(v), dt)
 
@@ -110,7 +110,7 @@ class Pursuit:
 
     def _along(
         self,
-        line: Float,
+        line: LineToFollow,
         place: tuple[float, float],
         pose: tuple[float, float, float],
         v: float,
@@ -118,9 +118,9 @@ class Pursuit:
     ) -> tuple[float, float]:
         gone_m, left_m = place
         x, y, yaw = pose
-        aim = _at(line, gone_m + _LOOK_AHEAD_M)
+        aim = line.aim(gone_m + _LOOK_AHEAD_M)
         heading = yaw if self._gear > 0 else yaw + math.pi
-        alpha = _turn(math.atan2(aim[1] - y, aim[0] - x) - heading)
+        alpha = turn_of(math.atan2(aim[1] - y, aim[0] - x) - heading)
         limit = math.sqrt(2.0 * self._pace.gathers_m_s2 * max(left_m - REACH_M / 2, 0.0))
         faster = v + self._pace.gathers_m_s2 * dt
         speed = min(self._pace.speed_m_s * max(math.cos(alpha), 0.1), limit, faster)
@@ -131,15 +131,32 @@ class Pursuit:
 
     def _to_axis(self, error: float) -> float:
         """Return the smaller turn: to point ahead along the line, or backwards."""
-        ahead = _turn(error)
+        ahead = turn_of(error)
         self._forward = abs(ahead) <= math.pi / 2 + _AIMED_RAD
-        return ahead if self._forward else _turn(error + math.pi)
+        return ahead if self._forward else turn_of(error + math.pi)
 
-    def _gone(self, line: Float, xy_m: tuple[float, float]) -> tuple[float, float]:
-        """Return how far along the stretch the robot is, and how far it has yet."""
-        best = (math.inf, 0.0)
-        length = np.hypot(*np.diff(line, axis=0).T)
-        before = np.append(0.0, np.cumsum(length))
+
+class LineToFollow:
+    """A line, and how far along it a robot is that only goes on.
+
+    Parameters
+    ----------
+    line_m
+        ``(k, 2)``, two points or more, no two the same.
+    on_m
+        ``(j, 2)`` how it would go on beyond its end, to be aimed at; None: straight on.
+    """
+
+    def __init__(self, line_m: Float, on_m: Float | None = None) -> None:
+        self.line_m = line_m
+        self._length = np.hypot(*np.diff(line_m, axis=0).T)
+        self._before = np.append(0.0, np.cumsum(self._length))
+        self._from = 0
+        self._aims = line_m if on_m is None else np.concatenate([line_m, on_m])
+
+    def place(self, xy_m: tuple[float, float]) -> tuple[float, float]:
+        """Return how far along it the robot is, and how far it has yet."""
+        line, length, best = self.line_m, self._length, (math.inf, 0.0)
         for i in range(self._from, min(self._from + 4, len(line) - 1)):
             ux, uy = (line[i + 1] - line[i]) / length[i]
             dx, dy = xy_m[0] - line[i, 0], xy_m[1] - line[i, 1]
@@ -148,12 +165,16 @@ class Pursuit:
             high = 1e9 if i == len(line) - 2 else float(length[i])
             beyond = along - max(low, min(high, along))
             if math.hypot(beyond, off) < best[0] - 1e-9:
-                best = (math.hypot(beyond, off), float(before[i]) + along)
+                best = (math.hypot(beyond, off), float(self._before[i]) + along)
                 self._from = i
-        return best[1], float(before[-1]) - best[1]
+        return best[1], float(self._before[-1]) - best[1]
+
+    def aim(self, gone_m: float) -> tuple[float, float]:
+        """Return the point so far along it, or beyond its end."""
+        return at_length(self._aims, gone_m)
 
 
-def _stretches(line_m: Float) -> list[Float]:
+def stretches(line_m: Float) -> list[Float]:
     """Return a line cut at its hard corners; points of no way are left out."""
     line = np.asarray(line_m, float)
     line = line[np.append(True, np.hypot(*np.diff(line, axis=0).T) > 1e-3)]
@@ -166,7 +187,7 @@ def _stretches(line_m: Float) -> list[Float]:
     return [line[a : b + 1] for a, b in pairwise(cuts)]
 
 
-def _at(line: Float, gone_m: float) -> tuple[float, float]:
+def at_length(line: Float, gone_m: float) -> tuple[float, float]:
     """Return a point so far along a line, or straight on beyond its end."""
     step = np.diff(line, axis=0)
     length = np.hypot(step[:, 0], step[:, 1])
@@ -176,6 +197,6 @@ def _at(line: Float, gone_m: float) -> tuple[float, float]:
     return float(x), float(y)
 
 
-def _turn(angle: float) -> float:
+def turn_of(angle: float) -> float:
     """Return an angle as a turn of half a circle at most."""
     return math.atan2(math.sin(angle), math.cos(angle))

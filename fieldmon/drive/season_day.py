@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.wishes import Wishes
 
 #: a robot that is so much later or earlier than planned is planned for anew
-_LATE_S = 30.0
+LATE_S = 30.0
 
 
 class SeasonDay:
@@ -43,12 +43,7 @@ class SeasonDay:
     ) -> None:
         self._season, self._on, self._wishes = season, on, wishes
         self._source = f"{source} {on}"
-        begun = [
-            one.number
-            for one in season.batches()
-            if one.source == self._source and one.kind == "findings" and not one.undone
-        ]
-        self.batch: int | None = begun[0] if begun else None
+        self.batch = begun_batch(season, self._source)
         self.replanned = 0
         self._asked: PlantToInspect | None = None
         self._plan()
@@ -92,19 +87,12 @@ class SeasonDay:
         self._asked, self._at, self._gone_s = None, stop.plant, now_s
         self._late_s = now_s - done_s
         self._next += 1
-        if found or found is None or abs(self._late_s) > _LATE_S:
+        if found or found is None or abs(self._late_s) > LATE_S:
             self._plan()
 
     def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
-        result = SKIPPED if found is None else FOUND if found else CLEAN
-        settings = self._season.settings
-        one = Inspections.of(
-            np.array([plant]),
-            np.array([result]),
-            np.datetime64(self._on),
-            # files hold whole seconds
-            second=np.array([np.round(seconds(settings.starts) + now_s)]),
-        )
+        starts_s = seconds(self._season.settings.starts)
+        one = as_inspection(plant, found, (self._on, starts_s + now_s))
         done = self._season.record(one, self._source, into=self.batch)
         self.batch = self.batch or done.batch
 
@@ -130,3 +118,33 @@ class SeasonDay:
             inspect_s=float(route.leave_s[k] - route.arrive_s[k]),
             detects=float(route.detects[k]),
         )
+
+
+def begun_batch(season: Season, source: str) -> int | None:
+    """Return the batch of a day that was begun before; None: it was not."""
+    begun = [
+        one.number
+        for one in season.batches()
+        if one.source == source and one.kind == "findings" and not one.undone
+    ]
+    return begun[0] if begun else None
+
+
+def as_inspection(
+    plant: int,
+    found: bool | None,  # noqa: FBT001 - a result
+    when: tuple[date, float],
+    who: str = "",
+) -> Inspections:
+    """Return what was seen at a plant, on a day at a second since its midnight, as a season has it.
+
+    None: it could not be inspected. Files hold whole seconds.
+    """
+    result = SKIPPED if found is None else FOUND if found else CLEAN
+    return Inspections.of(
+        np.array([plant]),
+        np.array([result]),
+        np.datetime64(when[0]),
+        second=np.array([np.round(when[1])]),
+        who=np.array([who], object),
+    )

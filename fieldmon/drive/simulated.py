@@ -13,6 +13,7 @@ from fieldmon.simulation.start import season_start
 
 if TYPE_CHECKING:
     from fieldmon.drive.errand import DrivingRobot
+    from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
     from fieldmon.samplers.base import Sampler
 
@@ -27,19 +28,20 @@ class MadeUp(NamedTuple):
     infested
         Share of plants infested, 0 to 1.
     seed
-        Of insects and noise.
-    gnss_m
-        Noise of positions, metres (standard deviation).
+        Of insects.
     """
 
     infested: float = 0.02
     seed: int = 1
-    gnss_m: float = 0.0
 
 
 def simulated_robot(
-    kind: str, recording: Recording, sampler: Sampler, made_up: MadeUp
-) -> DrivingRobot:  # fmt: skip
+    kind: str,
+    recording: Recording,
+    sampler: Sampler,
+    made_up: MadeUp,
+    physics: Physics | None = None,
+) -> DrivingRobot:
     """Return a simulated robot that notes its way in a recording.
 
     Parameters
@@ -52,6 +54,8 @@ def simulated_robot(
         Who decides: says how long plants are inspected.
     made_up
         What is drawn.
+    physics
+        Of MuJoCo: what it is and meets.
 
     Raises
     ------
@@ -67,7 +71,7 @@ def simulated_robot(
     detects = sampler.inspection_times(worker).detects
     look = Insects(grid, start, detects, streams=streams).look
     if kind == MUJOCO:
-        return MujocoRobot(worker, look, made_up.gnss_m, made_up.seed, recording.track)
+        return MujocoRobot(worker, look, physics, recording.track)
     if kind == CHARGED:
         return ChargedRobot(look)
     raise SettingError(f"A simulated robot is {CHARGED} or {MUJOCO}, but it is {kind!r}.")

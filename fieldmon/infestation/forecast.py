@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
 
@@ -79,7 +80,11 @@ class Forecast:
 
 
 def forecast(
-    evening: Belief, grid: PlantGrid, nights: Sequence[Spread], weather: int | None = None
+    evening: Belief,
+    grid: PlantGrid,
+    nights: Sequence[Spread],
+    weather: int | None = None,
+    now: PlotEstimate | None = None,
 ) -> Forecast:
     """Return what is expected after each of some nights, from what is believed in the evening.
 
@@ -93,6 +98,8 @@ def forecast(
         What the insects are taken to do in each night.
     weather
         As `Forecast` has it.
+    now
+        How many are infested this evening, where that was worked out already.
 
     Examples
     --------
@@ -106,21 +113,25 @@ def forecast(
     True
     """
     belief, first = evening, float(evening.chance.sum())
-    expected, begins = [first], _ratios(evening, grid, evening.doubt)
+    expected, begins = [first], _ratios(now or _estimate(evening, grid, evening.doubt))
     # what is more now than believed sends out more: as a share, it stays in doubt
-    now = (begins[1] - begins[0]) / _SIGMAS
+    doubt = (begins[1] - begins[0]) / _SIGMAS
     for spread in nights:
         belief = belief.overnight(spread)
         expected.append(float(belief.chance.sum()))
     to_come = max(expected[-1] - first, 0.0) / max(expected[-1], 1e-9)
-    ends = _ratios(belief, grid, float(np.hypot(now, _RATE_DOUBT * to_come)))
+    doubt = float(np.hypot(doubt, _RATE_DOUBT * to_come))
+    ends = _ratios(_estimate(belief, grid, doubt))
     of = np.array(expected)
     # drawn tonight and for the last morning, which takes longest; between them evenly
     low, high = (np.linspace(*pair, len(of)) for pair in zip(begins, ends, strict=True))
     return Forecast(of, np.floor(of * low), np.ceil(of * high), weather)
 
 
-def _ratios(belief: Belief, grid: PlantGrid, doubt: float) -> tuple[float, float]:
-    """Return the ends of the interval over the expected number, where that is so much in doubt."""
-    made = estimate_plot(grid, belief.chance, belief.pair_chance, doubt=doubt)
+def _estimate(belief: Belief, grid: PlantGrid, doubt: float) -> PlotEstimate:
+    return estimate_plot(grid, belief.chance, belief.pair_chance, doubt=doubt)
+
+
+def _ratios(made: PlotEstimate) -> tuple[float, float]:
+    """Return the ends of the interval over the expected number."""
     return made.low / made.expected, made.high / made.expected

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
-from scipy.optimize import brentq
 from scipy.special import expit, logit
 
 from fieldmon.errors import ObservationError, SettingError
@@ -181,6 +180,8 @@ def scaled(chance: Floats, expected_share: float) -> Floats:
 
     def excess(shift: float) -> float:
         return float(np.mean(expit(odds + shift))) - share
+
+    from scipy.optimize import brentq  # noqa: PLC0415 - heavy, and seldom needed
 
     least, most = logit(share) - odds.max(), logit(share) - odds.min()
     shift = brentq(excess, least - 1e-9, most + 1e-9, xtol=1e-13, rtol=1e-15)

@@ -1,7 +1,8 @@
 """What was applied in a treatment, and how: what a certifier asks of each.
 
 The fields are those of GLOBALG.A.P.'s application record (IFA, Crops Base 7.3): place, date and end
-time, product, waiting period, operator, justification, who authorised it, quantity, machinery.
+time, product and active ingredient, waiting period, operator, justification, who authorised it,
+quantity, machinery, weather.
 """
 
 from __future__ import annotations
@@ -51,6 +52,10 @@ class Application:
         What it was for.
     authorised_by
         Who gave the technical authorisation.
+    active_ingredient
+        Of the product, as its label names it.
+    weather
+        At the time: wind, temperature, whether leaves were wet.
 
     Raises
     ------
@@ -78,6 +83,8 @@ class Application:
     crop: str = ""
     pest: str = ""
     authorised_by: str = ""
+    active_ingredient: str = ""
+    weather: str = ""
 
     def __post_init__(self) -> None:
         checked_waits(self.waiting_days, self.reentry_hours)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import shutil
 import sqlite3
 import tempfile
+import time
 from contextlib import closing
 from pathlib import Path
 
@@ -25,6 +26,14 @@ PARTED = (
     "file is not here. If this is a copy, what was done last may be missing: bring the other file "
     "too, or copy the season after that program was closed."
 )
+
+
+#: how the journal of a broken transaction begins, and where in it stands what
+_JOURNAL, _JOURNAL_HEADER, _SECTOR_AT = bytes.fromhex("d9d505f920a163d7"), 28, 20
+#: where a file counts its transactions, and says how large its pages are
+_COUNTER_AT, _PAGE_SIZE_AT = 24, 16
+# another program's transaction is over, or goes on, by then
+_LOOKS, _LOOK_AGAIN_S = 4, 0.25
 
 
 def beside(path: Path) -> Path:
@@ -64,6 +73,73 @@ def refuse_foreign(path: Path) -> bool:
             beside=more.name,
         )
     )
+
+
+def refuse_foreign_journal(path: Path) -> None:
+    """Raise `FileProblem` if the journal beside a season is not that of its broken transaction.
+
+    SQLite would write the pages in it into the season, whosesoever they are. Source: the SQLite
+    file format, section 3, "The Rollback Journal".
+    """
+    journal = path.with_name(f"{path.name}-journal")
+    for _ in range(_LOOKS):
+        if not _is_of_a_broken_transaction(journal) or _undoes(path, journal):
+            return
+        time.sleep(_LOOK_AGAIN_S)
+    raise FileProblem(
+        worded(
+            "{path} and {beside} beside it must belong together, but they do not: that file is of "
+            "another moment or of another season, as when a folder was synchronised while a "
+            "program was writing. Move it away to go on without it, or go back to a copy. Nothing "
+            "was changed.",
+            path=path,
+            beside=journal.name,
+        )
+    )
+
+
+def _is_of_a_broken_transaction(journal: Path) -> bool:
+    try:
+        with journal.open("rb") as file:
+            head = file.read(_JOURNAL_HEADER)
+    except OSError:  # there is none, or it is gone again
+        return False
+    return len(head) == _JOURNAL_HEADER and head.startswith(_JOURNAL)
+
+
+def _undoes(path: Path, journal: Path) -> bool:
+    """Tell whether a journal leads back to the season's state before it, whole; in a copy."""
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        copy = Path(folder) / "season.gpkg"
+        try:
+            shutil.copyfile(journal, copy.with_name("season.gpkg-journal"))
+            shutil.copyfile(path, copy)
+        except OSError:
+            return not journal.exists()
+        data = copy.with_name("season.gpkg-journal").read_bytes()
+        with copy.open("rb") as file:
+            head = file.read(100)
+        if not _is_of_the_last_transaction(head, data):
+            return False
+        try:
+            with closing(sqlite3.connect(copy)) as db:
+                said = db.execute("PRAGMA integrity_check(1)").fetchone()[0]
+                return said == "ok" and _revision(db) is not None
+        except sqlite3.Error:
+            return False
+
+
+def _is_of_the_last_transaction(head: bytes, journal: bytes) -> bool:
+    """Tell whether the first page in a journal is the season's own, but for one transaction."""
+    size = int.from_bytes(head[_PAGE_SIZE_AT : _PAGE_SIZE_AT + 2], "big")
+    size = 1 << 16 if size == 1 else size
+    sector = int.from_bytes(journal[_SECTOR_AT : _SECTOR_AT + 4], "big")
+    for at in range(sector, len(journal) - size, 4 + size + 4):
+        if int.from_bytes(journal[at : at + 4], "big") == 1:
+            before = journal[at + 4 + _COUNTER_AT :][:4]
+            here = head[_COUNTER_AT : _COUNTER_AT + 4]
+            return 0 <= int.from_bytes(here, "big") - int.from_bytes(before, "big") <= 1
+    return True  # nothing of the first page was changed yet
 
 
 def _fit(path: Path, more: Path) -> bool:

@@ -15,6 +15,7 @@ from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, touch
+from fieldmon.monitoring.mornings import causes_of
 
 if TYPE_CHECKING:
     import sqlite3
@@ -54,6 +55,7 @@ def refresh(
     db.execute("DELETE FROM days WHERE day >= ?", (since,))
     rows = [_day_row(history, morning(day), day) for day in days if day >= since]
     insert(db, schema.DAYS, rows)
+    _name_causes(db, history, morning(days[-1]), days[-1])
     spots = _write_spots(db, plot, history, days[-1])
     _write_states(db, history, spots, (days[-1], morning(days[-1])))
     db.execute(f"DELETE FROM {schema.LEARNT.name}")  # noqa: S608 - ours
@@ -71,7 +73,15 @@ def _day_row(history: History, morning: Belief, day: int) -> tuple[object, ...]:
         *(day, str(history.date_of(day)), inspected, found),
         *(estimate.expected, estimate.low, estimate.high, estimate.chance_clean),
         map_digest(morning.chance),
+        None,
     )
+
+
+def _name_causes(db: sqlite3.Connection, history: History, morning: Belief, day: int) -> None:
+    """Note of the last day from what its figures follow: so they need not be worked out again."""
+    causes = causes_of(history, day, history.estimate(morning, day))
+    db.execute("UPDATE days SET causes = NULL WHERE causes IS NOT NULL")
+    db.execute("UPDATE days SET causes = ? WHERE day = ?", (causes, day))
 
 
 def _write_spots(db: sqlite3.Connection, plot: Plot, history: History, day: int) -> HotSpots:

@@ -210,7 +210,9 @@ class History:
         if self.living is not None and self.living.weather is not None:
             known = sum(self.living.known(number) for number in ahead)
         evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
-        return forecast(evening, self.grid, spreads, known)
+        # what is flagged and not treated is still out there tomorrow, but not left to be found
+        now = self.estimate(morning, day) if self.belief.treated else None
+        return forecast(evening, self.grid, spreads, known, now)
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
@@ -243,6 +245,23 @@ class History:
 
     def estimate(self, morning: Belief, day: int) -> PlotEstimate:
         """Return how many plants are infested and not found yet, after a day's work."""
+        last = self._last_estimate.get(day)
+        if last is not None and last[0] is morning:  # hundreds of fields are drawn for it
+            return last[1]
+        estimate = self._estimate(morning, day)
+        self.remember(morning, day, estimate)
+        return estimate
+
+    def remember(self, morning: Belief, day: int, estimate: PlotEstimate) -> None:
+        """Take this for what is estimated of a day: it was worked out from the same before."""
+        self._last_estimate.clear()
+        self._last_estimate[day] = morning, estimate
+
+    @cached_property
+    def _last_estimate(self) -> dict[int, tuple[Belief, PlotEstimate]]:
+        return {}
+
+    def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
         evening = self.evening(morning, day)
         if not self.belief.treated:  # what was found is known: it is not out there any more
             evening = evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))

@@ -1,11 +1,10 @@
-"""Inspections as the season's file keeps them: into its table, once each, and out again."""
+"""Inspections as the season's file keeps them: into its table, once each."""
 
 from __future__ import annotations
 
 import sqlite3
 from contextlib import closing
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,7 +17,6 @@ from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.transactions import copy_season
 
 if TYPE_CHECKING:
-    from datetime import date
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -28,8 +26,6 @@ if TYPE_CHECKING:
 
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
-# rows are turned into columns in lots of this many, while they are in the processor's cache
-_LOT = 1 << 14
 
 
 def counting_copy(season: Path, folder: Path) -> Path:
@@ -140,16 +136,14 @@ def _clock(second: float) -> str | None:
 
 def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> int:
     """Add inspections that are not there yet; return how many were new."""
-    before = db.total_changes
     names = schema.INSPECTIONS.names
     into = (
         f"INSERT OR IGNORE INTO inspections ({', '.join(names)}) "  # noqa: S608 - names of ours
         f"VALUES ({', '.join('?' * len(names))})"
     )
-    db.executemany(into, made)
-    new = db.total_changes - before
+    new = db.executemany(into, made).rowcount  # without what the file itself notes of them
     touch(db, schema.INSPECTIONS.name)
-    return new
+    return max(new, 0)
 
 
 def in_words(result: NDArray[np.int8], on: NDArray[np.datetime64]) -> dict[str, object]:
@@ -185,44 +179,3 @@ def n_counting(db: sqlite3.Connection) -> int:
     """Return how many inspections count."""
     counts = "SELECT count(*) FROM inspections WHERE undone = 0 AND digest IS NOT NULL"
     return int(db.execute(counts).fetchone()[0])
-
-
-def load(db: sqlite3.Connection, begins: date) -> Inspections:
-    """Return the inspections that count, by day; within a day by time, untimed ones last."""
-    found = db.execute(
-        "SELECT plant, day, result, time, count, coalesce(who, ''), coalesce(notes, '') "
-        "FROM inspections "
-        "WHERE undone = 0 AND digest IS NOT NULL ORDER BY fid"
-    )
-    texts: dict[str, str] = {}  # the same name stands in thousands of rows
-    lots = []
-    while rows := found.fetchmany(_LOT):
-        lots.append(_columns(rows, texts))
-    if not lots:
-        return Inspections.none()
-    columns = [np.concatenate(column) for column in zip(*lots, strict=True)]
-    day, second = columns[2], columns[3]
-    columns[2] = np.datetime64(begins, "D") + day
-    return Inspections(*columns).take(np.lexsort((second, np.isnan(second), day)))
-
-
-def _columns(rows: list[tuple[Any, ...]], texts: dict[str, str]) -> list[NDArray[Any]]:
-    """Return rows as columns, in the order of `Inspections`, but with numbers of days."""
-    plant, day, result, time, count, *said = zip(*rows, strict=True)
-    return [
-        np.array(plant, np.int32),
-        np.array([_CODES[name] for name in result], np.int8),
-        np.array(day, np.int32),
-        np.array([second_of(text) for text in time], np.float64),
-        np.array(count, np.float64),
-        *(np.array([texts.setdefault(t, t) for t in column], object) for column in said),
-    ]
-
-
-@lru_cache(maxsize=_DAY_S)
-def second_of(text: str | None) -> float:
-    """Return the seconds since midnight that a clock shows; NaN for none."""
-    if text is None:
-        return np.nan
-    hour, minute, second = (float(part) for part in text.split(":"))
-    return hour * 3600.0 + minute * 60.0 + second

@@ -8,7 +8,7 @@ import zlib
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import OriginCounts
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import history as causes_of_a_morning
 from fieldmon.monitoring import schema
@@ -32,11 +33,19 @@ if TYPE_CHECKING:
 
     Arrays = dict[str, NDArray[np.generic]]
 
-# every so many days a morning stays at hand, and the last two of these in the file: of a plot of
-# 100 000 plants each is 4 MB
+# every so many days a morning stays at hand, and the last two of these in the file beside the
+# newest: of a plot of 100 000 plants each is 4 MB
 _EVERY, _IN_FILE = 8, 2
 # how the names of arrays begin that are of what hides
 _LATENCY = "latency_"
+
+
+class _Kept(NamedTuple):
+    """A morning as the file keeps it: a name for what it follows from, and for what it is."""
+
+    causes: str
+    content: str
+    chances: bytes
 
 
 @dataclass(eq=False)
@@ -49,26 +58,46 @@ class Mornings:
         What happened.
     known
         Mornings that are worked out already, by their days; the first is known without.
+    kept
+        Those that a file keeps; each is looked at once it is asked for.
     """
 
     history: History
     known: dict[int, Belief] = field(default_factory=dict)
+    kept: dict[int, _Kept] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.known[0] = self.history.first_morning
 
     def of(self, day: int) -> Belief:
         """Return what is believed on the morning of a day."""
-        last = max(known for known in self.known if known <= day)
+        last = self.last_until(day)
         morning = self.known[last]
         for number in range(last, day):
             morning = self.history.night_after(morning, number)
             self._know(number + 1, morning)
         return morning
 
-    def until(self, day: int) -> dict[int, Belief]:
-        """Return those that are at hand, up to a day."""
-        return {known: morning for known, morning in self.known.items() if known <= day}
+    def last_until(self, day: int) -> int:
+        """Return the last day up to a day whose morning need not be worked out."""
+        last = max(known for known in self.known if known <= day)
+        for number in sorted((n for n in self.kept if last < n <= day), reverse=True):
+            morning = self._unpacked(number, self.kept.pop(number))
+            if morning is not None:
+                self.known[number] = morning
+                return number
+        return last
+
+    def after_change(self, history: History, since: int) -> Mornings:
+        """Return them for a history that is another since a day."""
+        known = {day: morning for day, morning in self.known.items() if day <= since}
+        return Mornings(history, known, {d: kept for d, kept in self.kept.items() if d <= since})
+
+    def _unpacked(self, day: int, kept: _Kept) -> Belief | None:
+        """Return a morning that the file keeps; None: it is not that of what happened."""
+        if kept.causes != _causes(self.history, day) or kept.content != digest(kept.chances):
+            return None
+        return _unpacked(self.history.first_morning, kept.chances)
 
     def _know(self, day: int, morning: Belief) -> None:
         self.known[day] = morning
@@ -78,28 +107,45 @@ class Mornings:
 
 
 def take(db: sqlite3.Connection, mornings: Mornings) -> None:
-    """Add the mornings that the file keeps, where they are those of what happened."""
+    """Add the mornings that the file keeps, and the estimate of its last day."""
     if mornings.history.living is not None:
         return
-    rows = db.execute("SELECT day, causes, content, chances FROM mornings").fetchall()
-    for day, causes, content, chances in rows:
-        if causes == _causes(mornings.history, day) and content == digest(chances):
-            kept = _unpacked(mornings.history.first_morning, chances)
-            if kept is not None:
-                mornings.known[day] = kept
+    for day, *kept in db.execute("SELECT day, causes, content, chances FROM mornings"):
+        mornings.kept[day] = _Kept(*kept)
+    rows = db.execute(
+        "SELECT day, expected_left, low, high, chance_clean, causes FROM days "
+        "WHERE causes IS NOT NULL"
+    )
+    for day, *figures, causes in rows.fetchall():
+        estimate = PlotEstimate(*figures)
+        if causes == causes_of(mornings.history, day, estimate) and mornings.last_until(day) == day:
+            mornings.history.remember(mornings.known[day], day, estimate)
+
+
+def causes_of(history: History, day: int, estimate: PlotEstimate) -> str | None:
+    """Return a name for an estimate of a day's evening and all from which it follows.
+
+    None: it follows from more than the season's file says.
+    """
+    if history.living is not None:
+        return None
+    said = estimate.expected, estimate.low, estimate.high, estimate.chance_clean
+    return digest(_causes(history, day + 1), said)
 
 
 def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
     """Keep the latest mornings in the file, within the transaction that changes it."""
-    last = 0 if mornings.history.living is not None else newest - newest % _EVERY
-    wanted = {day for day in range(last, 0, -_EVERY)[:_IN_FILE] if day in mornings.known}
+    wanted: set[int] = set()
+    if mornings.history.living is None:
+        eighths = range(newest - newest % _EVERY, 0, -_EVERY)[:_IN_FILE]
+        wanted = {day for day in (*eighths, newest) if day > 0}
     causes = {day: _causes(mornings.history, day) for day in wanted}
     for day, of_kept in db.execute("SELECT day, causes FROM mornings").fetchall():
         if causes.get(day) == of_kept:
             wanted.discard(day)
         else:
             db.execute("DELETE FROM mornings WHERE day = ?", (day,))
-    for day in sorted(wanted):
+    for day in sorted(wanted & mornings.known.keys()):
         chances = _packed(mornings.known[day])
         if chances is not None:
             insert(db, schema.MORNINGS, [(day, causes[day], digest(chances), chances)])

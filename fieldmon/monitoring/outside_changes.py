@@ -13,7 +13,7 @@ import numpy as np
 
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
-from fieldmon.monitoring import batches, inspection_table
+from fieldmon.monitoring import batches, inspection_lots, inspection_table
 from fieldmon.monitoring.schema import INSPECTIONS
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def _inspection(row: tuple[object, ...]) -> Inspections:
     """Return one inspection from what its row says; raise where it makes no sense."""
     said = dict(zip(_SEEN, row, strict=True))
     on = date.fromisoformat(str(said["date"])[:10])
-    second = np.nan if said["time"] is None else inspection_table.second_of(str(said["time"]))
+    second = np.nan if said["time"] is None else inspection_lots.second_of(str(said["time"]))
     count = np.nan if said["count"] is None else float(str(said["count"]))
     return Inspections.of(
         np.array([int(str(said["plant"]))]),

@@ -79,7 +79,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
             )
         season_log.go_on_saved(new)
         # a file whose derived layers are not there yet still says on which day it stands
-        insert(new, schema.DAYS, [(0, None, 0, 0, None, None, None, None, "")])
+        insert(new, schema.DAYS, [(0, None, 0, 0, None, None, None, None, "", None)])
     whole = True
     try:
         Season(to).rebuild()

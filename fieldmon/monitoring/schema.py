@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable
 
-VERSION = 8
+VERSION = 10
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -66,9 +66,11 @@ DAYS = GeoPackageTable(
         "high INTEGER",
         "chance_clean REAL",
         "digest TEXT",
+        "causes TEXT",
     ),
     None,
-    "Each day's figures after its work, and the digest of its morning's chance map.",
+    "Each day's figures after its work, the digest of its morning's chance map, and of the last "
+    "day that of all from which its figures follow.",
 )
 PLANT_STATE = GeoPackageTable(
     "plant_state",
@@ -145,6 +147,8 @@ APPLIED = (
     "pest TEXT",
     "authorised_by TEXT",
     "of_plants BLOB",
+    "active_ingredient TEXT",
+    "weather TEXT",
 )
 TREATMENTS = GeoPackageTable(
     "treatments",
@@ -252,6 +256,16 @@ MORNINGS = GeoPackageTable(
     None,
     "Late mornings as they were worked out, so that they need not be again.",
 )
+INSPECTION_LOTS = GeoPackageTable(
+    "inspection_lots",
+    (
+        "lot INTEGER NOT NULL UNIQUE",
+        "content TEXT NOT NULL",
+        "columns BLOB NOT NULL",
+    ),
+    None,
+    "Inspections once more, many in a piece, so that those of a long season are read at once.",
+)
 OUTSIDE_CHANGES = GeoPackageTable(
     "outside_changes",
     (
@@ -275,7 +289,7 @@ CHANCE = GeoPackageTable(
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
     *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
-    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG, MORNINGS),
+    *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG, MORNINGS, INSPECTION_LOTS),
     *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
@@ -306,6 +320,10 @@ _WATCHED: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 #: in `fieldmon`: "1" while we write ourselves
 OPEN = "open"
+#: in `fieldmon`: how often a row of the inspections was added, changed or deleted, by whomever
+INSPECTIONS_CHANGED = "inspections"
+#: rows of inspections are kept once more in lots: a row's lot is its number without so many bits
+LOT_BITS = 12
 
 _CHANCE_VIEW = """
 CREATE VIEW chance AS
@@ -334,6 +352,7 @@ def lay_out(db: sqlite3.Connection) -> None:
     announce(db, CHANCE)
     for index in _INDEXES:
         db.execute(index)
+    count_inspections(db)
     watch(db)
     add_styles(db)
     _phones_come(db)
@@ -362,6 +381,30 @@ def watch(db: sqlite3.Connection) -> None:
                 "INSERT INTO outside_changes (at, layer, row, what, was) "
                 f"VALUES (strftime('%Y-%m-%dT%H:%M:%fZ', 'now'), '{name}', {row}.fid, "
                 f"'{event}', {said}); END"
+            )
+
+
+def count_inspections(db: sqlite3.Connection) -> None:
+    """Let the file count by itself what is done to inspections, and drop lots that are so no more.
+
+    Of a row that another one replaces (SQL's REPLACE) SQLite tells nobody afterwards.
+    """
+    db.execute(
+        "INSERT OR IGNORE INTO fieldmon (key, value) VALUES (?, '0')", (INSPECTIONS_CHANGED,)
+    )
+    count = f"UPDATE fieldmon SET value = value + 1 WHERE key = '{INSPECTIONS_CHANGED}'"  # noqa: S608 - ours
+    for event, rows in (("insert", ("new",)), ("update", ("old", "new")), ("delete", ("old",))):
+        lots = ", ".join(f"{row}.fid >> {LOT_BITS}" for row in rows)
+        drop = f"DELETE FROM inspection_lots WHERE lot IN ({lots})"  # noqa: S608 - names of ours
+        db.execute(
+            f"CREATE TRIGGER inspections_{event}_counted AFTER {event} ON inspections "
+            f"BEGIN {count}; {drop}; END"
+        )
+        if event != "delete":
+            db.execute(
+                f"CREATE TRIGGER inspections_{event}_replacing BEFORE {event} ON inspections "  # noqa: S608 - ours
+                f"BEGIN DELETE FROM inspection_lots WHERE lot IN (SELECT fid >> {LOT_BITS} "
+                "FROM inspections WHERE digest = new.digest AND undone = 0); END"
             )
 
 
@@ -408,16 +451,28 @@ def _photos_are_asked_for(db: sqlite3.Connection) -> None:
     add_asked_styles(db)
 
 
+def _long_seasons_come(db: sqlite3.Connection) -> None:
+    """Version 9 kept inspections once, and of a day's figures not what they follow from."""
+    create(db, INSPECTION_LOTS)
+    db.execute("ALTER TABLE days ADD COLUMN causes TEXT")
+    count_inspections(db)
+
+
 def _records_come(db: sqlite3.Connection) -> None:
     """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
-    there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
-    for column in APPLIED:
-        if column.split()[0] not in there:
-            db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
+    _applications_say_all(db)
     create(db, LABELS)
     create(db, LOG)
     create(db, MORNINGS)
     db.execute(_INDEXES[4])
+
+
+def _applications_say_all(db: sqlite3.Connection) -> None:
+    """Version 8 did not ask for the active ingredient and the weather of a treatment."""
+    there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
+    for column in APPLIED:
+        if column.split()[0] not in there:
+            db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
 
 
 #: what makes a file of version k one of version k + 1; `watch` follows the last
@@ -429,4 +484,6 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     5: _phones_come,
     6: _records_come,
     7: _photos_are_asked_for,
+    8: _applications_say_all,
+    9: _long_seasons_come,
 }

@@ -27,12 +27,14 @@ from fieldmon.monitoring import (
     cautions,
     day_figures,
     derived_layers,
+    inspection_lots,
     inspection_table,
     label_table,
     merging,
     outside_changes,
     qgis_project,
     routes,
+    schema,
     season_log,
     settings_log,
     tables,
@@ -108,16 +110,16 @@ class _Revision(NamedTuple):
     changes
         How often the file was changed by us.
     inspections
-        How many rows there are, the number of the last, and how many are undone.
+        How often a row of the inspections was changed, by whomever.
     """
 
     changes: int
-    inspections: tuple[int, int | None, float]
+    inspections: int
 
     @classmethod
     def of(cls, db: sqlite3.Connection) -> _Revision:
-        of_rows = "SELECT count(*), max(fid), total(undone) FROM inspections"
-        return cls(int(get_meta(db, "revision") or 0), db.execute(of_rows).fetchone())
+        kept = (get_meta(db, name) for name in ("revision", schema.INSPECTIONS_CHANGED))
+        return cls(*(int(value or 0) for value in kept))
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,7 +210,7 @@ class Season:
         begins = np.datetime64(settings.begins, "D")
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
         history = _nothing_yet(plot, settings, prior, observations)
-        first = _Contents(_Revision(0, (0, None, 0.0)), settings, history, Mornings(history))
+        first = _Contents(_Revision(0, 0), settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
@@ -880,7 +882,7 @@ class Season:
         """Hold the file to its digests; return a sentence for each thing that differs.
 
         Whole, every morning since the first is worked out again and each row is held to the log;
-        else only mornings after the last one that the file keeps.
+        else only the last morning that the file keeps, and those after it.
         """
         doubt = () if self.store.doubt is None else (self.store.doubt,)
         held = self.held_to_log() if whole else ()
@@ -890,9 +892,9 @@ class Season:
         """Return a sentence for each day whose chance map is not the one that was used then."""
         with self._lock:
             contents = self._now()
-            since = 0 if whole else max(contents.mornings.known)
             with self.store.reading() as db:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
+            since = 0 if whole else contents.mornings.last_until(kept[-1][0])
             return tuple(
                 f"The chance map of {on} comes out differently from the one used then: it was "
                 "made by another version of fieldmon, or the file was changed by other hands."
@@ -936,15 +938,17 @@ class Season:
             if before is not None and before.revision.inspections == revision.inspections:
                 inspections = before.history.inspections
             else:
-                inspections = inspection_table.load(db, settings.begins)
+                inspections = inspection_lots.load(db, settings.begins)
             history = replace(
                 _nothing_yet(self.plot, settings, prior, self.observations),
                 inspections=inspections,
                 treatments=treatments.load(db, self._inside),
             )
-            mornings = Mornings(history, {} if before is None else before.mornings.until(since))
             if before is None:
+                mornings = Mornings(history)
                 take_mornings(db, mornings)
+            else:
+                mornings = before.mornings.after_change(history, since)
             self._last = _Contents(revision, settings, history, mornings)
         return self._last
 
@@ -975,6 +979,7 @@ class Season:
         now = self._read(db, before, since)
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         keep_mornings(db, now.mornings, newest)
+        inspection_lots.keep(db)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
         kept = now.revision._replace(changes=now.revision.changes + 1)

@@ -213,7 +213,7 @@ def read_plot(db: sqlite3.Connection) -> Plot:
     # a file of an earlier version does not say
     taken = arrays.get("assumed", np.full(len(_ASSUMED), np.nan)).tolist()
     assumed = [Assumed(*one) for one in zip(_ASSUMED, taken, strict=True) if not np.isnan(one[1])]
-    aisles = Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go))
+    aisles = Aisles(grid, gate_xy_m, grid.frame.geometry_m(field.no_go))  # found when asked for
     return Plot(field, aisles, tuple(assumed))
 
 

@@ -68,6 +68,7 @@ class Store:
         if not self.path.is_file():
             raise _no_file(path)
         has_more = changes_beside.refuse_foreign(self.path)
+        changes_beside.refuse_foreign_journal(self.path)
         with self.reading() as db:
             version = _version(db)
             is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"

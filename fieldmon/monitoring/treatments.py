@@ -30,7 +30,10 @@ if TYPE_CHECKING:
     Inside = Callable[[shapely.Geometry], NDArray[np.bool_]]
 
 #: what the application says, by the names of its columns
-_TEXTS = ("operator", "reason", "machinery", "crop", "pest", "authorised_by")
+_TEXTS = (
+    *("operator", "reason", "machinery", "crop", "pest", "authorised_by"),
+    *("active_ingredient", "weather"),
+)
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,6 +28,7 @@ def assumed_by(
     >>> from fieldmon.plot.robot import Robot
     >>> for each in assumed_by((), PriorSettings(background_chance=0.03), Robot(speed_m_s=0.5)):
     ...     print(each)
+    guessed: time added for a row change 25 s
     guessed: chance to find what is there 84 %
     """
     made = [*planting]
@@ -36,6 +37,8 @@ def assumed_by(
     usual = (Robot(), scout())
     if robot.speed_m_s in {one.speed_m_s for one in usual}:
         made.append(Assumed("speed_m_s", robot.speed_m_s))
+    if robot.times == "thesis" and (grid is None or grid.in_rows):
+        made.append(Assumed("row_change_s", robot.row_change_s))
     if robot.detection is None and robot.viewpoints == Robot().viewpoints:
         made.append(Assumed("detects", robot.detects))
     if robot.width_m is not None and (grid is None or grid.half_canopy_m is None):

@@ -11,6 +11,7 @@ _WORDS = {
     "detects": "chance to find what is there",
     "speed_m_s": "speed",
     "half_canopy_m": "reach of plants to each side",
+    "row_change_s": "time added for a row change",
 }
 
 
@@ -23,10 +24,10 @@ class Assumed:
     setting
         Its name where it can be said: ``"row_spacing_m"`` of `PlantingChoices`,
         ``"half_canopy_m"`` of `Planting`,
-        ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``
-        and ``"detects"`` of `Robot`.
+        ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``,
+        ``"row_change_s"`` and ``"detects"`` of `Robot`.
     value
-        What was taken: metres, metres a second, or a chance.
+        What was taken: metres, metres a second, seconds, or a chance.
     """
 
     setting: str
@@ -39,4 +40,5 @@ class Assumed:
             return f"guessed: {words} {100 * self.value:g} %"
         if self.setting == "speed_m_s":
             return f"guessed: {words} {3.6 * self.value:.3g} km/h"
-        return f"guessed: {words} {self.value:g} m"
+        unit = "s" if self.setting.endswith("_s") else "m"
+        return f"guessed: {words} {self.value:g} {unit}"

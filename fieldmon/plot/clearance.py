@@ -104,11 +104,13 @@ def lane_room_m(grid: PlantGrid) -> Float:
 
 def told_shut(shut: Mask, grid: PlantGrid, needs: Clearance) -> str:
     """Return for people which rows ``(r,)`` a robot that needs so much cannot enter."""
-    plants = counted(int(np.diff(grid.row_start)[shut].sum()), "plant")
-    return (
-        f"{counted(int(np.count_nonzero(shut)), 'row')} of {len(shut)} cannot be inspected: in "
-        f"their aisles the robot needs {2 * needs.way_m:.2f} m from plant to plant, and there is "
-        f"less. Their {plants} are not visited."
+    return worded(
+        "{rows} of {all} cannot be inspected: in their aisles the robot needs {need_m:.2f} m from "
+        "plant to plant, and there is less. Their {plants} are not visited.",
+        rows=counted(int(np.count_nonzero(shut)), "row"),
+        all=len(shut),
+        need_m=2 * needs.way_m,
+        plants=counted(int(np.diff(grid.row_start)[shut].sum()), "plant"),
     )
 
 

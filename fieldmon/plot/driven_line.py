@@ -56,15 +56,13 @@ def driven_line(
     Places ``(k,)`` are plants, or -1 for the gate; there are ``k - 1`` legs. Between plants that
     are inspected from one straight stretch of aisle one drives straight ahead.
     """
-    line = np.empty((64, 2))
-    line[0] = _at(roads, lanes, places[0])
-    size = 1
+    line, size = _with(np.empty((64, 2)), np.int64(0), _at(roads, lanes, places[0]))
     leg_end = np.empty(places.size - 1, np.int64)
     for leg in range(places.size - 1):
         i, j = places[leg], places[leg + 1]
         if i >= 0 and j >= 0 and travel.corridor[travel.row[i]] == travel.corridor[travel.row[j]]:
             along = (travel.x_m[i], travel.x_m[j])
-            line, size = _with_lane(lanes, travel.row[i], along, line, size)
+            line, size = _with_lane(lanes, np.int64(travel.row[i]), along, line, size)
             line, size = _with(line, size, _at(roads, lanes, j))
         else:
             begin = size - 1
@@ -75,19 +73,21 @@ def driven_line(
 
 
 @routine
-def _at(roads: RoadNetwork, lanes: Lanes, place: int) -> Float:
-    here: Float = roads.xy_m[roads.gate] if place < 0 else lanes.stop_m[place]
-    return here
+def _at(roads: RoadNetwork, lanes: Lanes, place: int) -> tuple[float, float]:
+    if place < 0:
+        return roads.xy_m[roads.gate, 0], roads.xy_m[roads.gate, 1]
+    return lanes.stop_m[place, 0], lanes.stop_m[place, 1]
 
 
 @routine
-def _with(line: Float, size: int, point: Float) -> tuple[Float, int]:
+def _with(line: Float, size: int, point: tuple[float, float]) -> tuple[Float, int]:
     """Return a line with one point more; it grows by doubling."""
     if size == line.shape[0]:
         longer = np.empty((2 * size, 2))
-        longer[:size] = line
+        for k in range(size):
+            longer[k, 0], longer[k, 1] = line[k, 0], line[k, 1]
         line = longer
-    line[size] = point
+    line[size, 0], line[size, 1] = point
     return line, size + 1
 
 
@@ -105,7 +105,7 @@ def _with_lane(
     b = first + np.searchsorted(lanes.at_m[first:end], high, side="left")
     for k in range(b - a):
         at = a + k if along[0] <= along[1] else b - 1 - k
-        line, size = _with(line, size, lanes.corner_m[at])
+        line, size = _with(line, size, (lanes.corner_m[at, 0], lanes.corner_m[at, 1]))
     return line, size
 
 
@@ -130,8 +130,10 @@ def _through_headlands(
             a, b = nodes[k - 1], nodes[k]
             e = roads.start[a] + np.searchsorted(roads.to[roads.start[a] : roads.start[a + 1]], b)
             for corner in range(roads.via_start[e], roads.via_start[e + 1]):
-                line, size = _with(line, size, roads.via_m[corner])
-        line, size = _with(line, size, roads.xy_m[nodes[k]])
+                point = roads.via_m[corner, 0], roads.via_m[corner, 1]
+                line, size = _with(line, size, point)
+        node = nodes[k]
+        line, size = _with(line, size, (roads.xy_m[node, 0], roads.xy_m[node, 1]))
     if j >= 0:
         along = (travel.end_x_m[last // 2, last % 2], travel.x_m[j])
         line, size = _with_lane(lanes, last // 2, along, line, size)

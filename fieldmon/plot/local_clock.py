@@ -107,12 +107,16 @@ def local_clock(field: Field) -> LocalClock:
     >>> local_clock(fm.read_plot("sample_data/paran_estate.zip", feature="Gate").field)
     LocalClock(zone='Asia/Jerusalem')
     """
+    west, south, east, north = field.boundary.bounds
+    return clock_at((west + east) / 2, (south + north) / 2)
+
+
+def clock_at(lon: float, lat: float) -> LocalClock:
+    """Return the clock of a place; this machine's where no zone is known there."""
     from tzfpy import get_tz  # noqa: PLC0415 - the map of zones takes a tenth of a second
 
-    west, south, east, north = field.boundary.bounds
     with suppress(KeyError, ValueError, OSError):
-        name = get_tz((west + east) / 2, (south + north) / 2)
-        return LocalClock(ZoneInfo(name).key)
+        return LocalClock(ZoneInfo(get_tz(lon, lat)).key)
     return LocalClock()
 
 

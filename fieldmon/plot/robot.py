@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 from fieldmon.errors import SettingError
 
@@ -46,6 +47,25 @@ class Viewpoints:
         if seconds > self.steps[-1][0]:
             return self.longer
         return max((chance for least_s, chance in self.steps if seconds >= least_s), default=0.0)
+
+
+class RobotTimes(NamedTuple):
+    """What a robot's ways cost beside driving and looking, in seconds; see `Robot`.
+
+    Parameters
+    ----------
+    row_change_s, turn_180_s, stop_s
+        Settings of `Robot` of the same names.
+    """
+
+    row_change_s: float
+    turn_180_s: float
+    stop_s: float
+
+
+#: those of the thesis, and those of days driven in a physical simulation (docs/drive): of a robot
+#: with two driven wheels whose mast looks to both sides, so that it need not turn in an aisle
+ROBOT_TIMES = {"thesis": RobotTimes(25.0, 23.0, 0.0), "measured": RobotTimes(9.0, 0.0, 1.13)}
 
 
 @dataclass(frozen=True)
@@ -130,6 +150,25 @@ class Robot:
             return None
         return math.hypot(self.width_m, self.length_m or self.width_m)
 
+    @property
+    def times(self) -> str | None:
+        """Return which of `ROBOT_TIMES` are charged; None: others."""
+        own = RobotTimes(self.row_change_s, self.turn_180_s, self.stop_s)
+        return next((name for name, times in ROBOT_TIMES.items() if times == own), None)
+
+    def with_times(self, name: str) -> Robot:
+        """Return the same robot charged the times of ``"thesis"`` or ``"measured"``.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> fm.Robot().with_times("measured").row_change_s
+        9.0
+        """
+        if name not in ROBOT_TIMES:
+            raise SettingError(f"Times must be {' or '.join(ROBOT_TIMES)}, but they are {name!r}.")
+        return replace(self, **ROBOT_TIMES[name]._asdict())
+
     def with_hours(self, hours: float) -> Robot:
         """Return the same robot with another working day."""
         return replace(self, hours=hours)
@@ -161,7 +200,7 @@ def rover() -> Robot:
     >>> fm.rover().width_m
     0.58
     """
-    return Robot(row_change_s=9.0, turn_180_s=0.0, stop_s=1.13, width_m=0.58, length_m=0.8)
+    return Robot(width_m=0.58, length_m=0.8).with_times("measured")
 
 
 def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check

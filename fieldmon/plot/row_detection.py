@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
@@ -229,7 +228,7 @@ def split_lines(y_m: Float, row_spacing_m: float) -> NDArray[np.intp]:
     low = y_m.min() - row_spacing_m
     bin_m = row_spacing_m / 20
     place = ((y_m - low) / bin_m).astype(np.intp)
-    density = gaussian_filter1d(
+    density = _smoothed(
         np.bincount(place, minlength=place.max() + 20).astype(float), 3, mode="constant"
     )
     peaks = find_peaks(density, distance=10)[0]
@@ -314,7 +313,7 @@ def _promising_bearings(pairs: _Pairs) -> list[float]:
         ],
         dtype=float,
     )
-    in_line = gaussian_filter1d(in_line, 1, mode="wrap")
+    in_line = _smoothed(in_line, 1, mode="wrap")
     enough = in_line.max() / 2
     chosen: list[float] = []
     while in_line.max() >= enough and len(chosen) < 6:
@@ -380,7 +379,7 @@ def _row_spacing(pairs: _Pairs, bearing_deg: float) -> float | None:
     bins = 20
     beside = np.abs(y[np.abs(x) < 8 * pairs.near_m]) / pairs.near_m * bins
     often = np.bincount(beside.astype(int), minlength=20 * bins + 1).astype(float)
-    often = gaussian_filter1d(often, 2)
+    often = _smoothed(often, 2)
     falling = np.flatnonzero(np.diff(often) > 0)
     if not len(falling):
         return None
@@ -409,8 +408,16 @@ def main_bearing(edges_m: Float) -> float:
     bearing_deg = np.rad2deg(np.arctan2(edges_m[:, 0], edges_m[:, 1])) % 180.0
     n = 180 * _BINS_PER_DEG
     metres = np.bincount((bearing_deg * _BINS_PER_DEG).astype(int) % n, length, n)
-    smooth = gaussian_filter1d(metres, _EDGE_SMOOTH_DEG * _BINS_PER_DEG, mode="wrap")
+    smooth = _smoothed(metres, _EDGE_SMOOTH_DEG * _BINS_PER_DEG, mode="wrap")
     peak = (np.argmax(smooth) + 0.5) / _BINS_PER_DEG
     off = (bearing_deg - peak + 90.0) % 180.0 - 90.0
     near = np.abs(off) <= 2 * _EDGE_SMOOTH_DEG
     return float((peak + np.average(off[near], weights=length[near])) % 180.0)
+
+
+def _smoothed(values: NDArray[Any], width: float, mode: str = "reflect") -> Float:
+    """Return values in a row, each the mean of those about it by a bell of so many places."""
+    from scipy.ndimage import gaussian_filter1d  # noqa: PLC0415 - few plots are measured ones
+
+    smooth: Float = gaussian_filter1d(values, width, mode=mode)
+    return smooth

@@ -78,10 +78,6 @@ class Aisles:
     ----------
     grid
         The plants.
-    roads
-        The network of ways between lane ends.
-    travel
-        How far it is along them, for compiled loops: see `drive_m`.
     gate_xy_m, no_go_m
         Where the gate was said to be, and where nobody may drive.
     clearance
@@ -89,8 +85,6 @@ class Aisles:
     """
 
     grid: PlantGrid
-    roads: RoadNetwork
-    travel: TravelTable
     gate_xy_m: tuple[float, float] | None = None
     no_go_m: MultiPolygon | None = None
     clearance: Clearance | None = None
@@ -109,7 +103,23 @@ class Aisles:
         not be crossed either where parts of a plot can only be joined outside the boundary.
         `clearance` is what a robot needs.
         """
-        roads = find_roads(grid, gate_xy_m, no_go_m, clearance)
+        aisles = cls(grid, gate_xy_m, no_go_m, clearance)
+        _ = aisles.travel  # or raise
+        return aisles
+
+    @cached_property
+    def roads(self) -> RoadNetwork:
+        """The network of ways between lane ends, found once it is asked for."""
+        roads = find_roads(self.grid, self.gate_xy_m, self.no_go_m, self.clearance)
+        for values in roads:
+            if isinstance(values, np.ndarray):
+                read_only(values)
+        return roads
+
+    @cached_property
+    def travel(self) -> TravelTable:
+        """How far it is along the ways, for compiled loops: see `drive_m`."""
+        grid, roads = self.grid, self.roads
         between_m = np.empty((2 * grid.n_rows + 1, 2 * grid.n_rows + 1))
         _reach(roads, np.append(roads.end.ravel(), roads.gate), between_m)
         travel = TravelTable(
@@ -121,10 +131,9 @@ class Aisles:
             grid.corridor,
             grid.side,
         )
-        for values in (*roads, *travel):
-            if isinstance(values, np.ndarray):
-                read_only(values)
-        return cls(grid, roads, travel, gate_xy_m, no_go_m, clearance)
+        for values in travel:
+            read_only(values)
+        return travel
 
     def for_robot(self, robot: Robot) -> Aisles:
         """Return the ways that a robot can drive: these, unless it is too wide for them.

@@ -1,7 +1,8 @@
 """The record of a season, or of several, for a certifier: what was applied, seen and advised.
 
 Of each application it says what GLOBALG.A.P. asks (IFA, Crops Base 7.3): place, date and end, crop,
-product, dose, water and area, reason, operator, who authorised it, machinery, waiting period.
+product, dose, water and area, reason, operator, who authorised it, machinery, waiting
+period, active ingredient, weather.
 What nobody said stands as not said: nothing is filled in.
 """
 
@@ -262,7 +263,8 @@ _F = words.CERT_FIELDS
 _ASKED_FOR = tuple(
     _F[name]
     for name in (
-        *("product", "dose", "reason", "operator", "waiting", "machinery", "crop", "authorised"),
+        *("product", "ingredient", "dose", "reason", "operator", "waiting", "machinery", "weather"),
+        *("crop", "authorised"),
     )
 )
 
@@ -305,6 +307,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
     days = "" if period.days is None else counted(period.days, "day")
     return [
         (_F["product"], _plain(said.product)),
+        (_F["ingredient"], _plain(said.active_ingredient)),
         (_F["group"], "+".join(said.irac_groups)),
         (_F["dose"], "" if said.dose is None else str(said.dose)),
         (_F["water"], "" if said.water_l_ha is None else figure(said.water_l_ha, ",g", " l/ha")),
@@ -317,6 +320,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
         (_F["operator"], _plain(said.operator)),
         (_F["authorised"], _plain(said.authorised_by)),
         (_F["machinery"], _plain(said.machinery)),
+        (_F["weather"], _plain(said.weather)),
         (_F["waiting"], days),
         (_F["harvest"], "" if first is None else one.units.day(first)),
         (

@@ -166,6 +166,7 @@ CERT_MEANINGS = (
 CERT_COLUMNS, CERT_NOT_SAID = ("what", "said"), "not said"
 CERT_FIELDS = {
     "product": "Product",
+    "ingredient": "Active ingredient",
     "group": "Mode of action (IRAC)",
     "dose": "Dose",
     "water": "Water",
@@ -178,6 +179,7 @@ CERT_FIELDS = {
     "operator": "Operator",
     "authorised": "Authorised by",
     "machinery": "Machinery",
+    "weather": "Weather then",
     "waiting": "Waiting period",
     "harvest": "Harvest from",
     "entry": "Entry from",

@@ -1,4 +1,4 @@
-"""Measure ten people at once on one server: seconds a click, and memory a person.
+"""Measure ten people at once on one server: seconds a click, and what the server holds meanwhile.
 
 Run it from the repository's root: ``python tests/app/ten_sessions.py [people] [clicks]``. It starts
 the app by its command on the sample estate; each person turns pages in an order of their own,
@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import urllib.request
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -52,9 +53,9 @@ async def person(port, number, clicks, pages=None):
         return first, taken
 
 
-def resident_mb(pid):
-    """Return the memory of a process and its children."""
-    mb = 0.0
+def held_by(pid):
+    """Return what a process and its children hold: MB of memory, open files, threads."""
+    mb, files, threads = 0.0, 0, 0
     for status in Path("/proc").glob("[0-9]*/status"):
         try:
             text = dict(
@@ -64,15 +65,32 @@ def resident_mb(pid):
             continue
         if int(text["Pid"]) == pid or int(text["PPid"]) == pid:
             mb += int(text.get("VmRSS", "0 kB").split()[0]) / 1024
-    return mb
+            threads += int(text.get("Threads", "0"))
+            with suppress(OSError):
+                files += len([*(status.parent / "fd").iterdir()])
+    return mb, files, threads
+
+
+async def watched(pid, every_s):
+    """Note what a server holds until this is cancelled; return its notes."""
+    notes = []
+    with suppress(asyncio.CancelledError):
+        while True:
+            notes.append(held_by(pid))
+            await asyncio.sleep(every_s)
+    return np.array(notes)
 
 
 async def measure(port, server, people, clicks):
     await person(port, 0, 0, PAGES)
     alone = await person(port, 1, clicks)
-    before = resident_mb(server.pid)
+    before = held_by(server.pid)[0]
+    watch = asyncio.create_task(watched(server.pid, 5.0))
     every = await asyncio.gather(*(person(port, k, clicks) for k in range(people)))
-    after = resident_mb(server.pid)
+    watch.cancel()
+    quarters = [quarter.mean(axis=0) for quarter in np.array_split(await watch, 4) if len(quarter)]
+    await asyncio.sleep(10.0)  # all have left
+    after, files, threads = held_by(server.pid)
     seconds = np.concatenate([one for _, one in every])
     lines = [
         f"alone:      median {np.median(alone[1]):.2f} s, slowest {max(alone[1]):.2f} s a click",
@@ -84,6 +102,11 @@ async def measure(port, server, people, clicks):
             f"server:     {before:.0f} MB with one, {after:.0f} MB after {people}: "
             f"{(after - before) / people:.1f} MB a person"
         ),
+        *(
+            f"quarter {k} of the run: {mb:.0f} MB, {files:.0f} open files, {threads:.0f} threads"
+            for k, (mb, files, threads) in enumerate(quarters, 1)
+        ),
+        f"after all have left: {after:.0f} MB, {files} open files, {threads} threads",
         f"load of this machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores",
     ]
     sys.stdout.write("\n".join(lines) + "\n")

@@ -58,8 +58,12 @@ FILES = {
     "rows_file": [("r.geojson", b"{}"), ("r.csv", b"\xff")],
     "blocks_file": [("b.geojson", b"[]"), ("b.kml", b"<kml/>")],
     "findings_file": [("f.csv", b"row,plant,found\n1,1,yes\n"), ("f.geojson", b"[1]")],
+    "labels_file": [("l.csv", b"product,pest\nOil,mites\n"), ("l.csv", b"\xff")],
+    "pest_file": [("p.toml", b"name = 'x'"), ("p.toml", b"\xff")],
+    "weather_file": [("w.csv", b"date,tmin,tmax\n2026-11-01,10,25\n"), ("w.csv", b"\xff")],
     **{name: [("r.tif", raster(v)), ("r.tif", b"II*\0no")] for name, v in RASTERS.items()},
 }
+DRIVES = [("d.mcap", b"\x89MCAP0\r\n"), ("d.csv", b"stop,arrive\n1,6:00\n"), ("d.csv", b"")]
 
 
 # what can be chosen, by key; other boxes are chosen from by place
@@ -89,7 +93,7 @@ def poke(rng, kind, widget):
         widget.click()
         return f"click {key}"
     if kind == "file_uploader":
-        value = rng.choice(FILES[key])
+        value = rng.choice(FILES.get(key, DRIVES))
         widget.upload(*value)
         return f"upload {key} {value[0]}"
     if kind == "selectbox" and key not in CHOICES:

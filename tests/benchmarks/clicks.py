@@ -148,7 +148,10 @@ def picking(page, box: str, option: str, what: str) -> Click:
     def before() -> None:
         if box == "Who chooses the plants":
             opened(page)
-        page.get_by_role("combobox", name=box).click()
+        chooser = page.get_by_role("combobox", name=box)
+        chooser.scroll_into_view_if_needed()
+        page.wait_for_timeout(300)  # a box that opens while the panel still moves shuts again
+        chooser.click()
 
     return Click(what, options.first.click, before)
 

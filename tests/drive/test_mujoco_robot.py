@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from fieldmon.drive.day import drive_day
-from fieldmon.drive.mujoco_robot import MujocoRobot
+from fieldmon.drive.ground import rough_ground
+from fieldmon.drive.mujoco_robot import MujocoRobot, Physics
+from fieldmon.drive.robot_body import RobotBody
 from fieldmon.drive.track import Track
 from fieldmon.errors import SettingError
 from fieldmon.plot.clearance import STRAY_M
+from tests.drive.models import TRACTOR, urdf
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +23,7 @@ def driven(plot, robot):
     chance = np.random.default_rng(3).uniform(0.005, 0.3, len(plot.grid))
     robot, track = replace(robot, hours=0.5, turn_180_s=0.0), Track()
     aisles = plot.aisles.for_robot(robot)
-    driver = MujocoRobot(robot, lambda stop: stop.plant % 9 == 0, 0.02, track=track)
+    driver = MujocoRobot(robot, lambda stop: stop.plant % 9 == 0, Physics(gnss_m=0.02), track)
     with Monitor(plot, robot=robot, chance=chance).day() as day:
         return drive_day(day, aisles, (robot, driver)), track.poses, aisles
 
@@ -59,6 +62,46 @@ def test_a_robot_too_wide_for_its_way_touches_plants_and_is_stuck(plot, robot):
     assert done.touched
     assert "did not get on" in done.stuck[0]
     assert done.stops[-1].visit.found is None
+
+
+def a_short_day(plot, robot, body, ground=None):
+    from fieldmon.monitoring.monitor import Monitor
+
+    robot = replace(robot, hours=0.12, turn_180_s=0.0, look_s=20.0)
+    chance = np.random.default_rng(3).uniform(0.005, 0.3, len(plot.grid))
+    driver = MujocoRobot(robot, lambda stop: stop.plant == -1, Physics(body, 0.02, 1, ground))
+    with Monitor(plot, robot=robot, chance=chance).day() as day:
+        return drive_day(day, plot.aisles.for_robot(robot), (robot, driver))
+
+
+def test_a_steered_robot_shunts_and_touches_no_plant_on_rough_ground(plot, robot):
+    day = a_short_day(plot, robot, RobotBody.of(robot, "ackermann"), rough_ground(plot.grid, 0.02))
+    assert len(day.stops) > 5
+    assert not day.touched
+    assert not day.stuck
+    assert day.strayed_m < STRAY_M
+
+
+def test_the_robot_of_a_file_drives_and_one_wider_than_planned_for_is_refused(
+    plot, robot, tmp_path
+):
+    (tmp_path / "robot.urdf").write_text(urdf())
+    body = RobotBody.of(robot, model=tmp_path / "robot.urdf")
+    day = a_short_day(plot, robot, body)
+    assert len(day.stops) > 5
+    assert not day.touched
+    assert not day.stuck
+    with pytest.raises(SettingError, match=r"0\.56 m wide and 0\.74 m long.* --width 0\.57"):
+        a_short_day(plot, replace(robot, width_m=0.4, length_m=0.6), body)
+
+
+def test_where_a_steered_robot_has_no_room_to_turn_the_day_ends_and_says_so(plot, robot, tmp_path):
+    """A tractor that hardly steers: no shunt is short enough."""
+    (tmp_path / "long.xml").write_text(TRACTOR.replace('range="-.6 .6"', 'range="-.02 .02"'))
+    wide = replace(robot, width_m=0.65, length_m=1.1)
+    day = a_short_day(plot, wide, RobotBody.of(wide, model=tmp_path / "long.xml"))
+    assert "no room to turn" in day.stuck[0]
+    assert "turning circle of" in day.stuck[0]
 
 
 def test_without_mujoco_it_is_said_how_to_get_it(plot, robot, monkeypatch):

@@ -29,6 +29,29 @@ def by_adjacency(grid, spread):
     return told
 
 
+def by_kernels(cell, kernels, sent):
+    """Return the like for jumps: a plant sends ``sent[k]`` insects by each kernel, as Poisson.
+
+    Of each plant the chance ``(n,)`` that it is infested so: each is by itself. `cell` ``(n, 2)``
+    are the plants' places across and along, whole numbers; the middle of each kernel ``(d, d)`` is
+    the plant itself. What lands on nobody is lost.
+    """
+    radius = (np.array(kernels.shape[1:]) - 1) // 2
+    told = []
+    for here in cell:
+        away = cell - here + radius
+        on = ((away >= 0) & (away < kernels.shape[1:])).all(axis=1)
+        landed = np.zeros(len(cell))
+        landed[on] = np.einsum("k,kj->j", sent, kernels[:, away[on, 0], away[on, 1]])
+        told.append(1.0 - np.exp(-landed))
+    return told
+
+
+def together(*rules):
+    """Return what plants infest by several rules in the same night."""
+    return [*zip(*rules, strict=True)]
+
+
 def independently(chances):
     """Return the chances of all sets of plants, each of which is in it by itself."""
     sets = {0: 1.0}
@@ -38,6 +61,19 @@ def independently(chances):
             for s, p in sets.items() for bit in (0, 1)
         }  # fmt: skip
     return sets
+
+
+def chance_within(infects, n):
+    """Return for each set of n plants the chance that what one plant infests lies in it."""
+    if isinstance(infects, tuple):
+        return np.prod([chance_within(rule, n) for rule in infects], axis=0)
+    if isinstance(infects, np.ndarray):  # each by itself
+        inside = np.ones(1)
+        for chance in infects:
+            inside = np.concatenate([inside * (1.0 - chance), inside])
+        return inside
+    states = np.arange(1 << n)
+    return sum(p * ((s & ~states) == 0) for s, p in infects.items())
 
 
 @dataclass(frozen=True)
@@ -108,21 +144,22 @@ class Enumerated:
     def overnight(self, infects, arrivals=0.0):
         """Return what is true the next morning.
 
-        `infects` as `by_adjacency` returns it. For every set T: the chance that nobody outside it
+        `infects` as `by_adjacency` returns it, `arrivals` one chance or one of each plant. For
+        every set T: the chance that nobody outside it
         is infested is that of all states within T from which nobody outside is reached.
         """
         n_states, n = len(self.weight), self.n
         states = np.arange(n_states)
-        within = np.empty((n, n_states))  # the chance that what plant i infests lies in the set
-        for i, sets in enumerate(infects):
-            within[i] = sum(p * ((s & ~states) == 0) for s, p in sets.items())
+        within = [chance_within(of_plant, n) for of_plant in infects]
+        stays_away = np.broadcast_to(1.0 - np.asarray(arrivals, float), n)
         inside = np.empty(n_states)
         for only in range(n_states):
             some = states[(states & ~only) == 0]
             reach = self.weight[some]
             for i in range(n):
-                reach = reach * np.where(some >> i & 1, within[i, only], 1.0)
-            inside[only] = reach.sum() * (1.0 - arrivals) ** (n - int(only).bit_count())
+                reach = reach * np.where(some >> i & 1, within[i][only], 1.0)
+            outside = ~(int(only) >> np.arange(n)) & 1 == 1
+            inside[only] = reach.sum() * stays_away[outside].prod()
         for i in range(n):  # from "within the set" to "exactly the set"
             has = (states >> i & 1).astype(bool)
             inside[has] -= inside[states[has] & ~(1 << i)]

@@ -1,6 +1,7 @@
 """Night and inspection on small plots, against all states that there are."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,10 +10,18 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.origins import JUMPED
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.layout import rectangle
-from tests.infestation.enumerated import Enumerated, by_adjacency
+from tests.infestation.enumerated import (
+    Enumerated,
+    by_adjacency,
+    by_kernels,
+    chance_within,
+    together,
+)
 
 PLOTS = {"row": rectangle(1, 6), "block": rectangle(3, 4), "lone": rectangle(1, 1)}
 SPREADS = [Spread(0.3, "each", 0.01), Spread(0.5, "one"), Spread(0.4, "all", 0.02)]
@@ -129,3 +138,80 @@ def test_two_inspections_of_plants_that_know_nothing_of_each_other_come_to_the_s
         settings = Learning(0.84, treated=False)
         ways.append(belief.learn(np.array(plants, np.int32), np.array(found), settings).chance)
     assert ways[0] == pytest.approx(ways[1], abs=1e-9)
+
+
+# -- jumps by a mixture of kernels
+
+
+def cells(grid):
+    """Return the place of each plant across and along, whole numbers ``(n, 2)``."""
+    steps = grid.xy_m[:, ::-1] / (grid.row_spacing_m, grid.plant_spacing_m)
+    return np.rint(steps - steps.min(axis=0)).astype(int)
+
+
+def a_night_by_pencil(belief, truth, spread):
+    """Return the enumerated morning after a night in which insects also jump and arrive."""
+    grid, reach, scale = belief.grid, belief.reach, belief.counts.scale
+    degree = np.diff(grid.adjacent.start).mean()
+    sends = spread.rate_per_day * (degree if spread.to != "one" else 1.0)
+    beside = min(1.0, 1.0 - belief.jumps * (1.0 - reach.beside))
+    near = Spread(spread.rate_per_day * beside, spread.to)
+    sent = sends * belief.jumps * reach.beyond * scale[JUMPED:]
+    infects = together(by_adjacency(grid, near), by_kernels(cells(grid), reach.kernels, sent))
+    # what arrives where nobody is infested: nothing but arrivals
+    nobody = TracedPairs.of(grid, np.full(len(grid), 1e-9))
+    return truth.overnight(infects, nobody.overnight(spread).chance)
+
+
+@pytest.mark.parametrize("spread", SPREADS, ids=lambda spread: spread.to)
+@pytest.mark.parametrize("sick", [(0,), (5,), (2, 9)])
+def test_from_plants_known_to_be_infested_kernels_reach_each_plant_with_its_true_chance(
+    spread, sick
+):
+    grid = PLOTS["block"]
+    begin = np.full(12, 1e-7)
+    begin[list(sick)] = 1.0 - 1e-7
+    belief = TracedPairs.of(grid, begin)
+    truth = a_night_by_pencil(belief, Enumerated.of(begin), spread)
+    morning = belief.overnight(spread)
+    assert morning.chance == pytest.approx(truth.chance, abs=2e-4)
+    if spread.to == "each":  # else plants infested by the same one know of each other
+        assert morning.pair_chance == pytest.approx(truth.pair_chance(grid), abs=1e-3)
+
+
+@pytest.mark.parametrize("spread", SPREADS, ids=lambda spread: spread.to)
+def test_a_night_with_jumps_from_a_chance_map_has_nearly_the_true_chances(spread):
+    grid = PLOTS["block"]
+    belief = TracedPairs.of(grid, chances(grid))
+    belief = replace(belief, pair_chance=PairApproximation.of(grid, chances(grid), 0.0).pair_chance)
+    truth = a_night_by_pencil(belief, Enumerated.of(chances(grid)), spread)
+    morning = belief.overnight(spread)
+    assert morning.chance == pytest.approx(truth.chance, abs=0.02)
+    assert morning.pair_chance == pytest.approx(truth.pair_chance(grid), abs=0.03)
+
+
+@pytest.mark.parametrize("name", ["row", "block"])
+def test_what_each_kernel_brings_is_what_its_table_says_and_back_is_the_same_the_other_way(name):
+    grid = PLOTS[name]
+    reach, n = TracedPairs.of(grid, chances(grid)).reach, len(grid)
+    place, middle = cells(grid), (np.array(reach.kernels.shape[1:]) - 1) // 2
+    away = place[None, :] - place[:, None] + middle  # from plant i to plant j
+    told = reach.kernels[:, away[..., 0], away[..., 1]]
+    for i in range(n):
+        brought = reach.brought_by_each(np.eye(n)[i])
+        assert brought == pytest.approx(told[:, i], abs=1e-12)
+    shares, sent = np.linspace(0.3, 0.05, len(told)), chances(grid)
+    mixed = np.einsum("k,kij->ij", shares, told)
+    assert reach.brought(sent, shares) == pytest.approx(sent @ mixed, abs=1e-12)
+    assert reach.brought(sent, shares, back=True) == pytest.approx(mixed @ sent, abs=1e-12)
+
+
+def test_jumps_on_top_of_neighbours_are_what_a_pencil_says():
+    kernels = np.array([[[0.0, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, 0.0]]])  # on to the right
+    infects = by_kernels(np.array([[0, 0], [0, 1]]), kernels, np.array([0.4]))
+    assert infects[0] == pytest.approx([0.0, 1.0 - np.exp(-0.2)])
+    assert infects[1] == pytest.approx([0.0, 0.0])
+    both = together(infects, by_adjacency(rectangle(1, 2), Spread(0.3)))
+    assert chance_within(both[0], 2)[0] == pytest.approx(np.exp(-0.2) * 0.7)
+    morning = Enumerated.of([1.0, 0.0]).overnight(both, np.array([0.0, 0.1]))
+    assert morning.chance == pytest.approx([1.0, 1.0 - np.exp(-0.2) * 0.7 * 0.9])

@@ -50,7 +50,7 @@ def without_records(path):
         triggers = db.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'").fetchall()
         for (name,) in triggers:
             db.execute(f"DROP TRIGGER {name}")
-        for name in ("labels", "log", "mornings", "photos_asked"):
+        for name in ("labels", "log", "mornings", "photos_asked", "inspection_lots"):
             db.execute(f"DROP TABLE {name}")
             db.execute("DELETE FROM gpkg_geometry_columns WHERE table_name = ?", (name,))
             db.execute("DELETE FROM gpkg_contents WHERE table_name = ?", (name,))
@@ -58,7 +58,8 @@ def without_records(path):
         older = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
         for name in older & {column.split()[0] for column in schema.APPLIED}:
             db.execute(f"ALTER TABLE treatments DROP COLUMN {name}")
-        db.execute("DELETE FROM fieldmon WHERE key = 'log'")
+        db.execute("ALTER TABLE days DROP COLUMN causes")
+        db.execute("DELETE FROM fieldmon WHERE key IN ('log', 'inspections')")
         db.execute("UPDATE fieldmon SET value = '6' WHERE key = 'version'")
         db.commit()
 

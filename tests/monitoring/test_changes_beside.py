@@ -65,3 +65,54 @@ def test_changes_that_are_not_its_own_are_never_taken_in(path, tmp_path, kind):
     assert path.read_bytes() == data
     path.with_name("season.gpkg-wal").unlink()
     assert len(Season(path).history.inspections) >= 12
+
+
+def broken_off(path, folder):
+    """Copy a season as it stands when its machine stops in the midst of a transaction."""
+    folder.mkdir()
+    with closing(sqlite3.connect(path, isolation_level=None)) as db:
+        db.execute("PRAGMA cache_size = 2")  # pages go to the disk before the transaction ends
+        db.execute("BEGIN")
+        db.execute("UPDATE fieldmon SET value = value + 1 WHERE key = 'revision'")
+        db.execute("UPDATE plants SET number = number + 1")
+        journal = path.with_name(f"{path.name}-journal")
+        shutil.copy(journal, folder / "season.gpkg-journal")
+        shutil.copy(path, folder / "season.gpkg")
+        db.execute("ROLLBACK")
+    return folder / "season.gpkg"
+
+
+def test_a_transaction_that_broke_off_is_undone_by_its_own_journal(path, tmp_path):
+    broken = broken_off(path, tmp_path / "broken")
+    assert broken.read_bytes() != path.read_bytes()
+    season = Season(broken)
+    assert len(season.history.inspections) == 12
+    assert season.verify() == ()
+    assert beside(broken) == ["season.gpkg"]
+
+
+@pytest.mark.parametrize("kind", ["of another season", "of an earlier day"])
+def test_a_journal_that_is_not_its_own_is_never_taken_for_it(path, tmp_path, kind):
+    before = shutil.copy(path, tmp_path / "before.gpkg")
+    if kind == "of another season":
+        before = a_season(tmp_path / "other.gpkg", a_plot(width=0.0012)).path
+    else:
+        for on in range(1, 4):
+            Season(path).record(three_results(on=on), "x")
+    broken_off(before, tmp_path / "broken")
+    foreign = path.with_name("season.gpkg-journal")
+    shutil.copy(tmp_path / "broken" / "season.gpkg-journal", foreign)
+    data = path.read_bytes()
+    with pytest.raises(FileProblem, match="must belong together, but they do not"):
+        Season(path)
+    assert path.read_bytes() == data
+    foreign.unlink()
+    assert len(Season(path).history.inspections) >= 12
+
+
+def test_while_another_program_writes_its_journal_is_left_alone(path):
+    with closing(sqlite3.connect(path, isolation_level=None)) as db:
+        db.execute("BEGIN IMMEDIATE")
+        db.execute("UPDATE fieldmon SET value = value WHERE key = 'revision'")
+        assert len(Season(path).history.inspections) == 12
+        db.execute("ROLLBACK")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring import Season, inspection_table
+from fieldmon.monitoring import Season, inspection_lots, inspection_table
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.plot.grid import row_label
 from tests.monitoring.seasons import BEGINS, a_plot
@@ -81,7 +81,7 @@ def test_they_come_back_by_day_and_time_the_untimed_last_and_as_they_were_record
     times = np.array([np.nan, 500.0, np.nan, 400.0, 300.0])
     days = MONDAY + np.array([0, 0, 0, 0, 3])
     kept(db, Inspections.of(np.array([9, 8, 7, 6, 5]), np.zeros(5, int), days, second=times))
-    again = inspection_table.load(db, BEGINS)
+    again = inspection_lots.load(db, BEGINS)
     assert again.plant.tolist() == [6, 8, 9, 7, 5]
     assert (again.date - MONDAY).astype(int).tolist() == [0, 0, 0, 0, 3]
     np.testing.assert_array_equal(again.second, [400.0, 500.0, np.nan, np.nan, 300.0])
@@ -111,7 +111,7 @@ def test_whatever_is_recorded_comes_back_as_it_was(db, listed):
         notes=np.array(notes, object),
     )
     assert kept(db, told, (1, "")) == len(told)
-    again = inspection_table.load(db, BEGINS)
+    again = inspection_lots.load(db, BEGINS)
     order = np.lexsort((np.nan_to_num(told.second, nan=1e9), told.date))
     for name, values in vars(told.take(order)).items():
         assert [str(v) for v in getattr(again, name)] == [str(v) for v in values], name
@@ -121,11 +121,11 @@ def test_what_was_undone_or_added_by_other_programs_does_not_count(db):
     kept(db, Inspections.of(np.array([5, 6, 7]), np.zeros(3, int), MONDAY))
     db.execute("UPDATE inspections SET undone = 1 WHERE plant = 5")
     db.execute("UPDATE inspections SET digest = NULL WHERE plant = 6")
-    assert inspection_table.load(db, BEGINS).plant.tolist() == [7]
+    assert inspection_lots.load(db, BEGINS).plant.tolist() == [7]
 
 
 def test_of_none_recorded_there_are_none(db):
-    assert len(inspection_table.load(db, BEGINS)) == 0
+    assert len(inspection_lots.load(db, BEGINS)) == 0
 
 
 @pytest.mark.parametrize(

@@ -102,7 +102,7 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
 
 def test_every_table_of_a_season_is_merged_or_must_be_the_same_or_follows_from_them():
     follows = {schema.META, schema.DAYS, schema.PLANT_STATE, schema.HOT_SPOTS, schema.LEARNT}
-    follows |= {schema.MORNINGS}
+    follows |= {schema.MORNINGS, schema.INSPECTION_LOTS}
     merged = {*merging.SAME, *merging.TAKEN, *merging.LOGGED, *phone_tables.TABLES}
     assert merged | follows == set(schema.TABLES)
 

@@ -68,8 +68,8 @@ def of_day(season, day):
     return season._now().morning(day)
 
 
-def test_the_file_keeps_the_last_two_of_every_eighth_morning(path):
-    assert kept(path) == [8, 16]
+def test_the_file_keeps_the_newest_morning_and_the_last_two_of_every_eighth(path):
+    assert kept(path) == [8, 16, LAST]
 
 
 def test_mornings_from_the_file_are_those_from_the_first_to_the_last_bit(path):
@@ -87,6 +87,8 @@ def test_a_command_begins_at_the_morning_that_the_file_keeps(path, monkeypatch):
         History, "night_after", lambda self, m, day: nights.append(day) or slept(self, m, day)
     )
     Season(path).status(BEGINS + timedelta(days=LAST))
+    assert nights == []
+    Season(path).status(BEGINS + timedelta(days=LAST - 1))
     assert min(nights) == 16
 
 
@@ -100,7 +102,7 @@ def test_what_is_recorded_of_an_early_day_reaches_the_mornings_after_it(path):
         assert the_same(of_day(Season(path), day), morning), day
     assert Season(path).status(BEGINS + timedelta(days=LAST)) != before
     assert Season(path).verify() == ()
-    assert kept(path) == [8, 16]
+    assert kept(path) == [8, 16, LAST]
 
 
 def test_a_treatment_taken_back_leaves_the_mornings_of_before(path):
@@ -132,7 +134,33 @@ def test_another_program_version_does_not_believe_the_kept_ones(path, monkeypatc
 
     monkeypatch.setattr(mornings, "_rules", lambda: "of another version")
     contents = Season(path)._now()
-    assert set(contents.mornings.known) == {0}
+    assert contents.mornings.last_until(LAST) == 0
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "UPDATE days SET expected_left = 1 WHERE causes NOT NULL",
+        "UPDATE days SET low = 0",
+        "UPDATE days SET causes = 'none'",
+        "UPDATE days SET causes = NULL",
+    ],
+)
+def test_a_kept_estimate_is_believed_only_as_it_was_kept(path, damage):
+    on = BEGINS + timedelta(days=LAST)
+    before = Season(path).status(on).estimate
+    change(path, damage)
+    assert Season(path).status(on).estimate == before
+
+
+def test_the_last_estimate_is_not_drawn_again(path, monkeypatch):
+    from fieldmon.monitoring import history
+
+    before = Season(path).status(BEGINS + timedelta(days=LAST)).estimate
+    monkeypatch.setattr(history, "estimate_plot", None)
+    assert Season(path).status(BEGINS + timedelta(days=LAST)).estimate == before
+    with pytest.raises(TypeError):
+        Season(path).status(BEGINS + timedelta(days=LAST - 1))
 
 
 def test_few_mornings_of_a_long_season_are_at_hand(path):

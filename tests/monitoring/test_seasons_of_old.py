@@ -8,6 +8,7 @@ changed): planned, recorded, undone, treated, changed. Beside each lies what ``f
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 
@@ -108,3 +109,19 @@ def test_a_season_of_format_6_keeps_its_treatments_and_its_log_begins(tmp_path):
     assert (effect.before.found, effect.after.found) == (2, 0)
     assert season.undo() != ""
     assert season.held_to_log() == ()
+
+
+def test_a_season_of_format_8_keeps_its_treatment_and_can_say_more_of_the_next(tmp_path):
+    """Made before active ingredient and weather were asked for: its log still holds."""
+    season = Season(shutil.copy(FOLDER / "of_format_8.gpkg", tmp_path))
+    assert (tmp_path / "of_format_8.gpkg.format-8").is_file()
+    assert season.held_to_log() == ()
+    (one,) = season.treatments()
+    assert one.application.authorised_by == "Ben"
+    assert (one.application.active_ingredient, one.application.weather) == ("", "")
+    assert season.treat(one.on, 0.8, one.place.area, application=one.application).new == 0
+    more = replace(one.application, active_ingredient="fenpyroximate", weather="dry, 2 m/s")
+    assert season.treat(LAST, 0.8, one.place.area, application=more).new == 1
+    assert season.treatments()[-1].application == more
+    assert season.held_to_log() == ()
+    assert season.verify() == ()

@@ -18,7 +18,7 @@ def names(assumed):
 
 
 def test_what_was_said_is_not_assumed():
-    mine = Robot(speed_m_s=0.5, detection=0.7)
+    mine = Robot(speed_m_s=0.5, detection=0.7, row_change_s=12.0)
     assert assumed_by((), PriorSettings(background_chance=0.03), mine) == ()
     assert names(assumed_by((), PriorSettings(), mine)) == ["background_chance"]
     assert names(assumed_by((), PriorSettings(), scout())) == [

@@ -3,7 +3,7 @@
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.plot.robot import Robot, Viewpoints, scout
+from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
 
 
 @pytest.mark.parametrize(
@@ -62,3 +62,12 @@ def test_viewpoints_must_rise(steps):
 def test_no_chance_is_above_one():
     with pytest.raises(SettingError, match=r"in 0\.\.1"):
         Viewpoints(longer=1.2)
+
+
+def test_times_have_names_and_others_have_none():
+    assert Robot().times == "thesis"
+    assert Robot().with_times("measured").times == rover().times == "measured"
+    assert Robot().with_times("measured").with_times("thesis") == Robot()
+    assert Robot(row_change_s=12.0).times is None
+    with pytest.raises(SettingError, match="thesis or measured, but they are 'quick'"):
+        Robot().with_times("quick")

@@ -17,7 +17,8 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, grid_from_plants, lay, rectangle
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.road_network import row_lines
-from fieldmon.plot.travel import Aisles, crosses_rows, drive_m
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles, crosses_rows, drive_m, driven_s, robot_clock
 from tests.crooked import crooked_grids
 
 FRAME = Frame(35.15, 30.36)
@@ -388,3 +389,33 @@ def test_what_aisles_hold_cannot_be_changed():
     aisles = Aisles.of(SHAPES["rectangle"])
     for values in (*aisles.travel, aisles.stop_m, aisles.roads.xy_m):
         assert not values.flags.writeable
+
+
+def test_another_aisle_costs_a_row_change_the_other_face_a_turn_and_the_gate_neither():
+    grid = rectangle(4, 3, Planting(faces=2))
+    aisles, robot = Aisles.of(grid), Robot(row_change_s=7.0, turn_180_s=11.0)
+    clock, aisle = robot_clock(robot, robot.day_s), grid.corridor[grid.row]
+    face = grid.side[grid.row]
+    kinds = set()
+    for i in range(-1, len(grid)):
+        for j in range(-1, len(grid)):
+            took_s = driven_s(aisles.travel, clock, np.array([i, j]))
+            charged_s = took_s - float(aisles.distance_m(i, j)) / robot.speed_m_s
+            if min(i, j) < 0:
+                wanted_s = 0.0
+            elif aisle[i] != aisle[j]:
+                wanted_s = 7.0
+            else:
+                wanted_s = 11.0 if face[i] != face[j] else 0.0
+            kinds.add(wanted_s)
+            assert charged_s == pytest.approx(wanted_s, abs=1e-9), (i, j)
+    assert kinds == {0.0, 7.0, 11.0}
+
+
+def test_only_where_plants_stand_in_no_rows_none_are_changed():
+    grid, robot = rectangle(3, 3), Robot(row_change_s=7.0)
+    straight, quick = Aisles.of(grid), Robot(row_change_s=0.0)
+    assert straight.worked_by(robot) is robot
+    among_trees = Aisles.of(replace(grid, in_rows=False))
+    assert among_trees.worked_by(robot) == replace(robot, row_change_s=0.0)
+    assert among_trees.worked_by(quick) is quick

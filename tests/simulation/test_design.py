@@ -93,3 +93,8 @@ def test_the_guess_of_plants_is_near_what_is_laid():
 def test_impossible_designs_are_refused(settings):
     with pytest.raises(SettingError):
         Design(**settings)
+
+
+def test_one_seed_and_one_day_are_enough():
+    alone = Design(("naive",), n_days=1, n_seeds=1)
+    assert (alone.n_days, alone.n_seeds, alone.first_seed) == (1, 1, alone.first_seed)

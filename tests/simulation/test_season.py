@@ -12,6 +12,7 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
 
@@ -156,3 +157,18 @@ def test_pests_may_do_what_is_not_believed():
 
     days = season(settings=SeasonSettings(n_days=3, spread=Spread(0.0), pests=all_over))
     assert days[2].infested.sum() >= 20
+
+
+def test_unless_told_insects_show_at_once_and_the_map_knows_of_the_spread_that_is():
+    told, plain = SeasonSettings(hidden_nights=0), SeasonSettings()
+    assert plain == told
+    spread, other = Spread(0.3), Spread(0.1)
+    grid = AISLES.grid
+    assert SeasonSettings(spread=spread).believed_night(grid)(0) is spread
+    assert SeasonSettings(spread=spread, believed_spread=other).believed_night(grid)(0) is other
+
+
+def test_a_level_that_is_reached_exactly_counts_as_reached():
+    metrics = season_metrics(season(robot=Robot(hours=24.0, detection=1.0)))
+    assert metrics.detection_pct[0] == 100.0
+    assert metrics.first_day(100.0) == 1

@@ -51,3 +51,11 @@ def test_half_an_interval_is_that_of_every_column():
     for k in range(3):
         ours = summary_statistics(values[:, k])
         assert half[k] == pytest.approx((ours.high - ours.low) / 2)
+
+
+def test_so_many_values_are_counted_and_from_two_on_there_is_an_interval():
+    one, two = (summary_statistics(np.array(values)) for values in ([3.0], [3.0, 5.0]))
+    assert (one.replicates, two.replicates) == (1, 2)
+    # Student's t of one degree of freedom: 12.706 (ISO 2602), times sd / sqrt(2) = 1
+    assert (two.low, two.high) == pytest.approx((4.0 - 12.706, 4.0 + 12.706), abs=1e-3)
+    assert (two.sd, two.mean) == pytest.approx((2**0.5, 4.0))

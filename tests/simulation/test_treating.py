@@ -70,6 +70,8 @@ def test_only_sprayed_plants_are_cleaned_and_the_map_hears_of_it():
     ("made", "said"),
     [
         (lambda: TreatmentRule(0.0), "between 0 and 1"),
+        (lambda: TreatmentRule(1.0), "between 0 and 1"),
+        (lambda: TreatmentRule(1.2), "between 0 and 1"),
         (lambda: TreatmentRule(treats="half"), "'zones' or 'whole'"),
         (lambda: TreatmentRule(every_days=0), "1 day or more"),
     ],
@@ -77,3 +79,16 @@ def test_only_sprayed_plants_are_cleaned_and_the_map_hears_of_it():
 def test_rules_that_cannot_be_are_refused(made, said):
     with pytest.raises(SettingError, match=said):
         made()
+
+
+def test_the_first_evening_of_the_rule_treats_and_then_not_for_its_days():
+    made = days(TreatmentRule(0.02, WHOLE, costs=COSTS, every_days=2))
+    evenings = [day.number for day in made if day.sprayed is not None]
+    assert evenings[0] <= 1
+    assert (np.diff(evenings) >= 2).all()
+    for day in made:
+        if day.sprayed is not None:  # who is cleaned is infested no more, who is not stays
+            assert not (day.in_the_evening & day.sprayed.cleaned).any()
+            kept = day.infested & ~day.sprayed.cleaned
+            kept[day.work.plant[day.work.found]] = False
+            assert (day.in_the_evening == kept).all()

@@ -2,12 +2,14 @@
 
 import { WebMercatorViewport } from "@deck.gl/core";
 import { TripsLayer } from "@deck.gl/geo-layers";
-import { ColumnLayer, PolygonLayer, ScatterplotLayer } from "@deck.gl/layers";
+import { ColumnLayer, PathLayer, PolygonLayer, ScatterplotLayer } from "@deck.gl/layers";
 
 import { element } from "./chrome.js";
 import { metresPerPixel } from "./view.js";
 
 const SPEEDS = [1, 10, 30, 100, 300], M_PER_DEGREE = 111320;
+// a day that is driven now is asked for so often
+const ASK_MS = 1000;
 export const PITCH = 55;
 // nearer than so many metres a pixel plants are columns, the nearest of them, within so many metres
 const NEAR = 0.11, MOST = 1500, FEW = 400, REACH_M = 60, SLOW_MS = 60;
@@ -39,12 +41,14 @@ export class Drive {
     if (other) this.stop();
     this.data = data;
     this.root.hidden = !data;
+    this.ask(data?.poll, other);
     if (!data) return;
     if (other) Object.assign(this, { second: 0, following: true, turning: true, bearing: data.heading[0] ?? 0, ranks: null });
     this.press = element("button", { type: "button", class: "tool", text: "▶", "aria-label": words.play, onclick: () => this.toggle() });
     this.slider = element("input", { type: "range", min: 0, max: data.end, step: 1, value: this.second, "aria-label": words.time_of_day,
       oninput: () => this.to(Number(this.slider.value)) });
     this.clock = element("span", { class: "clock", dir: "auto" });
+    this.standing = element("span", { class: "standing", dir: "auto", hidden: !data.poll });
     const speed = element("select", { "aria-label": words.speed, onchange: () => { this.speed = Number(speed.value); } },
       SPEEDS.map((by) => element("option", { value: by, text: `${by} ×`, selected: by === this.speed })));
     this.camera = element("input", { type: "checkbox", checked: this.following, onchange: () => {
@@ -52,8 +56,38 @@ export class Drive {
       this.changed();
     } });
     this.root.replaceChildren(this.press, this.slider, speed,
-      element("label", { class: "follow" }, [this.camera, element("span", { text: words.follow })]), this.clock);
+      element("label", { class: "follow" }, [this.camera, element("span", { text: words.follow })]), this.clock, this.standing);
     this.tell();
+  }
+
+  // Ask how a day that is driven now goes, again and again; no address: no more.
+  ask(address, other) {
+    if (!other && address === this.asked) return;
+    this.asked = address;
+    const again = async () => {
+      if (this.asked !== address) return;
+      let got = { heard: { standing: "away" } };
+      try {
+        got = await (await fetch(address, { cache: "no-store" })).json();
+      } catch { /* asked again */ }
+      if (this.asked !== address) return;
+      this.take(got);
+      setTimeout(again, ASK_MS);
+    };
+    if (address) again();
+  }
+
+  // Take in more of a day; who looks at its end goes on looking at it.
+  take(got) {
+    const atEnd = !this.timer && this.second >= this.data.end;
+    this.data = { ...this.data, ...got };
+    this.slider.max = this.data.end;
+    if (atEnd) {
+      this.second = this.data.end;
+      if (this.turning) this.bearing = poseAt(this.data, this.second).heading;
+    }
+    this.tell();
+    this.changed();
   }
 
   pressed(event) {
@@ -119,6 +153,11 @@ export class Drive {
     this.slider.value = this.second;
     this.clock.textContent = this.words.driven.replace("{time}", time).replace("{stops}", made.length).replace("{found}", found);
     this.slider.setAttribute("aria-valuetext", this.clock.textContent);
+    const { heard } = this.data;
+    if (heard) {
+      this.standing.textContent = (this.words[heard.standing] ?? "").replace("{seconds}", Math.round(heard.lag ?? 0));
+      this.standing.dataset.standing = heard.standing;
+    }
     this.root.dataset.now = JSON.stringify({ second: this.second, ...now, stops: made.length, found, playing: Boolean(this.timer) });
   }
 
@@ -174,10 +213,13 @@ export class Drive {
     if (!this.data || !viewport) return [];
     const metres = metresPerPixel(viewport);
     const finds = this.data.stops.slice(0, until(this.data.stops, this.second)).filter((one) => one[2]).map((one) => one[1]);
+    const { way = [], released = 0 } = this.data;
     const { places } = this.from ?? {}, colour = dark ? [110, 220, 255] : [12, 62, 170];
     return [
       new TripsLayer({ id: "driven", data: [this.data], getPath: (d) => d.lon.map((lon, k) => [lon, d.lat[k]]), getTimestamps: (d) => d.at,
         getColor: colour, widthMinPixels: 3, getWidth: 0.2, currentTime: this.second, trailLength: 1e7, fadeTrail: false, capRounded: true }),
+      way.length > 1 && new PathLayer({ id: "ordered", data: [[way.slice(0, released), [...colour, 200]], [way.slice(Math.max(released - 1, 0)), [...colour, 80]]],
+        getPath: ([path]) => path, getColor: ([, tone]) => tone, getWidth: 0.1, widthMinPixels: 2, capRounded: true }),
       places && new ScatterplotLayer({ id: "glow", data: finds, getPosition: (plant) => [places.lon[plant], places.lat[plant]],
         getRadius: 1.1, radiusMinPixels: 7, getFillColor: [...this.data.found, 70], stroked: true, getLineColor: dark ? [255, 255, 255] : [90, 0, 0],
         getLineWidth: 0.08, lineWidthMinPixels: 1.5 }),
@@ -234,6 +276,7 @@ export class Drive {
 
   end() {
     this.stop();
+    this.ask(null);
     document.removeEventListener("keydown", this.typed);
   }
 }

@@ -65,3 +65,29 @@ test("where pictures take long there are fewer of them", () => {
   assert.equal(drawn(20), 150);
   assert.ok(drawn(100) <= 16);
 });
+
+test("more of a day that is driven now is taken in, and who looked at its end still does", () => {
+  const told = [], drive = Object.assign(driving(50), { slider: {}, changed: () => told.push(drive.second), tell() {} });
+  drive.take({ at: [0, 60], lon: [35, 35], lat: [30, 30], heading: [0, 90], stops: [[40, 2, true], [50, 0, false], [60, 1, true]], end: 60 });
+  assert.deepEqual([drive.second, drive.slider.max, told], [60, 60, [60]]);
+  drive.second = 20; // somebody looks back
+  drive.take({ end: 70 });
+  assert.equal(drive.second, 20);
+  assert.deepEqual([...drive.of([PLANTS])[0].ranks], [1, 1, 1]);
+});
+
+test("a day that is driven now is asked for until another one is shown", async () => {
+  const drive = driving(50), asked = [];
+  Object.assign(drive, { slider: {}, changed() {}, tell() {}, take: (got) => asked.push(got) });
+  globalThis.fetch = async (address) => ({ json: async () => ({ from: address }) });
+  drive.ask("/one", true);
+  await new Promise((done) => setTimeout(done));
+  drive.ask(null, true);
+  await new Promise((done) => setTimeout(done));
+  assert.deepEqual(asked, [{ from: "/one" }]);
+  globalThis.fetch = async () => { throw new Error("gone"); };
+  drive.ask("/two", true);
+  await new Promise((done) => setTimeout(done));
+  drive.ask(null, true);
+  assert.deepEqual(asked.at(-1), { heard: { standing: "away" } });
+});

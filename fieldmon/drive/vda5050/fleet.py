@@ -2,27 +2,39 @@
 
 from __future__ import annotations
 
-import json
 import queue
 import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.drive.errand import Visit
-from fieldmon.drive.vda5050.messages import decoded, encoded, header_of, home_order, order_of
+from fieldmon.drive.vda5050.crossing import Crossing
+from fieldmon.drive.vda5050.messages import (
+    decoded,
+    encoded,
+    header_of,
+    home_order,
+    order_of,
+    result_of,
+    sent_at,
+)
 from fieldmon.drive.vda5050.wire import Wire
 from fieldmon.errors import ObservationError
+from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from fieldmon.drive.aisle_keeper import AisleKeeper
     from fieldmon.drive.errand import Errand, Float
-    from fieldmon.drive.vda5050.wire import Broker
+    from fieldmon.drive.vda5050.wire import Broker, RobotName
     from fieldmon.plot.travel import Aisles
 
 # an order that nobody acknowledged is sent again; robots take the same one once
 _AGAIN_S = 5.0
 _POLL_S = 0.2
+# errors with which a robot cannot go on with its order; 2.1 has only the last
+_ENDS = {"CRITICAL", "FATAL"}
 
 
 class Vda5050Robot:
@@ -37,12 +49,13 @@ class Vda5050Robot:
     ----------
     wire
         The robot's topics.
-    robot
-        Manufacturer and serial number.
     order_id
         A name that no order had before.
     say
         Told what people should know: lost connections, pauses, messages that are none.
+    traffic
+        Who may be in which aisle; None: the robot is alone. Its way is released up to the end of
+        its own aisle until all aisles on the way to the next plant are free.
     patience_s
         Seconds without any word of the robot after which the day ends; a pause is a word.
     least_battery
@@ -52,79 +65,130 @@ class Vda5050Robot:
     def __init__(
         self,
         wire: Wire,
-        robot: tuple[str, str],
         order_id: str,
         say: Callable[[str], None] = lambda _: None,
         *,
+        traffic: AisleKeeper | None = None,
         patience_s: float = 600.0,
         least_battery: float = 15.0,
     ) -> None:
         self._wire, self._say = wire, say
-        self._header = header_of(*robot)
+        self._header, self._name = header_of(*wire.robot), wire.robot.serial
         self._known: dict[str, Any] = {"orderId": order_id, "orderUpdateId": -1, "node": None}
         self._patience_s, self._least_battery = patience_s, least_battery
         self._state: dict[str, Any] | None = None
         self._told = ""
+        self._traffic = traffic
 
-    def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:  # noqa: ARG002 - it is there
+    def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:
         """Take the plot's metres for those east and north of its datum."""
         frame = aisles.grid.frame
         east_north = frame.turned(90.0)
         self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
         self._gone_s, self._begun = gone_s, time.monotonic()
-        self._own_clock = False
+        self._own_clock, self._heard_at = False, time.monotonic()
+        if self._traffic is not None:
+            self._crossing = Crossing(self._traffic, self._name, aisles, at_m)
 
     def visit(self, errand: Errand) -> Visit:
         """Send the robot to a plant, and wait for what it found."""
+        line_m, why = self._cleared(errand.line_m, errand.stop.plant)
+        if why is not None:
+            return Visit(None, self._now_s(), stuck=self._ended(why))
         self._known["orderUpdateId"] += 1
         update = self._known["orderUpdateId"]
         action = f"{self._known['orderId']}-{update}-{errand.stop.plant}"
-        order, node = order_of(errand, self._places, self._known, action)
+        order, node = order_of(errand._replace(line_m=line_m), self._places, self._known, action)
         said = self._done(order, lambda state: _finished(state, action))
         # the next update begins at the node where it stands; what was done there is not done again
         self._known["node"] = {**node, "actions": []}
         if isinstance(said, str):
-            return Visit(None, self._now_s(), stuck=said)
-        result = _result(said)
+            return Visit(None, self._now_s(), stuck=self._ended(said))
+        if self._traffic is not None:
+            self._crossing.arrived(errand.stop.plant)
+        result = result_of(said)
         found = result.get("found") if said["actionStatus"] == "FINISHED" else None
-        return Visit(found, self._at_s(result.get("day_s")), stuck=self._low())
+        return Visit(found, self._at_s(result.get("day_s")), stuck=self._ended(self._low()))
 
     def home(self, line_m: Float) -> Visit | None:
         """Send the robot back to the gate."""
+        line_m, why = self._cleared(line_m, GATE)
+        if why is not None:
+            return Visit(None, self._now_s(), stuck=self._ended(why))
+        said = self._driven(line_m)
+        if isinstance(said, str):
+            return Visit(None, self._now_s(), stuck=self._ended(said))
+        if self._traffic is not None:
+            self._crossing.arrived(GATE)
+        told = [one for one in said.get("information", []) if one.get("infoType") == "day_s"]
+        return Visit(None, self._at_s(told[-1].get("infoDescription") if told else None))
+
+    def _cleared(self, line_m: Float, plant: int) -> tuple[Float, str | None]:
+        """Return what is left of a way once all aisles on it are the robot's; or why it never is.
+
+        Where they are not, it drives to the end of its own aisle, which is then free for others.
+        """
+        if self._traffic is None or self._crossing.enter(plant):
+            return line_m, None
+        out_m, rest_m = self._crossing.parted(line_m, plant)
+        if len(out_m) > 1:
+            said = self._driven(out_m)
+            if isinstance(said, str):
+                return rest_m, said
+        self._crossing.left()
+        self._tell("The robot waits until an aisle is free.")
+        while not self._crossing.enter(plant):
+            if self._crossing.blocked(plant):
+                return rest_m, "The way is blocked by a robot that moves no more today."
+            if isinstance(state := self._heard_of(), str):
+                return rest_m, state
+        return rest_m, None
+
+    def _driven(self, line_m: Float) -> dict[str, Any] | str:
+        """Let the robot drive along a line; return its state there, or why it is not there."""
         self._known["orderUpdateId"] += 1
         order, node = home_order(line_m, self._places, self._known)
         last = node["sequenceId"]
+        said = self._done(
+            order, lambda state: state if state["lastNodeSequenceId"] >= last else None
+        )
+        self._known["node"] = node
+        return said
 
-        def there(state: dict[str, Any]) -> dict[str, Any] | None:
-            return state if state["lastNodeSequenceId"] >= last else None
-
-        said = self._done(order, there)
-        if isinstance(said, str):
-            return Visit(None, self._now_s(), stuck=said)
-        told = [one for one in said.get("information", []) if one.get("infoType") == "day_s"]
-        return Visit(None, self._at_s(told[-1].get("infoDescription") if told else None))
+    def _ended(self, why: str) -> str:
+        """Say that the robot moves no more today, if there is a reason."""
+        if why and self._traffic is not None:
+            self._traffic.end(self._name)
+        return why
 
     def _done(
         self, order: dict[str, Any], wanted: Callable[[dict[str, Any]], dict[str, Any] | None]
     ) -> dict[str, Any] | str:
         """Send an order until it is taken; return what is wanted of a state, or why not."""
-        sent, heard = 0.0, time.monotonic()
+        sent, self._heard_at = 0.0, time.monotonic()
         while True:
             now = time.monotonic()
             if not self._taken(order) and now - sent > _AGAIN_S:
                 self._wire.send("order", encoded("order", self._header, order))
                 sent = now
-            state = self._hear()
-            if state is None:
-                if now - heard > self._patience_s:
-                    return f"The robot has not been heard for {self._patience_s:.0f} s."
-                continue
-            heard = time.monotonic()
-            if (found := wanted(state)) is not None and self._taken(order):
+            state = self._heard_of()
+            if isinstance(state, str):
+                return state
+            if state is not None and (found := wanted(state)) is not None and self._taken(order):
                 return found
-            if fatal := [one for one in state["errors"] if one["errorLevel"] == "FATAL"]:
-                told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
-                return f"The robot reports an error that it cannot mend: {told}."
+
+    def _heard_of(self) -> dict[str, Any] | str | None:
+        """Return the robot's next state, or why the day ends; None: nothing for a moment."""
+        state = self._hear()
+        if state is None:
+            if time.monotonic() - self._heard_at > self._patience_s:
+                return f"The robot has not been heard for {self._patience_s:.0f} s."
+            return None
+        self._heard_at = time.monotonic()
+        if fatal := [one for one in state["errors"] if one["errorLevel"] in _ENDS]:
+            told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
+            return f"The robot reports an error that it cannot mend: {told}."
+        return state
 
     def _taken(self, order: dict[str, Any]) -> bool:
         """Tell whether the robot has said that it has this order."""
@@ -162,8 +226,7 @@ class Vda5050Robot:
         return message
 
     def _late(self, message: dict[str, Any]) -> bool:
-        last = self._state
-        return last is not None and str(message["timestamp"]) < str(last["timestamp"])
+        return self._state is not None and sent_at(message) < sent_at(self._state)
 
     def _tell(self, sentence: str) -> None:
         """Say something once, not with every message."""
@@ -194,12 +257,17 @@ class Vda5050Robot:
 
 @contextmanager
 def live_robot(
-    broker: Broker, robot: tuple[str, str], on: str, say: Callable[[str], None]
+    broker: Broker,
+    robot: RobotName,
+    on: str,
+    say: Callable[[str], None],
+    traffic: AisleKeeper | None = None,
 ) -> Iterator[Vda5050Robot]:
     """Yield a robot on its wire; the order's name holds the day and when it was made."""
-    wire = Wire(broker, f"fieldmon-{robot[1]}", robot, ("state", "connection"))
+    wire = Wire(broker, f"fieldmon-{robot.serial}", robot, ("state", "connection"))
+    order_id = f"{on}-{time.time_ns() // 10**6}"
     try:
-        yield Vda5050Robot(wire, robot, f"{on}-{time.time_ns() // 10**6}", say)
+        yield Vda5050Robot(wire, order_id, say, traffic=traffic)
     finally:
         wire.close()
 
@@ -211,14 +279,3 @@ def _finished(state: dict[str, Any], action: str) -> dict[str, Any] | None:
             done: dict[str, Any] = one
             return done
     return None
-
-
-def _result(action: dict[str, Any]) -> dict[str, Any]:
-    """Return what a robot said of an action; empty if it is nothing that can be read."""
-    try:
-        said = json.loads(action.get("resultDescription") or "{}")
-    except ValueError:
-        return {}
-    if not isinstance(said, dict) or not isinstance(said.get("found"), bool | None):
-        return {}
-    return said

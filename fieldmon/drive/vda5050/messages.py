@@ -1,17 +1,16 @@
-"""Messages of VDA 5050, version 2.1: made here, and checked on both ways.
-
-The rules are those of the standard's JSON schemas (VDA 5050, 2.1.0, January 2025), as far as its
-fields are used here: what must be there, of which type, and which words an enumeration knows.
-"""
+"""Messages of VDA 5050: made here as 2.1 has them, and checked on both ways as they are sent."""
 
 from __future__ import annotations
 
+import copy
 import json
 from datetime import UTC, datetime
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.errors import ObservationError
+from fieldmon.drive.vda5050.rules import problems
+from fieldmon.drive.vda5050.versions import USUAL, VERSIONS, as_heard, as_sent, known_version
+from fieldmon.errors import ObservationError, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -23,131 +22,77 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
-VERSION = "2.1.0"
 ACTION = "inspectPlant"
 MAP = "map"
 _DEVIATION_M = 0.3
-_NUMBER = (int, float)
-_HEADER: dict[str, Any] = {
-    "headerId": int, "timestamp": str, "version": str, "manufacturer": str, "serialNumber": str,
-}  # fmt: skip
-_ACTION: dict[str, Any] = {
-    "actionId": str, "actionType": str, "blockingType": ("NONE", "SOFT", "HARD"),
-}  # fmt: skip
-#: what each message must hold: a type, the words of an enumeration, or what each of a list holds
-RULES: dict[str, dict[str, Any]] = {
-    "order": _HEADER
-    | {
-        "orderId": str,
-        "orderUpdateId": int,
-        "nodes": [{"nodeId": str, "sequenceId": int, "released": bool, "actions": [_ACTION]}],
-        "edges": [
-            {
-                "edgeId": str,
-                "sequenceId": int,
-                "released": bool,
-                "startNodeId": str,
-                "endNodeId": str,
-                "actions": [_ACTION],
-            }
-        ],
-    },
-    "state": _HEADER
-    | {
-        "orderId": str,
-        "orderUpdateId": int,
-        "lastNodeId": str,
-        "lastNodeSequenceId": int,
-        "driving": bool,
-        "nodeStates": [{"nodeId": str, "sequenceId": int, "released": bool}],
-        "edgeStates": [{"edgeId": str, "sequenceId": int, "released": bool}],
-        "actionStates": [
-            {
-                "actionId": str,
-                "actionStatus": (
-                    *("WAITING", "INITIALIZING", "RUNNING", "PAUSED", "FINISHED", "FAILED"),
-                ),
-            }
-        ],
-        "batteryState": {"batteryCharge": _NUMBER, "charging": bool},
-        "operatingMode": ("AUTOMATIC", "SEMIAUTOMATIC", "MANUAL", "SERVICE", "TEACHIN"),
-        "errors": [{"errorType": str, "errorLevel": ("WARNING", "FATAL")}],
-        "safetyState": {
-            "eStop": ("AUTOACK", "MANUAL", "REMOTE", "NONE"),
-            "fieldViolation": bool,
-        },
-    },
-    "connection": _HEADER | {"connectionState": ("ONLINE", "OFFLINE", "CONNECTIONBROKEN")},
-    "instantActions": _HEADER | {"actions": [_ACTION]},
-}
 
 
 def encoded(kind: str, header: dict[str, Any], body: dict[str, Any]) -> bytes:
-    """Return a message as it goes over the wire, checked; `header` is changed: it counts on."""
+    """Return a message as it goes over the wire, checked; `header` is changed: it counts on.
+
+    The body is said as in 2.1 and written as the header's version has it.
+    """
     header["headerId"] += 1
+    version = known_version(header["version"])
     now = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
-    message = {**header, "timestamp": now, **body}
-    if wrong := problems(kind, message):
+    message = as_sent(kind, {**header, "timestamp": now, **_copy(body, version)}, version)
+    if wrong := problems(kind, message, version):
         raise ValueError("; ".join(wrong))  # a mistake of ours
     return json.dumps(message, separators=(",", ":")).encode()
 
 
+def _copy(body: dict[str, Any], version: str) -> dict[str, Any]:
+    """Return a body that may be changed, where that is needed."""
+    return body if version == USUAL else copy.deepcopy(body)
+
+
 def decoded(kind: str, data: bytes) -> dict[str, Any]:
-    """Return a message from the wire; raise `ObservationError` where it is none of the standard."""
+    """Return a message from the wire, as 2.1 has it.
+
+    Raises
+    ------
+    ObservationError
+        If it is none of the standard's, in the version that it names.
+    """
     try:
         message = json.loads(data)
     except ValueError as error:
         raise ObservationError(f"A message {kind!r} must be JSON, but it is not.") from error
-    if wrong := problems(kind, message):
+    said = str(message.get("version", USUAL)) if isinstance(message, dict) else USUAL
+    try:
+        version = known_version(said)
+    except SettingError as error:
+        raise ObservationError(f"A message {kind!r} cannot be read. {error}") from error
+    wrong = problems(kind, message, version)
+    if wrong or _moment(message["timestamp"]) is None:
+        wrong = wrong or [f"{kind}.timestamp is {message['timestamp']!r}"]
         raise ObservationError(
-            f"A message {kind!r} must be as VDA 5050 {VERSION} has it, but {'; '.join(wrong)}."
+            f"A message {kind!r} must be as VDA 5050 {version} has it, but {'; '.join(wrong)}."
         )
-    held: dict[str, Any] = message
-    return held
+    return as_heard(kind, message, version)
 
 
-def problems(kind: str, message: object) -> list[str]:
-    """Return what is wrong with a message, a clause each."""
-    found: list[str] = []
-    _check(RULES[kind], message, kind, found.append)
-    return found
+def sent_at(message: dict[str, Any]) -> datetime:
+    """Return when a message was sent, by the clock of who sent it."""
+    at = _moment(message["timestamp"])
+    assert at is not None  # noqa: S101 - looked at when it was read
+    return at
 
 
-def _check(rule: Any, value: object, where: str, say: Callable[[str], None]) -> None:  # noqa: ANN401
-    if isinstance(rule, dict):
-        _check_object(rule, value, where, say)
-    elif isinstance(rule, list):
-        if not isinstance(value, list):
-            say(f"{where} is no list")
-            return
-        for k, one in enumerate(value):
-            _check(rule[0], one, f"{where}[{k}]", say)
-    elif isinstance(rule, tuple) and isinstance(rule[0], str):
-        if value not in rule:
-            say(f"{where} is {value!r}, which is none of {', '.join(rule)}")
-    elif not isinstance(value, rule) or (isinstance(value, bool) and rule is not bool):
-        say(f"{where} is {value!r}")
+def _moment(text: str) -> datetime | None:
+    try:
+        at = datetime.fromisoformat(text)
+    except ValueError:
+        return None
+    return at.replace(tzinfo=UTC) if at.tzinfo is None else at
 
 
-def _check_object(
-    rule: dict[str, Any], value: object, where: str, say: Callable[[str], None]
-) -> None:
-    if not isinstance(value, dict):
-        say(f"{where} is no object")
-        return
-    for name, inner in rule.items():
-        if name in value:
-            _check(inner, value[name], f"{where}.{name}", say)
-        else:
-            say(f"{where}.{name} is missing")
-
-
-def header_of(manufacturer: str, serial: str) -> dict[str, Any]:
+def header_of(manufacturer: str, serial: str, version: str = USUAL) -> dict[str, Any]:
     """Return the header of a robot's messages, before the first one."""
     return {
         "headerId": 0,
         "timestamp": "",
-        "version": VERSION,
+        "version": VERSIONS[version][0],
         "manufacturer": manufacturer,
         "serialNumber": serial,
     }
@@ -244,3 +189,14 @@ def _edge(a: dict[str, Any], b: dict[str, Any]) -> dict[str, Any]:
         "endNodeId": b["nodeId"],
         "actions": [],
     }
+
+
+def result_of(action: dict[str, Any]) -> dict[str, Any]:
+    """Return what a robot said of an action; empty if nothing of it can be read."""
+    try:
+        said = json.loads(action.get("resultDescription") or "{}")
+    except ValueError:
+        return {}
+    if not isinstance(said, dict) or not isinstance(said.get("found"), bool | None):
+        return {}
+    return said

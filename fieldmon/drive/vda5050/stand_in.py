@@ -10,14 +10,14 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.drive.vda5050.messages import decoded, encoded, header_of
+from fieldmon.drive.vda5050.messages import MAP, decoded, encoded, header_of
 from fieldmon.drive.vda5050.wire import Wire
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fieldmon.drive.vda5050.wire import Broker
+    from fieldmon.drive.vda5050.wire import Broker, RobotName
 
 # the standard wants a state every 30 s at least
 _STATE_EVERY_S = 5.0
@@ -32,8 +32,10 @@ class _Self:
     node: str = ""
     sequence: int = 0
     place: tuple[float, float] | None = None
+    theta: float = 0.0
     day_s: float = 0.0
     todo: list[dict[str, Any]] = field(default_factory=list)
+    edges: list[dict[str, Any]] = field(default_factory=list)
     actions: dict[str, dict[str, Any]] = field(default_factory=dict)
     errors: list[dict[str, Any]] = field(default_factory=list)
     battery: float = 100.0
@@ -46,7 +48,7 @@ class StandIn:
     Parameters
     ----------
     broker, robot
-        Where, and under which manufacturer and serial number.
+        Where, and under which name.
     look
         Told a plant; says whether it is found infested.
     speed_m_s
@@ -58,18 +60,20 @@ class StandIn:
     def __init__(
         self,
         broker: Broker,
-        robot: tuple[str, str],
+        robot: RobotName,
         look: Callable[[int], bool | None],
         speed_m_s: float = 2.5 / 3.6,
         faster: float = 1.0,
     ) -> None:
-        self._header, self._look = header_of(*robot), look
-        self._speed_m_s, self._faster = speed_m_s, faster
+        self._headers = {kind: header_of(*robot) for kind in ("state", "connection")}
+        self._look = look
+        self.name, self._speed_m_s, self._faster = robot, speed_m_s, faster
         self.self = _Self()
-        broken = encoded("connection", dict(self._header), {"connectionState": "CONNECTIONBROKEN"})
-        hears, name = ("order", "instantActions"), f"stand-in-{robot[1]}"
+        broken = encoded("connection", header_of(*robot), {"connectionState": "CONNECTIONBROKEN"})
+        hears, name = ("order", "instantActions"), f"stand-in-{robot.serial}"
         self.wire = Wire(broker, name, robot, hears, ("connection", broken))
         self._connected("ONLINE")
+        self.wire.connected = lambda: self._connected("ONLINE")
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self.run, daemon=True)
 
@@ -107,13 +111,13 @@ class StandIn:
             "driving": False,
             "paused": me.paused,
             "nodeStates": [_part(one, "nodeId") for one in me.todo],
-            "edgeStates": [],
+            "edgeStates": [_part(one, "edgeId") for one in me.edges],
             "actionStates": list(me.actions.values()),
             "agvPosition": {
                 "x": place[0],
                 "y": place[1],
-                "theta": 0.0,
-                "mapId": "map",
+                "theta": me.theta,
+                "mapId": MAP,
                 "positionInitialized": me.place is not None,
             },
             "batteryState": {"batteryCharge": me.battery, "charging": False},
@@ -124,7 +128,7 @@ class StandIn:
             ],
             "safetyState": {"eStop": "NONE", "fieldViolation": False},
         }
-        self.wire.send("state", encoded("state", self._header, body))
+        self.wire.send("state", encoded("state", self._headers["state"], body))
 
     def _hear(self) -> None:
         try:
@@ -149,24 +153,27 @@ class StandIn:
             return
         me.update = order["orderUpdateId"]
         me.todo = [one for one in order["nodes"] if one["sequenceId"] > me.sequence]
+        me.edges = [one for one in order["edges"] if one["sequenceId"] > me.sequence]
         for node in me.todo:
             if node["released"]:
                 for action in node["actions"]:
                     me.actions[action["actionId"]] = _action(action, "WAITING")
 
     def _drive_on(self) -> bool:
-        """Drive to the next released node and do what is to be done there; tell whether any."""
+        """Drive to the next released node and do what is to be done there; return whether any."""
         me = self.self
         if me.paused or me.errors or not me.todo or not me.todo[0]["released"]:
             return False
         node = me.todo.pop(0)
         there = (node["nodePosition"]["x"], node["nodePosition"]["y"])
-        self._pass(0.0 if me.place is None else math.dist(me.place, there) / self._speed_m_s)
+        if me.place is not None and there != me.place:
+            me.theta = math.atan2(there[1] - me.place[1], there[0] - me.place[0])
+            self._pass(math.dist(me.place, there) / self._speed_m_s)
         me.place, me.node, me.sequence = there, node["nodeId"], node["sequenceId"]
+        me.edges = [one for one in me.edges if one["sequenceId"] > me.sequence]
         for action in node["actions"]:
             self._do(action)
-        # a corner is passed without a word
-        return bool(node["actions"]) or not me.todo or not me.todo[0]["released"]
+        return True
 
     def _do(self, action: dict[str, Any]) -> None:
         told = {one["key"]: one["value"] for one in action.get("actionParameters", [])}
@@ -182,7 +189,7 @@ class StandIn:
         self._stop.wait(seconds / self._faster)
 
     def _connected(self, state: str) -> None:
-        data = encoded("connection", self._header, {"connectionState": state})
+        data = encoded("connection", self._headers["connection"], {"connectionState": state})
         self.wire.send("connection", data, kept=True)
 
 

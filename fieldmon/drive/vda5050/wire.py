@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import queue
+import socket
+import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
+from fieldmon.drive.vda5050.versions import USUAL, VERSIONS
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
 _KEEP_ALIVE_S = 15
+# a lost connection is sought again after so long, and twice as long each time, up to
+_SEEK_S, _SEEK_AT_MOST_S = 1.0, 10.0
 
 
 class Broker(NamedTuple):
@@ -53,6 +58,29 @@ class Broker(NamedTuple):
         return cls(parts.hostname, port or usual, parts.username, parts.password, encrypted)
 
 
+class RobotName(NamedTuple):
+    """What a robot is called in its topics, and the version of VDA 5050 that it speaks."""
+
+    manufacturer: str
+    serial: str
+    version: str = USUAL
+
+    def check(self) -> None:
+        """Raise `SettingError` if a name holds what parts or stands for topics."""
+        for name in self[:2]:
+            if not name or set(name) & set("/+#$"):
+                raise SettingError(
+                    "Manufacturer and serial number of a robot must have no /, +, # or $, and not "
+                    f"be empty, but one is {name!r}."
+                )
+
+    @property
+    def topic(self) -> str:
+        """Return what its topics begin with; raise `SettingError` as `check` does."""
+        self.check()
+        return f"{VERSIONS[self.version][1]}/{self.manufacturer}/{self.serial}"
+
+
 class Wire:
     """One end of a robot's topics; needs ``pip install fieldmon[robot]``.
 
@@ -65,7 +93,7 @@ class Wire:
     name
         Of this end, the same after a restart.
     robot
-        Manufacturer and serial number, which name the topics.
+        Whose topics.
     hears
         Kinds of messages that come to this end.
     will
@@ -76,18 +104,21 @@ class Wire:
         self,
         broker: Broker,
         name: str,
-        robot: tuple[str, str],
+        robot: RobotName,
         hears: Iterable[str],
         will: tuple[str, bytes] | None = None,
     ) -> None:
         mqtt = _paho()
         self.heard: queue.Queue[tuple[str, bytes]] = queue.Queue()
-        self._topic = f"uagv/v2/{robot[0]}/{robot[1]}"
+        #: when a message of each kind came last, by `time.monotonic`
+        self.heard_at: dict[str, float] = {}
+        self.robot, self._topic = robot, robot.topic
         self._hears = [f"{self._topic}/{kind}" for kind in hears]
         client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=name, clean_session=False)
         client.on_message = self._on_message
         client.on_connect = self._on_connect
-        client.reconnect_delay_set(min_delay=1, max_delay=10)
+        client.on_socket_open = _at_once
+        client.reconnect_delay_set(_SEEK_S, _SEEK_AT_MOST_S)
         if broker.user is not None:
             client.username_pw_set(broker.user, broker.password)
         if broker.encrypted:
@@ -95,6 +126,8 @@ class Wire:
         if will is not None:
             client.will_set(f"{self._topic}/{will[0]}", will[1], qos=1, retain=True)
         self.client: Any = client
+        #: called whenever there is a connection again
+        self.connected: Callable[[], None] = lambda: None
         try:
             client.connect(broker.host, broker.port, _KEEP_ALIVE_S)
         except OSError as error:
@@ -116,9 +149,17 @@ class Wire:
     def _on_connect(self, client: Any, *_: object) -> None:  # noqa: ANN401 - paho's own
         for topic in self._hears:
             client.subscribe(topic, qos=1)
+        self.connected()
 
     def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
-        self.heard.put((message.topic.rpartition("/")[2], message.payload))
+        kind = message.topic.rpartition("/")[2]
+        self.heard_at[kind] = time.monotonic()
+        self.heard.put((kind, message.payload))
+
+
+def _at_once(_client: object, _data: object, line: Any) -> None:  # noqa: ANN401 - a socket
+    """Let small messages go at once: else each waits for the last one's receipt, 40 ms."""
+    line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 
 def _paho() -> Any:  # noqa: ANN401 - loaded late

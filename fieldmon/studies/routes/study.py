@@ -8,7 +8,7 @@ import time
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
-from fieldmon.planning.routes.ladder import sweep
+from fieldmon.planning.routes.ladder import best_walk
 from fieldmon.studies.routes import milp, vrp
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.heuristics import HEURISTICS
@@ -50,9 +50,9 @@ def run(
     one.
     """
     # loops are loaded first: their compiling is not the walk's time
-    sweep(instance.reward[:2, :2], 8)
+    best_walk(instance.reward[:2, :2], 8)
     for share in shares:
-        exact = _by_sweep(instance, share)
+        exact = _by_ladder(instance, share)
         yield exact
         for method in methods:
             if method == MILP:
@@ -62,11 +62,11 @@ def run(
                 yield _by_heuristic(exact, instance, method, solver_s)
 
 
-def _by_sweep(instance: Instance, share: float) -> MethodOutcome:
+def _by_ladder(instance: Instance, share: float) -> MethodOutcome:
     reward = instance.reward
     budget, total = int(full_budget(*reward.shape) * share), float(reward.sum())
     began = time.perf_counter()
-    walk = sweep(reward, budget).walk(budget)
+    walk = best_walk(reward, budget)
     took_s = time.perf_counter() - began
     checked = driven(walk.place, reward)
     if abs(checked.reward - walk.reward) > _SAME * max(total, 1.0) or checked.steps > budget:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.planning.routes.ladder import sweep
+from fieldmon.planning.routes.ladder import best_walk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,7 +80,7 @@ class _Search:
     def look(self, k: int) -> None:
         """Take the best walk in what the others leave."""
         rest = np.where(self.taken(k) | self.banned[k][:, None], 0.0, self.reward)
-        self.places[k] = sweep(rest, self.budget).walk(self.budget).place
+        self.places[k] = best_walk(rest, self.budget).place
 
     def improve(self) -> None:
         """Look for one walk after the other, as long as they hold more together."""
@@ -133,7 +133,7 @@ def _all_steps(reward: Float, budget: int, n_walks: int) -> float:
     m, n = reward.shape
     # with so many everything is passed
     together = min(n_walks * budget, (m + 1) * (n + 1) + 2 * m)
-    return float(sweep(reward, together).walk(together).reward)
+    return float(best_walk(reward, together).reward)
 
 
 def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
@@ -142,7 +142,7 @@ def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
     price = direction = np.zeros(reward.shape)
     least, kept, step, in_vain = np.inf, price, 1.0, 0
     for _ in range(_PRICES):
-        walk = sweep(np.maximum(reward - price, 0.0), budget).walk(budget)
+        walk = best_walk(np.maximum(reward - price, 0.0), budget)
         value = float(price.sum()) + n_walks * walk.reward
         if value < least:
             least, kept, in_vain = value, price, 0

@@ -6,7 +6,7 @@ from app.actions import deciding as acting
 from app.words import texts
 from fieldmon.decisions.thresholds import published
 from fieldmon.io.writers.treatment_map import FORMATS
-from tests.app.driving import go, texts_of
+from tests.app.driving import go, press, texts_of
 
 
 def test_every_file_that_the_library_writes_is_offered_by_name():
@@ -24,6 +24,24 @@ def test_leaves_that_were_counted_have_a_verdict_with_its_source(season_app):
     assert "Zalom" in texts_of(season_app)
     season_app.number_input(key="decide counted").set_value(50).run()
     assert "No more leaves can be infested" in season_app.warning[0].value
+
+
+def test_thresholds_of_ones_own_are_brought_and_the_answer_takes_them(season_app):
+    table = b"name,measure,level,source\ntomato,share of plants,0.2,our adviser\n"
+    go(season_app, "decide")
+    season_app.file_uploader(key="thresholds_file").upload("own.csv", table, "text/csv").run()
+    press(season_app, texts.DECIDE_OWN_TAKE)
+    assert "1 threshold can be chosen" in season_app.success[0].value
+    assert season_app.selectbox(key="decide leaves of").value == "tomato"
+    assert "our adviser" in texts_of(season_app)
+    press(season_app, "Treat from 20.0% of the plants on")
+    assert season_app.number_input(key="decide level").value == 20.0
+    assert "treating pays from 20.0% on" in texts_of(season_app)
+    wrong = b"name,measure,level,source\ntomato,mites,1,we\n"
+    season_app.file_uploader(key="thresholds_file").set_value([]).run()
+    season_app.file_uploader(key="thresholds_file").upload("bad.csv", wrong, "text/csv").run()
+    press(season_app, texts.DECIDE_OWN_TAKE)
+    assert "bad.csv, threshold 1" in season_app.error[0].value
 
 
 def test_zones_that_were_treated_are_noted_with_what_was_advised(season_app, season):

@@ -29,7 +29,17 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     season_app.date_input(key="harvest None").set_value(begins)
     season_app.run()
     assert season().settings.harvest == begins
-    noted(season_app, dose=0.5, unit="l/ha", water=800, operator="Ann", reason="mites", days=3)
+    noted(
+        season_app,
+        dose=0.5,
+        unit="l/ha",
+        water=800,
+        operator="Ann",
+        reason="mites",
+        days=3,
+        active_ingredient="fenpyroximate",
+        weather="18 °C, 2 m/s",
+    )
     assert not season_app.error
     said = season_app.success[0].value
     assert "Treatment noted." in said
@@ -37,6 +47,8 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     assert "is too soon after Acarol" in said
     (one,) = season().treatments()
     assert (str(one.application.dose), one.application.operator) == ("0.5 l/ha", "Ann")
+    assert one.application.active_ingredient == "fenpyroximate"
+    assert one.application.weather == "18 °C, 2 m/s"
     assert (one.application.waiting_days, one.application.reentry_hours) == (3, 12.0)
     page = texts_of(go(season_app, "season"))
     assert "harvest is allowed from" in page

@@ -115,3 +115,11 @@ def rows_of(chart, number):
     made = spec(chart)
     name = made["layer"][number].get("data", made.get("data"))["name"]
     return made["datasets"][name]
+
+
+def test_days_of_two_years_stay_in_their_order_and_are_named_as_told():
+    days = [DayFigures(date(2026, 12, 31), 4, 1, 9.0, 1, 20, 0.0),
+            DayFigures(date(2027, 1, 1), 4, 0, 8.0, 1, 19, 0.0)]  # fmt: skip
+    chart = charts.still_out(days, ("day", "left"), lambda on: f"{on:%d.%m}")
+    assert [row["day"] for row in rows(chart)] == ["31.12", "01.01"]
+    assert spec(chart)["layer"][0]["encoding"]["x"]["sort"] is None

@@ -21,8 +21,7 @@ def shown(monkeypatch):
         monkeypatch.setattr(st, "caption", lines.append)
         monkeypatch.setattr(st, "altair_chart", lambda chart, **_: lines.append(chart.to_dict()))
         monkeypatch.setattr(forecast.chosen_day, "forecast", lambda _: made)
-        monkeypatch.setattr(forecast, "_day", lambda _: "2026-12-25")
-        forecast.show(None)
+        forecast.show(SimpleNamespace(day="2026-12-25", units=UnitsInLanguage()))
         return lines[1:]
 
     return show

@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from app.state import brought_files, tried_answers
@@ -46,3 +47,25 @@ def test_one_answer_leads_to_the_plot(asked):
     assert re.match(r"Map of plot .*square", map_of(asked)["alt"])
     file = asked.session_state["brought"][brought_files.PLOT]
     assert asked.session_state[f"answers {file.asked}"] == (("crs", "EPSG:2039"),)
+
+
+def test_answers_about_records_are_drawn_around_the_plot_and_say_how_many_lie_on_it(tmp_path):
+    east, north = np.array(square().to_crs(2039).centroid[0].coords[0])
+    lines = [f"{east + k};{north + k};2026-11-0{k + 1};{k % 2}" for k in range(4)]
+    app = upload(opened(), plot=("plot.zip", zipped(tmp_path, square())))
+    app.file_uploader(key="record_file").upload(
+        "r.csv", "\n".join(["x;y;date;count", *lines]).encode()
+    )
+    app.run()
+    assert not app.exception
+    assert "are not used on this plot" in texts_of(app)
+    pick = next(b for b in app.button if b.key.startswith("pick ") and "EPSG:2039" in b.label)
+    assert "4 of 4 on the plot, 2 finds" in pick.label
+    number = int(pick.label.split(" · ")[0]) - 1
+    assert len(layer(app, f"answer-dots-{number}")["data"]) == 4
+    assert layer(app, "boundary")
+    assert map_of(app)["taps"]
+    pick.click().run()
+    assert not app.exception
+    assert len(layer(app, "records")["data"]) == 4
+    assert layer(app, f"answer-dots-{number}") is None

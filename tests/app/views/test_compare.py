@@ -12,7 +12,7 @@ def test_strategies_are_compared_and_the_best_is_put_to_use(app):
     assert "press Compare" in texts_of(app)
     app.button(key="run").click().run()
     for _ in range(300):
-        if len(app.dataframe) and app.button(key="stop").disabled:
+        if len(app.dataframe) and app.button(key="run_stop").disabled:
             break
         app.run()
     assert not app.exception
@@ -33,7 +33,7 @@ def test_what_a_second_robot_would_save_on_this_plot_is_said(app):
     app.number_input(key="n_days").set_value(3).run()
     app.button(key="run").click().run()
     for _ in range(300):
-        if len(app.dataframe) and app.button(key="stop").disabled:
+        if len(app.dataframe) and app.button(key="run_stop").disabled:
             break
         app.run()
     assert not app.exception

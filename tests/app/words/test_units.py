@@ -1,5 +1,7 @@
 """Lengths and areas: in English as the library writes them, else as the language does."""
 
+from datetime import date
+
 import pytest
 
 from app.words.units import LENGTHS, UnitsInLanguage, hours, usual
@@ -23,3 +25,10 @@ def test_units_and_numbers_are_those_of_the_language(speaking):
     assert UnitsInLanguage().metres(1234.5) == "1,23 km"
     assert hours(7.25) == "7,2 h"
     assert UnitsInLanguage().lengths()[0] == (0.1, "0,1 m")
+
+
+def test_a_day_on_an_axis_has_no_year_and_the_order_of_the_language():
+    on = date(2026, 11, 16)
+    assert UnitsInLanguage().short_day(on) == "11-16"
+    assert usual("he").short_day(on) == "16.11"
+    assert usual("es").short_day(on) == "16/11"

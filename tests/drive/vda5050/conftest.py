@@ -8,13 +8,13 @@ import time
 
 import pytest
 
-from fieldmon.drive.vda5050.wire import Broker
+from fieldmon.drive.vda5050.wire import Broker, RobotName
 
-ROBOT = ("fieldmon", "robot1")
+ROBOT = RobotName("fieldmon", "robot1")
 
 
 @pytest.fixture(scope="session")
-def broker():
+def broker(tmp_path_factory):
     path = f"{os.environ.get('PATH', '')}:/usr/sbin:/usr/local/sbin"
     program = shutil.which("mosquitto", path=path)
     if program is None:
@@ -24,7 +24,9 @@ def broker():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    with subprocess.Popen([program, "-p", str(port)], stderr=subprocess.DEVNULL) as running:
+    told = tmp_path_factory.mktemp("broker") / "mosquitto.conf"
+    told.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\n")
+    with subprocess.Popen([program, "-c", str(told)], stderr=subprocess.DEVNULL) as running:
         until = time.monotonic() + 20
         while True:
             try:
@@ -34,3 +36,9 @@ def broker():
                 assert time.monotonic() < until
         yield Broker("127.0.0.1", port)
         running.terminate()
+
+
+@pytest.fixture(autouse=True)
+def _soon(monkeypatch):
+    """Seek a lost connection again at once."""
+    monkeypatch.setattr("fieldmon.drive.vda5050.wire._SEEK_S", 0.02)

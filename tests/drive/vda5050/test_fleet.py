@@ -9,7 +9,7 @@ from fieldmon.drive.charged import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
 from fieldmon.drive.vda5050.stand_in import StandIn
-from fieldmon.drive.vda5050.wire import Wire
+from fieldmon.drive.vda5050.wire import RobotName, Wire
 from fieldmon.monitoring.monitor import Monitor
 from tests.drive.vda5050.conftest import ROBOT
 
@@ -27,7 +27,7 @@ def drive(broker, plot, robot, monitor, order_id, mishap=nothing, **fleet):
     said = []
     other = StandIn(broker, ROBOT, fleet.pop("look", seen), robot.speed_m_s, faster=1e6)
     wire = Wire(broker, "fleet", ROBOT, ("state", "connection"))
-    driver = Vda5050Robot(wire, ROBOT, order_id, said.append, **fleet)
+    driver = Vda5050Robot(wire, order_id, said.append, **fleet)
     other.start()
     try:
         with monitor.day() as day:
@@ -119,8 +119,9 @@ def test_a_pause_is_waited_for_and_said(broker, plot, robot, monitor):
 
 
 def test_a_robot_that_is_never_heard_ends_the_day(broker, plot, robot, monitor):
-    wire = Wire(broker, "fleet", ("fieldmon", "nobody"), ("state", "connection"))
-    driver = Vda5050Robot(wire, ("fieldmon", "nobody"), "x", patience_s=0.5)
+    nobody = RobotName("fieldmon", "nobody")
+    wire = Wire(broker, "fleet", nobody, ("state", "connection"))
+    driver = Vda5050Robot(wire, "x", patience_s=0.5)
     with monitor.day() as day:
         driven = drive_day(day, plot.aisles.for_robot(robot), (robot, driver))
     wire.close()

@@ -14,8 +14,8 @@ from fieldmon.drive.vda5050.messages import (
     header_of,
     home_order,
     order_of,
-    problems,
 )
+from fieldmon.drive.vda5050.rules import problems
 from fieldmon.errors import ObservationError
 from fieldmon.monitoring.monitor import PlantToInspect
 

@@ -87,3 +87,12 @@ def test_the_geojson_comes_back_filled_in(tmp_path):
     assert imported.value.plant.tolist() == plan.route.plant[[0, 1, 3]].tolist()
     assert imported.value.result.tolist() == [FOUND, CLEAN, FOUND]
     assert imported.value.date.astype(str).tolist() == ["2026-11-18"] * 3
+
+
+def test_figures_of_the_day_have_three_decimals_and_stops_are_counted_from_one(tmp_path, plan):
+    line, *stops = geojson_of(plan, tmp_path)["features"]
+    route, said = plan.route, line["properties"]
+    for name, value in (("seconds", route.end_s), ("drive_m", route.drive_m)):
+        assert said[name] == round(value, 3)
+    assert [stop["properties"]["order"] for stop in stops] == list(range(1, len(route) + 1))
+    assert all("block" not in stop["properties"] for stop in stops)  # there is one only

@@ -123,3 +123,27 @@ def test_comment_and_description_say_the_same_as_converters_drop_one_of_them(tmp
     for waypoint in gpx_of(plan, tmp_path).iter(f"{GPX}wpt"):
         assert waypoint.find(f"{GPX}cmt").text == waypoint.find(f"{GPX}desc").text
         assert "plant" in waypoint.find(f"{GPX}cmt").text
+
+
+def test_the_bounds_hold_every_place_and_nothing_more(tmp_path, plan):
+    root = gpx_of(plan, tmp_path)
+    bounds = root.find(f"{GPX}metadata/{GPX}bounds")
+    every = [p for kind in ("wpt", "rtept", "trkpt") for p in root.iter(f"{GPX}{kind}")]
+    assert (bounds is not None) == bool(every)
+    if every:
+        lonlat = places(every)
+        low, high = (
+            [float(bounds.get(f"{end}{k}")) for k in ("lon", "lat")] for end in ("min", "max")
+        )
+        np.testing.assert_array_equal(low, lonlat.min(axis=0))
+        np.testing.assert_array_equal(high, lonlat.max(axis=0))
+
+
+def test_the_pieces_of_a_line_are_numbered_and_one_alone_has_the_name_of_the_day(tmp_path, plan):
+    root = gpx_of(plan, tmp_path)
+    for kind in ("rte", "trk"):
+        names = [part.findtext(f"{GPX}name") for part in root.iter(f"{GPX}{kind}")]
+        if len(names) == 1:
+            assert names == [plan.title]
+        else:
+            assert names == [f"{plan.title} {k}/{len(names)}" for k in range(1, len(names) + 1)]

@@ -5,6 +5,7 @@ import re
 import zipfile
 from dataclasses import fields, is_dataclass
 from decimal import Decimal
+from importlib.resources import files
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -13,6 +14,7 @@ import shapely
 from isoxml.converter.np_grid import to_numpy_array
 from isoxml.converter.shapely_geom import ShapelyConverterV3, ShapelyConverterV4
 from isoxml.util.isoxml_io import isoxml_from_path
+from lxml import etree
 from shapely import MultiPolygon, Point
 
 from fieldmon.errors import SettingError
@@ -116,6 +118,24 @@ def test_all_attributes_are_as_the_schemas_classes_demand(tmp_path, version, kin
     made = isoxml_taskdata("x" * 60, PLOT, zones, 99_999.0, "y" * 60, version=version)
     data, _ = read(made, tmp_path)
     assert list(breaches(data)) == []
+
+
+@pytest.fixture(scope="module")
+def schema():
+    """Return the standard's own schema of version 4.3, as the PyPI package isoxml-writer has it."""
+    file = files("isoxml_writer") / "ISOXML_schema" / "ISO11783_TaskFile_V4-3.xsd"
+    return etree.XMLSchema(etree.parse(str(file)))
+
+
+@pytest.mark.parametrize("kind", [None, 1, 2])
+def test_version_4_is_valid_against_the_standards_own_schema(schema, kind):
+    zones = ZONES if kind is None else zone_cells(PLOT, ZONES, 4.0, kind)
+    made = isoxml_taskdata("x" * 60, PLOT, zones, 99_999.0, "y" * 60, version=4)
+    with zipfile.ZipFile(io.BytesIO(made)) as archive:
+        task_data = etree.fromstring(archive.read("TASKDATA/TASKDATA.XML"))
+    schema.assertValid(task_data)
+    task_data.find("PFD").set("C", "z" * 40)
+    assert not schema.validate(task_data)
 
 
 def test_a_breach_of_the_schema_would_be_seen(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.planning.routes.ladder import sweep
+from fieldmon.planning.routes.ladder import best_walk
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.instances import full_budget, zipf
 from fieldmon.studies.routes.team_walks import meetings, team_walks
@@ -66,7 +66,7 @@ def test_nobody_meets_and_budgets_are_kept(m, n, n_walks, seed):
 def test_one_walk_is_the_exact_one():
     reward = zipf((12, 9), 1.9, 1).reward
     team = team_walks(reward, 60, 1)
-    assert team.reward == pytest.approx(sweep(reward, 60).walk(60).reward)
+    assert team.reward == pytest.approx(best_walk(reward, 60).reward)
 
 
 def test_two_in_one_row_at_one_step_are_seen_and_one_after_the_other_are_not():

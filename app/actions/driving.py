@@ -1,0 +1,51 @@
+"""Let a planned day be driven by a simulated robot."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.drive.simulated import CHARGED, MUJOCO, MadeUp
+from fieldmon.samplers import sampler
+
+from ..state import cached, widget_memory
+from ..words import texts
+from ..words.language import of_error
+from . import background
+
+if TYPE_CHECKING:
+    from fieldmon.samplers.base import Scene
+
+    from ..state.choices import Choices
+    from ..state.driving import DriveRun
+
+
+def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
+    """Ask who drives a planned day, and let it be driven; return it, done or to be."""
+    kinds = [CHARGED, *([MUJOCO] if find_spec("mujoco") else [])]
+    kind = widget_memory.show(
+        st.segmented_control, texts.DRIVE_ROBOT, kinds, key="drive_robot", default=CHARGED,
+        required=True, format_func=texts.DRIVE_ROBOTS.__getitem__,
+    )  # fmt: skip
+    share = widget_memory.show(
+        st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key="drive_share", default=2.0
+    )
+    st.caption(texts.DRIVE_MADE_UP)
+    made_up = MadeUp(share / 100)
+    made = cached.drive_run(key, kind, made_up, choices.plot, scene, sampler(choices.sampler))
+    background.buttons(made, texts.DRIVE_RUN, key="drive_run", over=made.day is not None)
+    st.fragment(_progress, run_every=0.5 if made.running else None)(made, at_work=made.running)
+    return made
+
+
+def _progress(run: DriveRun, *, at_work: bool) -> None:
+    if at_work and not run.running:
+        st.rerun()  # the map must know
+    if run.problem is not None:
+        st.error(of_error(run.problem))
+    if run.running:
+        st.progress(run.share, texts.DRIVE_PROGRESS.format(share=round(100 * run.share)))
+    if run.said:
+        st.warning(run.said)

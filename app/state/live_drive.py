@@ -1,0 +1,102 @@
+"""A day that a robot drives now, listened to over VDA 5050. No Streamlit in here."""
+
+from __future__ import annotations
+
+import secrets
+import threading
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.drive.trace import Trace
+from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
+from fieldmon.drive.vda5050.wire import Wire
+from fieldmon.monitoring.history import BeliefSettings
+
+from .background import BackgroundWork
+from .driving import DayInTime
+
+if TYPE_CHECKING:
+    from fieldmon.drive.errand import Float
+    from fieldmon.drive.vda5050.wire import Broker, RobotName
+    from fieldmon.samplers.base import Scene
+
+_EVERY_S = 0.25
+#: nobody has looked for so long: then it is listened to no more
+UNSEEN_S = 120.0
+
+
+class LiveDrive(BackgroundWork):
+    """What a robot does now, for whoever looks; it ends when nobody looks any more.
+
+    Parameters
+    ----------
+    broker, robot
+        Where it is heard, and which one.
+    scene
+        The plot, and what was believed before.
+    """
+
+    def __init__(self, broker: Broker, robot: RobotName, scene: Scene) -> None:
+        super().__init__()
+        self._where, self.scene = (broker, robot), scene
+        self._watcher: RobotWatcher | None = None
+        self._believed: list[tuple[float, Float]] = []
+        self._lock, self._seen_at = threading.Lock(), time.monotonic()
+
+    def start(self) -> None:
+        """Begin to listen."""
+        if not self.running:
+            self.problem, self._believed, self._watcher = None, [], None
+            self._seen_at = time.monotonic()
+            self.begin()
+
+    def work(self) -> None:
+        """Listen until it is stopped, or nobody looks."""
+        broker, robot = self._where
+        # another name each time: what was missed by one who is gone is of no use
+        wire = Wire(broker, f"fieldmon-seen-{secrets.token_hex(4)}", robot, HEARS)
+        watcher = RobotWatcher(wire, self.scene.grid)
+        self._watcher = watcher
+        try:
+            while time.monotonic() - self._seen_at < UNSEEN_S and not self._stop.wait(_EVERY_S):
+                with self._lock:
+                    watcher.take()
+        finally:
+            wire.close()
+
+    def heard(self) -> Heard:
+        """Return how the robot stands."""
+        self._seen_at = time.monotonic()
+        if (watcher := self._watcher) is None:
+            return _NOT_YET
+        with self._lock:
+            watcher.take()
+            return watcher.heard()
+
+    def seen(self) -> tuple[DayInTime, tuple[Float, int], Heard]:
+        """Return the day so far with what is believed, the way ordered, and how it stands."""
+        self._seen_at = time.monotonic()
+        watcher = self._watcher
+        if watcher is None:
+            return DayInTime(Trace(np.empty((0, 4)), ()), []), (np.empty((0, 2)), 0), _NOT_YET
+        with self._lock:
+            watcher.take()
+            trace = watcher.trace()
+            self._learn(trace)
+            return DayInTime(trace, [*self._believed]), watcher.way, watcher.heard()
+
+    def _learn(self, trace: Trace) -> None:
+        """Believe what was told since it was looked at last."""
+        told = [one for one in trace.stops if one.found is not None]
+        if told and (not self._believed or self._believed[-1][0] < told[-1].done_s):
+            scene, settings = self.scene, BeliefSettings()
+            morning = settings.first_morning(scene.grid, scene.chance)
+            plants = np.array([one.plant for one in told], np.int32)
+            found = np.array([one.found for one in told], np.bool_)
+            now = settings.evening(morning, plants, found, scene.robot.detects)
+            self._believed.append((told[-1].done_s, now.chance))
+
+
+_NOT_YET = Heard(WAITING, None)

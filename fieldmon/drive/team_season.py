@@ -1,0 +1,190 @@
+"""A day of a season driven by a team: one batch, and a find by one is planned for by all."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.drive.aisle_keeper import AisleKeeper
+from fieldmon.drive.season_day import LATE_S, as_inspection, begun_batch
+from fieldmon.errors import ObservationError, SettingError
+from fieldmon.monitoring.monitor import PlantToInspect
+from fieldmon.monitoring.settings import seconds
+from fieldmon.plot.travel import GATE, travel_s
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    from fieldmon.monitoring.season_file import Season
+    from fieldmon.planning.members import TeamMember
+    from fieldmon.planning.plan import DayPlan
+    from fieldmon.plot.travel import Aisles
+
+
+class _Stands(NamedTuple):
+    """Where one of a team stands, and how many seconds of its day are gone."""
+
+    at: int
+    gone_s: float
+
+
+class TeamSeason:
+    """A day of a season that several drive; each has a `MemberDay` to ask and tell.
+
+    May be asked from several threads. Whatever is told is in the file before the next is asked.
+
+    Parameters
+    ----------
+    season, on
+        The season, which has a team, and the day.
+    source
+        What the batch is called.
+
+    Raises
+    ------
+    SettingError
+        If the season has no team.
+    """
+
+    def __init__(self, season: Season, on: date, source: str = "robots") -> None:
+        self.team = season.settings.team
+        if not self.team:
+            raise SettingError("A day of several robots needs a season with a team (--robots).")
+        self.season, self.on = season, on
+        self.keeper = AisleKeeper()
+        self.lock = threading.RLock()
+        self.source = f"{source} {on}"
+        self.batch = begun_batch(season, self.source)
+        self.replanned = 0
+        #: plants that somebody has set out for
+        self.errands: dict[str, int] = {}
+        grid = season.plot.grid
+        self.aisle = grid.corridor[grid.row]
+        today = season.history.inspections.on(on)
+        self.done: set[int] = set(today.plant.tolist())
+        self.plan()
+
+    def __repr__(self) -> str:
+        """Say which day of which season, and of how many."""
+        return f"<TeamSeason {self.on} of {self.season.path.name}: {len(self.team)} members>"
+
+    def member(self, name: str) -> MemberDay:
+        """Return the day of one of the team."""
+        return MemberDay(self, self.season.settings.member(name))
+
+    def plan(self) -> None:
+        """Plan the rest of the day for all, each from where it was told of last."""
+        with self.lock:
+            days = self.season.plan_each(self.on, keep=self.batch is None)
+            self.days = dict(zip((one.name for one in self.team), days, strict=True))
+            self.replanned += 1
+
+
+class MemberDay:
+    """The day of one of a team, asked for the next plant and told what was seen there."""
+
+    def __init__(self, team: TeamSeason, member: TeamMember) -> None:
+        self._team, self._member = team, member
+        self._asked: PlantToInspect | None = None
+        scene = team.days[member.name].scene
+        self.aisles: Aisles = scene.aisles
+        self._stands = _Stands(scene.at, member.robot.day_s - scene.seconds_left)
+
+    def __repr__(self) -> str:
+        """Say whose day it is."""
+        return f"<MemberDay of {self._member.name}: {self._team!r}>"
+
+    @property
+    def at(self) -> int:
+        """Where it stands: a plant, or -1 for the gate."""
+        return self._stands.at
+
+    @property
+    def gone_s(self) -> float:
+        """Seconds of its day that are gone."""
+        return self._stands.gone_s
+
+    def ask(self) -> PlantToInspect | None:
+        """Return the plant to inspect next; None where its hours allow no other.
+
+        Never one that another has set out for, nor one in an aisle where another stays for today.
+        """
+        team, name = self._team, self._member.name
+        with team.lock:
+            if self._asked is None and (left := self._left()):
+                team.errands[name] = left[0]
+                self._asked = self._stop(left[0])
+            return self._asked
+
+    def ahead(self, n: int) -> list[int]:
+        """Return up to n plants that follow the one asked for if nothing is found."""
+        with self._team.lock:
+            return [plant for plant in self._left() if plant != self._errand][:n]
+
+    def tell(self, found: bool | None, at_s: float | None = None) -> None:  # noqa: FBT001 - a result
+        """Record what was seen at the plant that was asked for, and when; see `SeasonDay.tell`."""
+        stop, team = self._asked, self._team
+        if stop is None:
+            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
+        done_s = stop.arrive_s + stop.inspect_s
+        now_s = done_s if at_s is None else at_s
+        with team.lock:
+            self._record(stop.plant, found, now_s)
+            self._asked, self._stands = None, _Stands(stop.plant, now_s)
+            team.errands.pop(self._member.name, None)
+            team.done.add(stop.plant)
+            if found or found is None or abs(now_s - done_s) > LATE_S:
+                team.plan()
+
+    @property
+    def _errand(self) -> int:
+        return self._team.errands.get(self._member.name, GATE)
+
+    @property
+    def _today(self) -> DayPlan:
+        return self._team.days[self._member.name]
+
+    def _left(self) -> list[int]:
+        """Return the plants of its route that are still its to inspect, as its hours allow."""
+        team, name = self._team, self._member.name
+        taken = team.done | {plant for who, plant in team.errands.items() if who != name}
+        free = [
+            plant
+            for plant in self._today.route.plant.tolist()
+            if plant not in taken and not team.keeper.blocked(name, [int(team.aisle[plant])])
+        ]
+        while free and not self._fits(free[0]):
+            del free[0]
+        return free
+
+    def _fits(self, plant: int) -> bool:
+        robot, travel, clock = self._member.robot, self.aisles.travel, self._today.scene.clock
+        home_s = travel_s(travel, clock, plant, GATE) if robot.returns else 0.0
+        return self._arrive_s(plant) + robot.visit_s + home_s <= robot.day_s
+
+    def _arrive_s(self, plant: int) -> float:
+        clock = self._today.scene.clock
+        return self.gone_s + float(travel_s(self.aisles.travel, clock, self.at, plant))
+
+    def _stop(self, plant: int) -> PlantToInspect:
+        season, route = self._team.season, self._today.route
+        k = int(np.flatnonzero(route.plant == plant)[0])
+        lon, lat = season.plot.grid.lonlat(np.array([plant]))[0]
+        return PlantToInspect(
+            plant=plant,
+            row=int(season.label.line[plant]),
+            number=int(season.label.number[plant]),
+            lonlat=(float(lon), float(lat)),
+            arrive_s=self._arrive_s(plant),
+            inspect_s=float(route.leave_s[k] - route.arrive_s[k]),
+            detects=float(route.detects[k]),
+        )
+
+    def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
+        team = self._team
+        starts_s = seconds(team.season.settings.starts) + self._member.starts_s
+        one = as_inspection(plant, found, (team.on, starts_s + now_s), self._member.name)
+        done = team.season.record(one, team.source, into=team.batch)
+        team.batch = team.batch or done.batch

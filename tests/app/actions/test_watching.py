@@ -1,0 +1,16 @@
+"""A robot that drives now is watched."""
+
+from app.words import texts
+from tests.app.driving import go, map_of, press, until
+
+
+def test_a_robot_that_drives_now_is_asked_for_and_what_is_wrong_is_said(app):
+    go(app, "drive")
+    app.segmented_control(key="drive_source").set_value("live").run()
+    assert any(one.value == texts.DRIVE_LIVE for one in app.caption)
+    app.text_input(key="drive_broker").set_value("127.0.0.1:1").run()
+    press(app, texts.DRIVE_WATCH)
+    until(lambda: any("must answer" in one.value for one in app.run().error))
+    assert map_of(app)["drive"] is None
+    app.text_input(key="drive_serial").set_value("a/b").run()
+    assert "must have no /" in app.error[0].value

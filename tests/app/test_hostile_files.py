@@ -1,0 +1,162 @@
+"""Texts that do harm in every text field of every readable format: read as text, shown as text."""
+
+import re
+from pathlib import Path
+
+import geopandas as gpd
+import numpy as np
+import openpyxl
+import pandas as pd
+import pytest
+from shapely import Point
+
+from app.words import language, texts
+from fieldmon.io.options import PlotOptions, RecordOptions, Upload
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from fieldmon.io.sandbox import tasks
+from tests.app.test_hostile_texts import EVERY, EVIL, LEADS
+from tests.awkward import DAY, HERE, SECOND, SQUARE
+from tests.more_awkward import _TASKS, ods, pfd, pln
+from tests.old_workbook import xls
+from tests.paths import ROOT
+
+LONG = f"{EVERY} {'x' * 10_000}"
+# what a text may not bring along: whoever reads it would read something else
+_CONTROLS = re.compile("[\u202a-\u202e\u2066-\u2069]")
+WRITTEN = {  # by GDAL: the format's name, and how the file is called
+    "geojson": "GeoJSON",
+    "gpkg": "GPKG",
+    "kml": "KML",
+    "gml": "GML",
+    "fgb": "FlatGeobuf",
+    "tab": "MapInfo File",
+    "mif": "MapInfo File",
+    "shp": "ESRI Shapefile",
+    "sqlite": "SQLite",
+}
+LETTERS = {"tab": 250, "mif": 250, "shp": 250}  # as many as fit into a field of these
+
+
+def in_xml(text):
+    return (
+        text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")
+    )
+
+
+def by_gdal(folder, kind, frame):
+    """Write a frame by GDAL; return the file."""
+    options = {"SPATIALITE": "YES", "INIT_WITH_EPSG": "NO"} if kind == "sqlite" else {}
+    if kind == "mif":
+        options = {"FORMAT": "MIF"}
+    path = folder / f"data.{kind}"
+    frame.to_file(path, driver=WRITTEN[kind], engine="pyogrio", **options)
+    return path
+
+
+def table_of(kind, rows, folder):
+    """Write rows, the names of columns first, as a table of a kind."""
+    frame = pd.DataFrame(rows[1:], columns=rows[0])
+    if kind == "xlsx":
+        book = openpyxl.Workbook()
+        for row in rows:
+            book.active.append(row)
+        book.save(folder / "data.xlsx")
+        return folder / "data.xlsx"
+    if kind == "ods":
+        return Upload(
+            "data.ods", ods([[in_xml(v) if isinstance(v, str) else v for v in row] for row in rows])
+        )
+    text = frame.to_csv(index=False, sep="\t" if kind == "tsv" else ",")
+    return Upload(f"data.{kind}", text.encode())
+
+
+def shown_as_text(read):
+    """Hold what was read, and what is said about it, to be text wherever it is shown."""
+    for said in read.messages:
+        line = language.in_words(said.sentence)
+        assert not (EVIL in line and LEADS.search(line)), line[:300]
+
+
+def held_as_text(text, letters):
+    """Hold one text to be the one that was written, shown on a page and in the app."""
+    words = re.findall(r"\w+", EVERY[: letters - 10])
+    assert set(words[:-1]) <= set(re.findall(r"\w+", text)), text[:300]
+    assert not LEADS.search(texts.isolated(text)), text[:300]
+    assert not _CONTROLS.search(texts.isolated(text).strip("\u2066\u2067\u2068\u2069"))
+
+
+PLOTS = [*WRITTEN, "parquet", "csv", "xlsx", "ods", "xml"]
+
+
+@pytest.mark.parametrize("kind", PLOTS)
+def test_the_name_of_a_plot_is_text_whatever_format_it_comes_in(tmp_path, kind):
+    name = LONG[: LETTERS.get(kind, 20_000)]
+    frame = gpd.GeoDataFrame({"name": [name, "B"]}, geometry=[SQUARE, SECOND], crs=4326)
+    if kind in WRITTEN:
+        source = by_gdal(tmp_path, kind, frame)
+    elif kind == "parquet":
+        frame.to_parquet(tmp_path / "data.parquet")
+        source = tmp_path / "data.parquet"
+    elif kind == "xml":
+        body = pfd(1, in_xml(name), pln(1, SQUARE)) + pfd(2, "B", pln(1, SECOND))
+        source = Upload("TASKDATA.XML", _TASKS.format(body=body).encode())
+    else:
+        rows = [["WKT", "name"], [SQUARE.wkt, name], [SECOND.wkt, "B"]]
+        source = table_of(kind, rows, tmp_path)
+    (tmp_path / "room").mkdir()
+    read = tasks.plots(str(tmp_path / "room"), source, PlotOptions())
+    assert len(read.value) == 2
+    (own,) = (field.name for field in read.value if field.name != "B")  # in any order
+    held_as_text(own, LETTERS.get(kind, len(EVERY)))
+    shown_as_text(read)
+
+
+def points(kind, rows, folder):
+    """Write rows with ``lon`` and ``lat`` as points or as a table."""
+    if kind == "xls":
+        return Upload("data.xls", xls(rows))
+    if kind not in WRITTEN:
+        return table_of(kind, rows, folder)
+    frame = pd.DataFrame(rows[1:], columns=rows[0])
+    where = [Point(*place) for place in frame[["lon", "lat"]].to_numpy()]
+    frame = gpd.GeoDataFrame(frame.drop(columns=["lon", "lat"]), geometry=where, crs=4326)
+    return by_gdal(folder, kind, frame)
+
+
+@pytest.mark.parametrize("kind", ["csv", "tsv", "xlsx", "ods", "xls", "geojson", "gpkg", "shp"])
+def test_species_and_stage_of_a_record_are_text_whatever_format_they_come_in(tmp_path, kind):
+    said = EVERY[:250] if kind in LETTERS else EVERY if kind == "xls" else LONG
+    rows = [["lon", "lat", "date", "count", "species", "stage"], [*HERE[0], DAY, 7, said, said]]
+    (tmp_path / "room").mkdir()
+    source = points(kind, rows, tmp_path)
+    read = tasks.records(str(tmp_path / "room"), source, RecordOptions(), None)
+    (species,), (stage,) = read.value.species.tolist(), read.value.stage.tolist()
+    for text in (species, stage):
+        held_as_text(text, LETTERS.get(kind, len(EVERY)))
+    shown_as_text(read)
+
+
+@pytest.mark.parametrize("kind", ["csv", "tsv", "xlsx", "ods", "xls", "geojson", "gpkg", "shp"])
+def test_who_inspected_and_noted_what_is_text_whatever_format_it_comes_in(tmp_path, kind):
+    said = EVERY[:250] if kind in LETTERS else EVERY if kind == "xls" else LONG
+    rows = [["lon", "lat", "result", "who", "notes"], [*HERE[0], "found", said, said]]
+    (tmp_path / "room").mkdir()
+    source, options = points(kind, rows, tmp_path), InspectionOptions(day=np.datetime64(DAY))
+    read = tasks.inspection_rows(str(tmp_path / "room"), source, options)
+    said_of = read.value
+    for text in (*said_of.notes.tolist(), *said_of.who.tolist()):
+        held_as_text(str(text), LETTERS.get(kind, len(EVERY)))
+    shown_as_text(read)
+
+
+def test_what_is_drawn_in_the_browser_makes_no_markup_of_texts():
+    """The map's and the scout's scripts write texts as texts; only signs of their own are drawn."""
+    markup = re.compile(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|DOMParser")
+    found = [
+        line.strip()
+        for room in ("map_view", "scout_page")
+        for path in sorted(Path(ROOT / "app" / room / "src").rglob("*.js"))
+        for line in path.read_text("utf-8").splitlines()
+        if markup.search(line)
+    ]
+    assert [line for line in found if "SIGNS[kind]" not in line] == []

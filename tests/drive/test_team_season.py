@@ -1,0 +1,90 @@
+"""A team's day in a season: asked and told by each, one batch, planned for all after a find."""
+
+import pytest
+
+from fieldmon.drive.team_season import TeamSeason
+from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.planning.members import team_of
+from fieldmon.plot.robot import Robot
+from tests.drive.test_season_day import ON
+
+
+def season_of(plot, path, members):
+    robot = Robot(hours=0.3)
+    team = team_of(members, robot) if members else ()
+    return Season.create(path, plot, None, MonitoringSettings(ON, robot=robot, team=team))
+
+
+@pytest.fixture
+def team(plot, tmp_path):
+    return TeamSeason(season_of(plot, tmp_path / "season.gpkg", 2), ON)
+
+
+def test_each_is_asked_for_plants_of_its_own_route(team):
+    days = [team.member(name) for name in ("robot-1", "robot-2")]
+    asked = [day.ask().plant for day in days]
+    assert asked == [team.days[name].route.plant[0] for name in ("robot-1", "robot-2")]
+    assert len(set(asked)) == 2
+    assert days[0].ask().plant == asked[0]  # the same until it is told
+
+
+def test_a_find_by_one_is_planned_for_by_the_other(team):
+    one, other = team.member("robot-1"), team.member("robot-2")
+    first, errand = one.ask(), other.ask()
+    before = team.replanned
+    one.tell(found=True)
+    assert team.replanned == before + 1
+    # who has set out for a plant inspects it, and nobody else does
+    assert other.ask() == errand
+    assert errand.plant not in [one.ask().plant, *one.ahead(50)]
+    assert first.plant not in other.ahead(50)
+
+
+def test_what_all_tell_is_one_batch_with_each_ones_name(team):
+    days = {name: team.member(name) for name in ("robot-1", "robot-2")}
+    told = []
+    for k in range(6):
+        name = f"robot-{1 + k % 2}"
+        told.append((days[name].ask().plant, name))
+        days[name].tell(found=k == 4)
+    held = team.season.history.inspections
+    assert sorted(zip(held.plant.tolist(), held.who.tolist(), strict=True)) == sorted(told)
+    assert (held.result == FOUND).sum() == 1
+    assert [batch.rows for batch in team.season.batches()] == [6]
+
+
+def test_after_a_crash_each_goes_on_where_it_was_told_of_last(team):
+    day = team.member("robot-2")
+    plant = day.ask().plant
+    day.tell(found=False)
+    again = TeamSeason(Season(team.season.path), ON)
+    assert again.batch == team.batch
+    assert again.member("robot-2").at == plant
+    assert again.member("robot-2").gone_s == pytest.approx(day.gone_s, abs=1.0)
+    assert again.member("robot-1").at == -1
+    assert plant not in again.member("robot-1").ahead(500)
+
+
+def test_no_way_leads_into_an_aisle_where_another_stays_for_today(team):
+    one, other = team.member("robot-1"), team.member("robot-2")
+    aisle = int(team.aisle[one.ask().plant])
+    team.keeper.enter("robot-2", [aisle])
+    team.keeper.end("robot-2")
+    team.errands.clear()
+    one._asked = None
+    left = [one.ask().plant, *one.ahead(500)]
+    assert aisle not in {int(team.aisle[plant]) for plant in left}
+    assert other.ask() is not None
+
+
+def test_a_season_without_a_team_is_refused(plot, tmp_path):
+    with pytest.raises(SettingError, match="a team"):
+        TeamSeason(season_of(plot, tmp_path / "alone.gpkg", 0), ON)
+
+
+def test_nothing_is_told_of_a_plant_that_nobody_asked_for(team):
+    with pytest.raises(ObservationError, match="asked for"):
+        team.member("robot-1").tell(found=False)

@@ -1,0 +1,123 @@
+"""Several robots in one day: each its own order, one season, and nobody in another's aisle."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from fieldmon.drive.team_season import TeamSeason
+from fieldmon.drive.vda5050.stand_in import StandIn
+from fieldmon.drive.vda5050.team import drive_team
+from fieldmon.drive.vda5050.wire import RobotName
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.planning.members import Teamwork, team_of
+from fieldmon.plot.robot import Robot
+from tests.drive.test_season_day import ON
+from tests.drive.vda5050.conftest import ROBOT
+
+NAMES = ("robot-1", "robot-2", "robot-3")
+
+
+@pytest.fixture
+def season(plot, tmp_path):
+    robot = Robot(hours=0.2)
+    # aisles are given out anew for any gain, so that ways cross
+    settings = MonitoringSettings(
+        ON, robot=robot, team=team_of(3, robot), teamwork=Teamwork(least_gain=0.0)
+    )
+    return Season.create(tmp_path / "season.gpkg", plot, None, settings)
+
+
+class Watched(StandIn):
+    """A robot that says in which aisles it is while it drives; two in one are noted."""
+
+    def __init__(self, broker, name, look, ground):
+        super().__init__(broker, RobotName(ROBOT.manufacturer, name), look, 0.7, faster=2000.0)
+        self.ground = ground
+
+    def _drive_on(self):
+        me = self.self
+        if me.paused or me.errors or not me.todo or not me.todo[0]["released"]:
+            return False
+        place = me.todo[0]["nodePosition"]
+        there = (place["x"], place["y"])
+        self.ground.moves(self.name.serial, me.place or there, there)
+        done = super()._drive_on()
+        self.ground.moves(self.name.serial, there, there)
+        return done
+
+
+class Ground:
+    """Which aisles lie between two places, and who is in them."""
+
+    def __init__(self, grid):
+        self.grid, self.lock = grid, threading.Lock()
+        self.inside, self.met, self.visited = {}, [], set()
+
+    def aisles(self, a, b):
+        frame = self.grid.frame
+        ends = frame.xy_m(frame.turned(90.0).lonlat(np.array([a, b])))
+        grid, found = self.grid, set()
+        for x, y in np.linspace(*ends, 50):
+            near = np.abs(grid.lane_y_m - y) < 0.3
+            near &= (grid.lane_x_m[:, 0] + 0.05 < x) & (x < grid.lane_x_m[:, 1] - 0.05)
+            found |= set(grid.corridor[near].tolist())
+        return found
+
+    def moves(self, name, a, b):
+        now = self.aisles(a, b)
+        with self.lock:
+            for other, held in self.inside.items():
+                if other != name and held & now:
+                    self.met.append((name, other, held & now))
+            self.inside[name] = now
+            self.visited |= now
+
+
+def seen(plant):
+    return plant % 4 == 0
+
+
+def test_a_teams_day_is_driven_once_by_all_and_nobody_is_in_anothers_aisle(broker, season):
+    ground, said = Ground(season.plot.grid), []
+    robots = [Watched(broker, name, seen, ground) for name in NAMES]
+    for one in robots:
+        one.start()
+    day = TeamSeason(season, ON)
+    driven = drive_team(day, broker, ROBOT, said.append)
+    for one in robots:
+        one.stop()
+    told = season.history.inspections.on(ON)
+    assert ground.met == []
+    assert len(ground.visited) > 3
+    plants = [stop.stop.plant for name in NAMES for stop in driven[name].stops]
+    assert len(plants) == len(set(plants)) > 10
+    assert sorted(told.plant.tolist()) == sorted(plants)
+    assert (told.result == FOUND).tolist() == [seen(plant) for plant in told.plant.tolist()]
+    assert {*told.who.tolist()} == {*NAMES}
+    for name in NAMES:
+        assert driven[name].stuck == []
+        own = told.plant[told.who == name].tolist()
+        assert own == [stop.stop.plant for stop in driven[name].stops]
+    assert len(season.batches()) == 1
+    # every find is planned for by all
+    assert day.replanned > sum(one.found for one in driven.values()) > 0
+
+
+def test_a_robot_that_breaks_down_blocks_its_aisle_and_the_others_go_on(broker, season):
+    robots = [StandIn(broker, RobotName(ROBOT.manufacturer, name), seen, 0.7, 1e6)
+              for name in NAMES]  # fmt: skip
+    robots[0].self.errors = [
+        {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
+    ]
+    for one in robots:
+        one.start()
+    driven = drive_team(TeamSeason(season, ON), broker, ROBOT)
+    for one in robots:
+        one.stop()
+    assert "left wheel" in driven[NAMES[0]].stuck[0]
+    for name in NAMES[1:]:
+        assert len(driven[name].stops) > 3
+        assert driven[name].stuck == []

@@ -2,9 +2,17 @@
 
 import os
 import shutil
+import sys
 
 import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
+
+from tests.both_ends import BothEnds, in_order
+
+# tests start some hundred processes: what these and the other worker import is made into bytecode
+# once, whatever the environment says
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # each property is tried on so many examples instead of its own number: see `thorough` below
 EXAMPLES = int(os.environ.get("FIELDMON_EXAMPLES", "0"))
@@ -36,7 +44,13 @@ def thorough(test):
     test.add_marker(pytest.mark.timeout(0))
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    return BothEnds(config, log) if config.getoption("dist") == "loadfile" else None
+
+
 def pytest_collection_modifyitems(items):
+    in_order(items)
     if EXAMPLES:
         for test in items:
             if is_hypothesis_test(getattr(test, "obj", None)):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import gettext
 import re
 from contextvars import ContextVar
-from functools import cache
+from functools import cache, lru_cache
 from io import BytesIO
 from numbers import Real
 from pathlib import Path
@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Any, Self
 from fieldmon.compute.wording import Worded
 from fieldmon.reports.tongue import ENGLISH as ENGLISH_TONGUE
 from fieldmon.reports.tongue import Tongue
+
+from .kept_sentences import KnownSentences, sentences
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,6 +40,8 @@ SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_n
 # signs that embed, override or isolate a direction, and their ends (Unicode Standard Annex 9)
 _TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
 _LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
+
+_NUMBER = re.compile(r"[+−-]?\d[\d,]*(\.\d+)?")
 
 _NOW: ContextVar[str | None] = ContextVar("language", default=None)
 _ASKED: list[Callable[[], str]] = []
@@ -187,6 +191,13 @@ class _Catalogue(gettext.GNUTranslations):
         texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
         return [*texts_.values()]
 
+    def words_in(self, context: str) -> list[str]:
+        """Return the English of the texts of a context that have one form."""
+        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
+        before = f"{context}\x04"
+        keys = (key for key in texts_ if isinstance(key, str))
+        return [key.removeprefix(before) for key in keys if key.startswith(before)]
+
 
 class _Unknown(gettext.NullTranslations):
     """Says nothing of what a catalogue has no words for."""
@@ -210,7 +221,7 @@ def in_words(sentence: str) -> str:
     language = current()
     if language == ENGLISH or not sentence:
         return leading_nowhere(str(sentence))
-    said = _said(sentence, language)
+    said = _said(sentence, language) or _said_again(str(sentence), language)
     return leading_nowhere(marked_as_english(sentence) if said is None else said)
 
 
@@ -260,6 +271,54 @@ def _said(sentence: object, language: str) -> str | None:
         for name, value in sentence.values.items()
     }
     return _filled(form, language, (), values)
+
+
+@lru_cache(maxsize=2_000)
+def _said_again(text: str, language: str) -> str | None:
+    """Return sentences that were kept as plain text in a language; None if one is not known."""
+    rest, made = sentences(text), []
+    while rest:
+        for n in range(len(rest), 0, -1):  # a sentence of the library may be several
+            said = _one_again(" ".join(rest[:n]), language)
+            if said is not None:
+                made.append(said)
+                rest = rest[n:]
+                break
+        else:
+            return None
+    return " ".join(made)
+
+
+def _one_again(sentence: str, language: str) -> str | None:
+    told = _known(language).told(sentence)
+    if told is None:
+        return None
+    words, blanks = told
+    form = _catalogue(language).pgettext(LIBRARY, words)
+    values = {
+        name: _one_again(value, language) or _number_again(value, language)
+        for name, value in blanks.items()
+    }
+    return _AsKept().vformat(form, (), values) if form else None
+
+
+def _number_again(value: str, language: str) -> str:
+    return _separated(value, language) if _NUMBER.fullmatch(value) else value
+
+
+@cache
+def _known(language: str) -> KnownSentences:
+    return KnownSentences(_catalogue(language).words_in(LIBRARY))
+
+
+class _AsKept(Formatter):
+    """Fills blanks with what stood there, written already."""
+
+    def convert_field(self, value: Any, conversion: Any) -> Any:  # noqa: ANN401, ARG002
+        return value
+
+    def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401, ARG002
+        return str(value)
 
 
 def _is_wordless(words: str) -> bool:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+import os
+import time
 from contextlib import suppress
 from pathlib import Path
 from types import FunctionType
@@ -14,6 +16,11 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 
 from fieldmon.compute.jit_progress import FIRST_USE
+
+try:
+    import fcntl
+except ImportError:  # on Windows every process compiles for itself
+    fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,16 +43,62 @@ class _Compiling(event.Listener):
         """Pass it on."""
         FIRST_USE.began()
 
-    def on_end(self, _: object) -> None:
-        """Pass it on."""
+    def on_end(self, ended: Any) -> None:  # noqa: ANN401 - numba has no types
+        """Pass it on; a loop that could not be compiled will not be kept either."""
         FIRST_USE.ended()
+        loop = ended.data["dispatcher"]
+        loops = loop._cache  # noqa: SLF001 - as `kept` sets it
+        if isinstance(loops, _KeptLoops) and tuple(ended.data["args"]) not in loop.overloads:
+            loops.end_turn()
 
 
 event.register("numba:compile", _Compiling())  # type: ignore[no-untyped-call]
 
 
+class _Turns:
+    """Files of whose loops this process compiles one, while all others wait for it."""
+
+    #: who waits longer compiles, too: the other may hang
+    most_s = 120.0
+
+    def __init__(self) -> None:
+        self._held: dict[str, tuple[int, int]] = {}
+
+    def take(self, file: str) -> None:
+        """Wait until no other process compiles loops of this file."""
+        descriptor, depth = self._held.get(file, (-1, 0))
+        if depth == 0 and fcntl is not None:
+            with suppress(OSError):
+                descriptor = os.open(file, os.O_RDONLY)
+                end = time.monotonic() + self.most_s
+                while not _locked(descriptor) and time.monotonic() < end:
+                    time.sleep(0.02)
+        self._held[file] = descriptor, depth + 1
+
+    def end(self, file: str) -> None:
+        """Let others go on, once this was called as often as `take`."""
+        descriptor, depth = self._held.pop(file, (-1, 0))
+        if depth > 1:
+            self._held[file] = descriptor, depth - 1
+        elif descriptor >= 0:
+            os.close(descriptor)
+
+
+def _locked(descriptor: int) -> bool:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+_TURNS = _Turns()
+
+
 class _KeptLoops(FunctionCache):
     """What numba keeps of a loop on disk; what cannot be loaded of it is compiled anew.
+
+    Processes that need the same loop at the same time compile it once.
 
     Numba's own raises what unpickling raises: for files that were cut short, and for those of an
     earlier version, where a named tuple that the loop takes had another name. And it looks at the
@@ -61,6 +114,30 @@ class _KeptLoops(FunctionCache):
             self._cache_file = IndexDataCacheFile(  # type: ignore[no-untyped-call]
                 self._cache_path, self._impl.filename_base, _stamps(self._py_func)
             )
+        found = self._loaded(sig, target_context)
+        if found is None:
+            _TURNS.take(self._file)
+            found = self._loaded(sig, target_context)
+            if found is not None:
+                self.end_turn()
+        return found
+
+    def save_overload(self, sig: object, data: object) -> None:
+        """Keep a loop that was compiled; others who wait for it can load it."""
+        try:
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+        finally:
+            self.end_turn()
+
+    def end_turn(self) -> None:
+        """Let other processes compile the loops of this file."""
+        _TURNS.end(self._file)
+
+    @property
+    def _file(self) -> str:
+        return str(self._py_func.__code__.co_filename)
+
+    def _loaded(self, sig: object, target_context: object) -> object:
         try:
             return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception as unloadable:  # noqa: BLE001 - a damaged pickle may raise anything

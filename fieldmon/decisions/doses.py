@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 # litres or kilograms
@@ -52,7 +53,10 @@ class Dose:
     def __post_init__(self) -> None:
         if not 0.0 < self.value < 1e6:
             raise SettingError(
-                f"A dose must be above 0, and below a million, but it is {self.value:g}."
+                worded(
+                    "A dose must be above 0, and below a million, but it is {value:g}.",
+                    value=self.value,
+                )
             )
         _parts(self.unit)
 
@@ -92,7 +96,10 @@ def _parts(unit: str) -> tuple[tuple[str, float], tuple[str, float]]:
     amount, slash, per = bare.partition("/")
     if not slash or amount not in _AMOUNTS or per not in _OF:
         raise SettingError(
-            "The unit of a dose must be an amount by what it is for, as l/ha, ml/dunam, kg/ha, "
-            f"g/100 l or %, but it is {unit!r}."
+            worded(
+                "The unit of a dose must be an amount by what it is for, as l/ha, "
+                "ml/dunam, kg/ha, g/100 l or %, but it is {unit!r}.",
+                unit=unit,
+            )
         )
     return _AMOUNTS[amount], _OF[per]

@@ -8,6 +8,7 @@ import re
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.decisions.doses import Dose
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.import_report import Imported, seen
@@ -85,11 +86,14 @@ class ProductLabel:
 
     def __post_init__(self) -> None:
         if not self.product.strip():
-            raise SettingError("A label must name its product, but this one names none.")
+            raise SettingError(worded("A label must name its product, but this one names none."))
         checked_waits(self.waiting_days, self.reentry_hours)
         if self.max_uses is not None and self.max_uses < 1:
             raise SettingError(
-                f"A label allows one use or more in a season, but this one allows {self.max_uses}."
+                worded(
+                    "A label allows one use or more in a season, but this one allows {max_uses}.",
+                    max_uses=self.max_uses,
+                )
             )
 
     def fits(self, product: str, crop: str, pest: str) -> bool:
@@ -104,10 +108,20 @@ def checked_waits(days: int | None, hours: float | None) -> None:
     """Raise `SettingError` unless waiting days and re-entry hours can be."""
     if days is not None and not (0 <= days <= MOST_DAYS and days == int(days)):
         raise SettingError(
-            f"A waiting period must be 0 to {MOST_DAYS} whole days, but it is {days:g}."
+            worded(
+                "A waiting period must be 0 to {most} whole days, but it is {days:g}.",
+                most=MOST_DAYS,
+                days=days,
+            )
         )
     if hours is not None and not 0 <= hours <= MOST_HOURS:
-        raise SettingError(f"Re-entry must be after 0 to {MOST_HOURS} hours, but it is {hours:g}.")
+        raise SettingError(
+            worded(
+                "Re-entry must be after 0 to {most} hours, but it is {hours:g}.",
+                most=MOST_HOURS,
+                hours=hours,
+            )
+        )
 
 
 def irac_groups(said: str) -> tuple[str, ...]:
@@ -123,8 +137,11 @@ def irac_groups(said: str) -> tuple[str, ...]:
     for one in found:
         if not re.fullmatch(r"\d{1,2}[A-Z]?|UN[A-Z]{0,2}", one):
             raise SettingError(
-                "A mode-of-action group must be one of IRAC, as 6, 4A or UN, several as 4A+28, "
-                f"but it is {said!r}."
+                worded(
+                    "A mode-of-action group must be one of IRAC, as 6, 4A or UN, "
+                    "several as 4A+28, but it is {said!r}.",
+                    said=said,
+                )
             )
     return tuple(dict.fromkeys(found))
 
@@ -168,7 +185,13 @@ def read_labels(source: Path | Upload) -> Imported[tuple[ProductLabel, ...]]:
     try:
         data = source.data if isinstance(source, Upload) else source.read_bytes()
     except OSError as error:
-        raise FileProblem(f"{name} must be readable, but it is not ({error.strerror}).") from error
+        raise FileProblem(
+            worded(
+                "{name} must be readable, but it is not ({strerror}).",
+                name=name,
+                strerror=error.strerror,
+            )
+        ) from error
     text, messages = decode(data)
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     head = lines[0] if lines else ""
@@ -178,16 +201,26 @@ def read_labels(source: Path | Upload) -> Imported[tuple[ProductLabel, ...]]:
     at = _columns(name, names)
     unread = [own for k, own in enumerate(names) if k not in at.values() and own.strip()]
     if unread:
-        messages = [*messages, seen(f"Columns that say nothing of labels: {', '.join(unread)}.")]
+        messages = [
+            *messages,
+            seen(worded("Columns that say nothing of labels: {names}.", names=", ".join(unread))),
+        ]
     made: list[ProductLabel] = []
     for line, cells in enumerate(table, 2):
         said = {role: cells[k].strip() for role, k in at.items() if k < len(cells)}
         if any(said.values()):
             made.append(_label(said, f"{name}, line {line}"))
     if not made:
-        raise FileProblem(f"{name} must hold a label or more, but it holds none.")
+        raise FileProblem(worded("{name} must hold a label or more, but it holds none.", name=name))
     if len(made) > _MOST_LINES:
-        raise FileProblem(f"{name} may hold {_MOST_LINES} labels, but it holds {len(made)}.")
+        raise FileProblem(
+            worded(
+                "{name} may hold {most} labels, but it holds {n}.",
+                name=name,
+                most=_MOST_LINES,
+                n=len(made),
+            )
+        )
     _refuse_two_of_one(name, made)
     return Imported(tuple(dict.fromkeys(made)), tuple(messages))
 
@@ -203,8 +236,13 @@ def _columns(name: str, names: list[str]) -> dict[str, int]:
     }
     if "product" not in at:
         raise FileProblem(
-            f"{name}: a label table must have a column product, and may have "
-            f"{', '.join(list(COLUMNS)[1:])}; but it has {', '.join(names) or 'none'}."
+            worded(
+                "{name}: a label table must have a column product, and may have "
+                "{names}; but it has {own}.",
+                name=name,
+                names=", ".join(list(COLUMNS)[1:]),
+                own=", ".join(names) or "none",
+            )
         )
     return at
 
@@ -218,13 +256,17 @@ def _label(said: Mapping[str, str], where: str) -> ProductLabel:
             _whole(said, "max_uses"), said.get("source", ""),
         )  # fmt: skip
     except SettingError as error:
-        raise FileProblem(f"{where}: {error}") from error
+        raise FileProblem(
+            worded("{where}: {problem}", where=where, problem=error.args[0])
+        ) from error
 
 
 def _dose(said: Mapping[str, str]) -> Dose | None:
     value, unit = _number(said, "max_dose"), said.get("unit", "")
     if value is not None and not unit:
-        raise SettingError(f"the dose is {value:g}, but of which unit is not said.")
+        raise SettingError(
+            worded("the dose is {value:g}, but of which unit is not said.", value=value)
+        )
     return None if value is None else Dose(value, unit)
 
 
@@ -241,14 +283,18 @@ def _number(said: Mapping[str, str], role: str) -> float | None:
         )
     value = number(cell, "," if "," in cell and "." not in cell else ".")
     if math.isnan(value):
-        raise SettingError(f"{role} must be a number, but it is {cell!r}.")
+        raise SettingError(
+            worded("{role} must be a number, but it is {cell!r}.", role=role, cell=cell)
+        )
     return value
 
 
 def _whole(said: Mapping[str, str], role: str) -> int | None:
     value = _number(said, role)
     if value is not None and value != int(value):
-        raise SettingError(f"{role} must be a whole number, but it is {value:g}.")
+        raise SettingError(
+            worded("{role} must be a whole number, but it is {value:g}.", role=role, value=value)
+        )
     return None if value is None else int(value)
 
 
@@ -261,8 +307,13 @@ def _refuse_two_of_one(name: str, made: list[ProductLabel]) -> None:
             differ = [f.name for f in fields(one) if getattr(one, f.name) != getattr(known, f.name)]
             of = " on ".join(part for part in (one.product, one.crop) if part)
             raise FileProblem(
-                f"{name}: two lines are about {of}, and differ in {', '.join(differ)}. Which "
-                "holds? Leave one of them, or name the crop or the pest of each."
+                worded(
+                    "{name}: two lines are about {of}, and differ in {names}. Which "
+                    "holds? Leave one of them, or name the crop or the pest of each.",
+                    name=name,
+                    of=of,
+                    names=", ".join(differ),
+                )
             )
 
 

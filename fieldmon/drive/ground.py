@@ -27,7 +27,7 @@ _BUMP_M = 1.0
 _ROUGHEST_M = 0.3
 
 
-class Ground(NamedTuple):
+class UnevenGround(NamedTuple):
     """Heights on an even grid in the plot's frame.
 
     Parameters
@@ -45,7 +45,7 @@ class Ground(NamedTuple):
     height_m: Float
 
     def __repr__(self) -> str:
-        return f"<Ground: up to {self.height_m.max():.2f} m, every {self.cell_m:g} m>"
+        return f"<UnevenGround: up to {self.height_m.max():.2f} m, every {self.cell_m:g} m>"
 
     def at(self, xy_m: Float) -> Float:
         """Return the height ``(k,)`` at places ``(k, 2)``, even between four heights."""
@@ -56,7 +56,7 @@ class Ground(NamedTuple):
         return heights
 
 
-def rough_ground(grid: PlantGrid, rough_m: float, seed: int = 1) -> Ground:
+def rough_ground(grid: PlantGrid, rough_m: float, seed: int = 1) -> UnevenGround:
     """Return ground with bumps about a metre apart.
 
     Parameters
@@ -89,7 +89,7 @@ def rough_ground(grid: PlantGrid, rough_m: float, seed: int = 1) -> Ground:
     return flat._replace(height_m=bumps - bumps.min())
 
 
-def ground_of_raster(grid: PlantGrid, field: Field, heights: Source) -> Ground:
+def ground_of_raster(grid: PlantGrid, field: Field, heights: Source) -> UnevenGround:
     """Return ground as a raster of heights has it; where it says nothing, as nearby.
 
     Raise what `read_raster` raises, and `FileProblem` where it holds no height of the plot.
@@ -109,10 +109,10 @@ def ground_of_raster(grid: PlantGrid, field: Field, heights: Source) -> Ground:
     return flat._replace(height_m=height_m - height_m.min())
 
 
-def _level(grid: PlantGrid) -> Ground:
+def _level(grid: PlantGrid) -> UnevenGround:
     low = grid.xy_m.min(axis=0) - MARGIN_M
     wide, deep = grid.xy_m.max(axis=0) + MARGIN_M - low
     # a very large plot has coarser ground
     cell = max(_CELL_M, float(np.sqrt(wide * deep / _MOST_CELLS)))
     shape = int(np.ceil(deep / cell)) + 1, int(np.ceil(wide / cell)) + 1
-    return Ground(low, cell, np.zeros(shape))
+    return UnevenGround(low, cell, np.zeros(shape))

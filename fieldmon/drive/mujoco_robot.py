@@ -13,7 +13,7 @@ from fieldmon.drive.pursuit import Pace, Pursuit
 from fieldmon.drive.robot_body import RobotBody
 from fieldmon.drive.steered_pursuit import SteeredPursuit
 from fieldmon.drive.track import Track
-from fieldmon.drive.turning_circle import Room, way_of
+from fieldmon.drive.turning_circle import TurningRoom, way_of
 from fieldmon.drive.world import lay_ground, world_xml
 from fieldmon.errors import SettingError
 from fieldmon.plot.clearance import STRAY_M, half_canopy_m
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fieldmon.drive.errand import Errand, Float
-    from fieldmon.drive.ground import Ground
+    from fieldmon.drive.ground import UnevenGround
     from fieldmon.monitoring.monitor import PlantToInspect
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
@@ -54,7 +54,7 @@ class Physics(NamedTuple):
     body: RobotBody | None = None
     gnss_m: float = 0.0
     seed: int = 1
-    ground: Ground | None = None
+    ground: UnevenGround | None = None
 
     def __repr__(self) -> str:
         return f"<Physics: {self.gnss_m:g} m of noise>"
@@ -110,7 +110,7 @@ class MujocoRobot:
                                    for n in names])  # fmt: skip
         self._data.time, self._placed = gone_s, False
 
-    def _measured(self, aisles: Aisles, mujoco: Any) -> Room:  # noqa: ANN401
+    def _measured(self, aisles: Aisles, mujoco: Any) -> TurningRoom:  # noqa: ANN401
         """Return the room it needs to turn; raise `SettingError` if it is wider than was said."""
         low, high = self._body.box_m(self._model, mujoco)
         wide, long = float(high[1] - low[1]), float(high[0] - low[0])
@@ -128,7 +128,7 @@ class MujocoRobot:
         apart_m = half_canopy_m(aisles.grid) + STRAY_M / 2
         area = shapely.buffer(aisles.grid.drivable_m, _BEYOND_M)
         shapely.prepare(area)
-        return Room(self._wheels.turning_m, corners, aisles.grid.tree, apart_m, area)
+        return TurningRoom(self._wheels.turning_m, corners, aisles.grid.tree, apart_m, area)
 
     def visit(self, errand: Errand) -> Visit:
         """Drive to a plant and look at it."""

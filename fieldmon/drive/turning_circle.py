@@ -54,7 +54,7 @@ class Piece(NamedTuple):
         return f"<Piece {'ahead' if self.forward else 'back'}, {_length(self.line_m):.2f} m>"
 
 
-class Room(NamedTuple):
+class TurningRoom(NamedTuple):
     """What a robot needs to turn, and what stands in its way.
 
     Parameters
@@ -78,7 +78,7 @@ class Room(NamedTuple):
     area: BaseGeometry | None = None
 
     def __repr__(self) -> str:
-        return f"<Room to turn in {2 * self.radius_m:.1f} m>"
+        return f"<TurningRoom of {2 * self.radius_m:.1f} m>"
 
     def holds(self, line_m: Float) -> bool:
         """Tell whether places ``(k, 2)`` lie in its area, or their first already does not."""
@@ -114,7 +114,7 @@ class _Turn(NamedTuple):
     cost_m: float
 
 
-def way_of(line_m: Float, yaw: float, room: Room) -> tuple[list[Piece], Float | None]:
+def way_of(line_m: Float, yaw: float, room: TurningRoom) -> tuple[list[Piece], Float | None]:
     """Return the way along a line of a robot that heads so, and the corner that has no room.
 
     At a corner it takes the shortest of: one arc; three, five, seven or nine arcs ahead and back in
@@ -125,9 +125,9 @@ def way_of(line_m: Float, yaw: float, room: Room) -> tuple[list[Piece], Float | 
     --------
     >>> import numpy as np
     >>> from scipy.spatial import cKDTree
-    >>> from fieldmon.drive.turning_circle import Room, way_of
+    >>> from fieldmon.drive.turning_circle import TurningRoom, way_of
     >>> box = np.array([[-0.2, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.2, 0.3]])
-    >>> room = Room(1.0, box, cKDTree(np.array([[9.0, 9.0]])), 0.3)
+    >>> room = TurningRoom(1.0, box, cKDTree(np.array([[9.0, 9.0]])), 0.3)
     >>> way_of(np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]]), 0.0, room)
     ([<Piece ahead, 9.57 m>], None)
     """
@@ -154,7 +154,7 @@ def merged(pieces: list[Piece]) -> list[Piece]:
 class _Way:
     """A way in the making: pieces, and the stretch that is driven on until its end is known."""
 
-    def __init__(self, yaw: float, room: Room) -> None:
+    def __init__(self, yaw: float, room: TurningRoom) -> None:
         self.pieces: list[Piece] = []
         self._yaw, self._room = yaw, room
         self._line: Float | None = None
@@ -198,7 +198,7 @@ class _Way:
         self.pieces.append(Piece(part if along else part[::-1], self._forward == along))
 
 
-def _best_turn(corner: Float, yaw: float, error: float, room: Room) -> _Turn | None:
+def _best_turn(corner: Float, yaw: float, error: float, room: TurningRoom) -> _Turn | None:
     """Return the cheapest turn at a corner that has room; None: no turn has."""
     ways = [
         _turn(corner, yaw, total, (arcs, first), room.radius_m)
@@ -237,7 +237,7 @@ def _turn(
     return _Turn(begins_m, ends_m, moved, turn_of(yaw + total), cost + _SHUNT_M * (arcs - 1))
 
 
-def _fits(corner: Float, yaw: float, turn: _Turn, room: Room) -> bool:
+def _fits(corner: Float, yaw: float, turn: _Turn, room: TurningRoom) -> bool:
     """Tell whether a turn touches no plant, the ways from the corner and to it included."""
     come, leave = (np.array([math.cos(a), math.sin(a)]) for a in (yaw, turn.yaw))
     lines, yaws = [], []

@@ -12,7 +12,7 @@ from fieldmon.plot.clearance import half_canopy_m
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.drive.ground import Ground
+    from fieldmon.drive.ground import UnevenGround
     from fieldmon.plot.grid import PlantGrid
 
     Float = NDArray[np.float64]
@@ -22,7 +22,7 @@ _HEIGHT_M = 1.5
 _DEEP_M = 1.0
 
 
-def world_xml(grid: PlantGrid, step_s: float, ground: Ground | None = None) -> str:
+def world_xml(grid: PlantGrid, step_s: float, ground: UnevenGround | None = None) -> str:
     """Return a plot in MuJoCo's own format; its robot is put in by `RobotBody`.
 
     Plants are ``p0`` on, in the order of the grid; twin faces are one plant. Heights of uneven
@@ -52,13 +52,15 @@ def world_xml(grid: PlantGrid, step_s: float, ground: Ground | None = None) -> s
 {lies}{plants}</worldbody></mujoco>"""
 
 
-def lay_ground(model: object, ground: Ground) -> None:
+def lay_ground(model: object, ground: UnevenGround) -> None:
     """Fill heights in where a compiled world of `world_xml` keeps them: shares of the highest."""
     most_m = max(float(ground.height_m.max()), 1e-3)
     model.hfield_data[:] = (ground.height_m / most_m).ravel()  # type: ignore[attr-defined]
 
 
-def _surface(ground: Ground | None, level: tuple[float, float, float, float]) -> tuple[str, str]:
+def _surface(
+    ground: UnevenGround | None, level: tuple[float, float, float, float]
+) -> tuple[str, str]:
     """Return what the ground is made of, and where it lies."""
     x, y, wide, deep = level
     if ground is None:

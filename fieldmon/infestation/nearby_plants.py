@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
+from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import routine
 
 if TYPE_CHECKING:
@@ -43,10 +44,10 @@ class PlantRows(NamedTuple):
     @classmethod
     def of(cls, grid: PlantGrid) -> PlantRows:
         """Return the rows of a grid."""
-        y_m = np.ascontiguousarray(grid.xy_m[:, 1])
+        y_m = grid.xy_m[:, 1].copy()
         starts = grid.row_start[:-1]
         return cls(
-            np.ascontiguousarray(grid.xy_m[:, 0]),
+            grid.xy_m[:, 0].copy(),
             y_m,
             grid.row_start,
             np.minimum.reduceat(y_m, starts),
@@ -98,7 +99,7 @@ class SearchRows(NamedTuple):
         starts = np.flatnonzero(np.diff(strip[plant], prepend=-1))
         y_m = y[plant]
         low, high = (v.reduceat(y_m, starts) for v in (np.minimum, np.maximum))
-        return cls(PlantRows(x[plant], y_m, np.append(starts, len(y)), low, high), plant)
+        return cls(PlantRows(x[plant], y_m, read_only(np.append(starts, len(y))), low, high), plant)
 
     def sorted(self, values: Floats) -> Floats:
         """Return one value a plant ``(n,)`` in the order of the search."""

@@ -81,10 +81,18 @@ def rows_of_each(fields: Fields, rows: MultiLineString) -> Imported[Fields]:
     line, plot = line[most], plot[most]
     messages = []
     if left := len(lines) - len(np.unique(line)):
-        messages.append(dropped(f"{left} row(s) that lie on no plot were left out."))
+        messages.append(
+            dropped(worded("{left} row(s) that lie on no plot were left out.", left=left))
+        )
     if bare := len(fields) - len(np.unique(plot)):
         messages.append(
-            seen(f"On {bare} of {len(fields)} plots no rows were drawn; straight ones are laid.")
+            seen(
+                worded(
+                    "On {bare} of {n} plots no rows were drawn; straight ones are laid.",
+                    bare=bare,
+                    n=len(fields),
+                )
+            )
         )
     found = tuple(
         replace(field, row_lines=MultiLineString(list(lines[line[plot == k]])))
@@ -230,11 +238,16 @@ def blocks_of_each(fields: Fields, areas: tuple[Block, ...]) -> Imported[Fields]
         messages += said
     if not used:
         raise PlotError(
-            f"Blocks must lie on a plot, but none of {len(areas)} does. Choose the plot's own "
-            "blocks, or check the coordinate systems."
+            worded(
+                "Blocks must lie on a plot, but none of {n} does. Choose the "
+                "plot's own blocks, or check the coordinate systems.",
+                n=len(areas),
+            )
         )
     if len(areas) > used:
-        messages.append(dropped(f"{len(areas) - used} block(s) lie on none of the plots."))
+        messages.append(
+            dropped(worded("{n} block(s) lie on none of the plots.", n=len(areas) - used))
+        )
     return Imported(tuple(found), tuple(messages))
 
 
@@ -305,15 +318,28 @@ def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
     n_blocks = sum(len(field.blocks) for field in found)
     if not n_parted:
         raise PlotError(
-            f"A cut must pass through its plot from one side to the other, but none of "
-            f"{len(cuts.geoms)} lines does. Draw them across the plot."
+            worded(
+                "A cut must pass through its plot from one side to the other, but "
+                "none of {n} lines does. Draw them across the plot.",
+                n=len(cuts.geoms),
+            )
         )
     told = {"n": n_parted, "blocks": n_blocks}
     messages = [seen(worded("{n} line(s) part the plot into {blocks} blocks.", **told))]
     if len(fields) > 1:
-        messages = [seen(f"{n_parted} line(s) part plots into {n_blocks} blocks.")]
+        messages = [
+            seen(
+                worded(
+                    "{n} line(s) part plots into {blocks} blocks.",
+                    n=n_parted,
+                    blocks=n_blocks,
+                )
+            )
+        ]
     if (idle := len(cuts.geoms) - n_parted) > 0:
-        messages.append(dropped(f"{idle} line(s) pass through no plot and part nothing."))
+        messages.append(
+            dropped(worded("{idle} line(s) pass through no plot and part nothing.", idle=idle))
+        )
     return Imported(tuple(found), tuple(messages))
 
 
@@ -327,5 +353,7 @@ def guess_each(fields: Fields) -> Imported[Fields]:
             messages.append(guessed(said, field.name if len(fields) > 1 else None))
         found.append(field)
     if not messages:
-        messages.append(seen("The outline asks for no blocks: rows of one direction fill it well."))
+        messages.append(
+            seen(worded("The outline asks for no blocks: rows of one direction fill it well."))
+        )
     return Imported(tuple(found), tuple(messages))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -102,11 +103,20 @@ class Increase:
     def __post_init__(self) -> None:
         if not self.at_c or len(self.at_c) != len(self.per_day):
             raise SettingError(
-                "An increase must have as many rates per_day as temperatures at_c, one or more, "
-                f"but it has {len(self.per_day)} and {len(self.at_c)}."
+                worded(
+                    "An increase must have as many rates per_day as temperatures at_c, "
+                    "one or more, but it has {rates} and {temperatures}.",
+                    rates=len(self.per_day),
+                    temperatures=len(self.at_c),
+                )
             )
         if any(a >= b for a, b in pairwise(self.at_c)):
-            raise SettingError(f"Temperatures at_c must rise, but they are {list(self.at_c)}.")
+            raise SettingError(
+                worded(
+                    "Temperatures at_c must rise, but they are {temperatures}.",
+                    temperatures=list(self.at_c),
+                )
+            )
         for value in self.at_c:
             within = _TABLE_C[0] <= value <= _TABLE_C[1]
             _must("increase", "at_c", value, "-40 to 60 °C", within)
@@ -164,14 +174,21 @@ class Movement:
     def __post_init__(self) -> None:
         if self.kernel not in get_args(KernelName):
             raise SettingError(
-                f"A kernel must be one of {', '.join(get_args(KernelName))}, but it is "
-                f"{self.kernel!r}."
+                worded(
+                    "A kernel must be one of {names}, but it is {kernel!r}.",
+                    names=", ".join(get_args(KernelName)),
+                    kernel=self.kernel,
+                )
             )
         if self.wind not in ("none", "with"):
-            raise SettingError(f"The wind must be 'none' or 'with', but it is {self.wind!r}.")
+            raise SettingError(
+                worded("The wind must be 'none' or 'with', but it is {wind!r}.", wind=self.wind)
+            )
         adjacent = self.kernel == "adjacent"
         if not adjacent and self.reach_m is None:
-            raise SettingError(f"A kernel that is {self.kernel} must have a reach_m. Add it.")
+            raise SettingError(
+                worded("A kernel that is {kernel} must have a reach_m. Add it.", kernel=self.kernel)
+            )
         rule = "a chance in 0..1 where the kernel is adjacent" if adjacent else "0 or more"
         most = 1.0 if adjacent else math.inf
         _must("movement", "per_day", self.per_day, rule, 0 <= self.per_day <= most)
@@ -272,10 +289,14 @@ class Pest:
 
     def __post_init__(self) -> None:
         if not self.name:
-            raise SettingError("A pest must have a name, but it is empty.")
+            raise SettingError(worded("A pest must have a name, but it is empty."))
         if self.cutoff not in get_args(Cutoff):
             raise SettingError(
-                f"A cutoff must be one of {', '.join(get_args(Cutoff))}, but it is {self.cutoff!r}."
+                worded(
+                    "A cutoff must be one of {names}, but it is {cutoff!r}.",
+                    names=", ".join(get_args(Cutoff)),
+                    cutoff=self.cutoff,
+                )
             )
         for name in ("latency_days", "hidden_days"):
             _must("pest", name, getattr(self, name), "0 or more", getattr(self, name) >= 0)
@@ -315,4 +336,12 @@ class Pest:
 
 def _must(of: str, name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001
     if not (holds and math.isfinite(value)):
-        raise SettingError(f"The {name} of {of} must be {rule}, but it is {value:g}.")
+        raise SettingError(
+            worded(
+                "The {name} of {of} must be {rule}, but it is {value:g}.",
+                name=name,
+                of=of,
+                rule=rule,
+                value=value,
+            )
+        )

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.aisle_lines import RowAisles
 from fieldmon.plot.bent_layout import Blocked, Ground, RowLines, bent_grid, row_aisles
@@ -87,8 +88,13 @@ def _ground(field: Field, block: Block, planting: Planting) -> _BlockGround:
     ]
     if not parts:
         raise PlotError(
-            f"Blocks must lie on their plot, but block {block.name!r} does not overlap "
-            f"{field.name!r} where plants may stand. Leave it out, or draw it again."
+            worded(
+                "Blocks must lie on their plot, but block {name!r} does not "
+                "overlap {plot!r} where plants may stand. Leave it out, or draw "
+                "it again.",
+                name=block.name,
+                plot=field.name,
+            )
         )
     stated = {
         name: value

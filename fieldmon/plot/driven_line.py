@@ -56,13 +56,13 @@ def driven_line(
     Places ``(k,)`` are plants, or -1 for the gate; there are ``k - 1`` legs. Between plants that
     are inspected from one straight stretch of aisle one drives straight ahead.
     """
-    line, size = _with(np.empty((64, 2)), np.int64(0), _at(roads, lanes, places[0]))
+    line, size = _with(np.empty((64, 2)), 0, _at(roads, lanes, places[0]))
     leg_end = np.empty(places.size - 1, np.int64)
     for leg in range(places.size - 1):
         i, j = places[leg], places[leg + 1]
         if i >= 0 and j >= 0 and travel.corridor[travel.row[i]] == travel.corridor[travel.row[j]]:
             along = (travel.x_m[i], travel.x_m[j])
-            line, size = _with_lane(lanes, np.int64(travel.row[i]), along, line, size)
+            line, size = _with_lane(lanes, int(travel.row[i]), along, line, size)
             line, size = _with(line, size, _at(roads, lanes, j))
         else:
             begin = size - 1

@@ -129,7 +129,9 @@ def smooth_row(lonlat: Float) -> LineString:
     apart = np.append(True, step_m > _SAME_M)
     xy_m, at_m = xy_m[apart], np.append(0.0, np.cumsum(step_m))[apart]
     if len(xy_m) < 2:
-        raise PlotError("A row must lead somewhere, but all of its places are one. Draw it again.")
+        raise PlotError(
+            worded("A row must lead somewhere, but all of its places are one. Draw it again.")
+        )
     if len(xy_m) < 3:
         return LineString(lonlat[apart])
     n = int(np.clip(at_m[-1] / _SMOOTH_M, 2 * len(xy_m), _MOST_STEPS))

@@ -109,8 +109,13 @@ def _ground(xy_m: Float, usual_m: float, field: Field | None) -> MultiPolygon:
         on_it = shapely.contains_xy(area, xy_m)
         if not on_it.any():
             raise PlotError(
-                f"Measured plants must stand on plot {field.name!r}, but none of {len(xy_m)} "
-                "does. Choose the plants' own plot, or check the coordinate systems."
+                worded(
+                    "Measured plants must stand on plot {name!r}, but none of {n} "
+                    "does. Choose the plants' own plot, or check the coordinate "
+                    "systems.",
+                    name=field.name,
+                    n=len(xy_m),
+                )
             )
         if on_it.all():
             return area

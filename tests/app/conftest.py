@@ -21,6 +21,7 @@ from app.words import language
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
+from tests.app.on_screen import dressed
 from tests.paths import SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
@@ -110,11 +111,11 @@ def address(browser, served_seasons, tmp_path_factory):  # noqa: ARG001 - no bro
         yield url
     finally:
         os.killpg(server.pid, 15)
-        server.wait(20)
+        server.wait(180)
 
 
 def wait_for(url, server):
-    for _ in range(300):
+    for _ in range(1800):
         assert server.poll() is None, "the app ended"
         try:
             with urllib.request.urlopen(url, timeout=1) as answer:  # noqa: S310 - our own
@@ -122,7 +123,7 @@ def wait_for(url, server):
                     return
         except OSError:
             time.sleep(0.1)
-    pytest.fail("the app did not answer within 30 s")
+    pytest.fail("the app did not answer within 180 s")
 
 
 @pytest.fixture(scope="session")
@@ -136,6 +137,8 @@ def visitors(browser):
                 viewport={"width": size[0], "height": size[1]}, user_agent=agent,
                 accept_downloads=True,
             )  # fmt: skip
+            # another program may have the machine's processors
+            windows[size, agent].set_default_timeout(180_000)
         return windows[size, agent]
 
     yield of
@@ -151,6 +154,7 @@ def page(visitors, request):
     page.on("request", lambda sent: page.requests.append(sent.url))
     yield page
     SHOTS.mkdir(exist_ok=True)
+    dressed(page)
     page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
     page.close()
 

@@ -25,12 +25,12 @@ SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
 PAGES = tuple(part for room in rooms.ROOMS.values() for part in room.parts)
 
 
-def until(is_so, within_s=60.0):
-    """Wait for a state that another thread brings about."""
+def until(is_so, within_s=180.0, every_s=0.005):
+    """Wait for a state that another thread or the browser brings about."""
     end = time.monotonic() + within_s
     while not is_so():
         assert time.monotonic() < end, "it did not come about in time"
-        time.sleep(0.005)
+        time.sleep(every_s)
 
 
 def opened(season=None, **address):

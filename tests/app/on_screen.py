@@ -1,5 +1,6 @@
 """What a browser shows of the map: its pixels, where plants are in them, and its switches."""
 
+import base64
 import io
 import json
 from contextlib import suppress
@@ -9,16 +10,28 @@ import pytest
 from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
+from tests.app.driving import until
+
 MAP = ".map"
 #: the map with all that is wanted on it, while the server has nothing more to say
 IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
 DRAWN = f"{MAP}[data-shown]"
-# what lies on the map is not the map
-_BARE = (
-    ".tools,.card,.legend,.foot,.labels,.tip,.drawbar{visibility:hidden!important}"
-    ".st-key-panel,.fieldmon-shape,[data-testid=stToastContainer]{opacity:0!important}"
-)
-_REST_MS = 60_000
+# what lies on the map is not the map: from the first look on it cannot be seen, but still be used
+_BARE = """() => {
+  const roots = [document, ...[...document.querySelectorAll("*")].flatMap((one) => one.shadowRoot ?? [])];
+  const fresh = roots.filter((root) => !root.querySelector("style.bare"));
+  for (const root of fresh) {
+    const style = Object.assign(document.createElement("style"), { className: "bare" });
+    style.textContent = ".tools,.card,.legend,.foot,.labels,.tip,.drawbar,.st-key-panel,"
+      + ".fieldmon-shape,[data-testid=stToastContainer]{opacity:0!important;transition:none!important}";
+    (root.head ?? root).append(style);
+  }
+  const drawn = (done) => requestAnimationFrame(() => requestAnimationFrame(done));
+  return fresh.length ? new Promise(drawn) : null;
+}"""  # noqa: E501
+_DRESSED = """() => [document, ...[...document.querySelectorAll("*")].flatMap((one) => one.shadowRoot ?? [])]
+  .forEach((root) => root.querySelector("style.bare")?.remove())"""  # noqa: E501
+_REST_MS = 180_000
 
 
 def rest(page):
@@ -29,9 +42,20 @@ def rest(page):
 
 def look(page):
     """Return the map's pixels ``(h, w, 3)``, without what lies on it."""
+    page.evaluate(_BARE)
+    if not hasattr(page, "devtools"):
+        page.devtools = page.context.new_cdp_session(page)
+    # a third of what Playwright's own picture takes, which is packed as tightly as it can be
+    shot = page.devtools.send("Page.captureScreenshot", {"optimizeForSpeed": True})["data"]
+    pixel = np.array(Image.open(io.BytesIO(base64.b64decode(shot))).convert("RGB"), int)
     box = page.locator(MAP).bounding_box()
-    shot = page.screenshot(clip=box, style=_BARE, animations="disabled")
-    return np.array(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+    x, y, width, height = (round(box[side]) for side in ("x", "y", "width", "height"))
+    return pixel[max(y, 0) : y + height, max(x, 0) : x + width]
+
+
+def dressed(page):
+    """Let what lies on the map be seen again."""
+    page.evaluate(_DRESSED)
 
 
 def still(page):
@@ -118,13 +142,15 @@ def opacity(page, share):
 
 def zoomed(page):
     """Turn the wheel over the middle of the free map; return its pixels."""
-    seen, far = view(page), view(page)["zoom"]
-    x, y = free(page)
+    still(page)
+    seen, (x, y) = view(page), free(page)
     for _ in range(50):
         page.mouse.move(x, y)
+        before = view(page)
         page.mouse.wheel(0, -300)
-        still(page)
-        if view(page)["zoom"] > far + 1.0:
+        with suppress(AssertionError):  # a turn may be lost
+            until(lambda was=before: view(page) != was, 5.0, every_s=0.05)
+        if view(page)["zoom"] > seen["zoom"] + 1.0:
             return still(page)
     pytest.fail(f"the wheel does not zoom: {seen}")
 

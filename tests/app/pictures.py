@@ -42,7 +42,7 @@ def served():
             yield wait_for(f"http://127.0.0.1:{port}")
         finally:
             server.terminate()
-            server.wait(20)
+            server.wait(180)
 
 
 def wait_for(url):

@@ -47,7 +47,7 @@ class Line:
         """End at once, whatever was being answered."""
         if self.server is not None:
             self.server.should_exit = self.server.force_exit = True
-            self.thread.join(30)
+            self.thread.join(180)
             self.server = None
 
 
@@ -118,6 +118,7 @@ class PhoneBrowser:
         self.window = self.kind.launch_persistent_context(
             self.folder, executable_path=CHROMIUM, args=FLAGS, **self.more
         )
+        self.window.set_default_timeout(180_000)  # others may have the machine
         self.page = self.window.pages[0]
 
     def kill(self):

@@ -87,7 +87,7 @@ def test_in_a_browser_nothing_runs_nothing_is_fetched_and_nothing_leads_out(
         for part in ("", *room.parts[1:]):
             if part:
                 open_part(page, texts.PARTS[part])
-                page.wait_for_selector(IDLE, timeout=60_000)
+                page.wait_for_selector(IDLE, timeout=180_000)
             assert page.evaluate("window.hit") is None
             assert page.locator(f'[src*="{EVIL}"], [href*="{EVIL}"], [onerror]').count() == 0
             seen += page.get_by_text("onerror").count() > 0

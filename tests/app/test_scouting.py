@@ -292,14 +292,14 @@ def _in_the_field(phone, line, season):
     page.locator("#notes").fill("webs ב")
     page.locator("#ok").click()
     told_now(page, "found", 2)
-    page.locator(SENT).wait_for(timeout=60_000)
+    page.locator(SENT).wait_for(timeout=180_000)
     rows = [row for row in told(Season(season.path))[1] if row[1] == other]
     assert [row[2] for row in rows] == ["found"]
     _brings_a_photo_asked_for(page, season)
     # the key is taken back: nothing goes in, nothing is lost
     scouts.take_back(season, "Ben")
     told_now(page, "clean")
-    page.locator("#sync[data-state=ended][data-left='1']").wait_for(timeout=60_000)
+    page.locator("#sync[data-state=ended][data-left='1']").wait_for(timeout=180_000)
     assert key not in page.url
 
 
@@ -316,7 +316,7 @@ def _brings_a_photo_asked_for(page, season):
     page.locator(".asked[data-taken=true]").wait_for()
     told_now(page, "clean")
     assert page.locator("#asked").count() == 0
-    page.locator(SENT).wait_for(timeout=60_000)
+    page.locator(SENT).wait_for(timeout=180_000)
     assert photos_asked(Season(season.path)) == ()
     assert photos.photos_of(Season(season.path))[0].plant == plant
 

@@ -82,7 +82,7 @@ def answers(url):
         return False
 
 
-def until(is_so, within_s=60.0):
+def until(is_so, within_s=180.0):
     end = time.monotonic() + within_s
     while not is_so():
         assert time.monotonic() < end, "it did not come about in time"

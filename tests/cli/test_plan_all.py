@@ -107,7 +107,7 @@ def test_what_is_finished_is_not_planned_again_unless_something_changed(run, par
 
 
 def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(tmp_path, summary):
-    shapes = many(SHAPES, 60)
+    shapes = many(SHAPES, 24)
     write_geojson(tmp_path / "parcels.geojson", shapes)
     # whoever runs the tests in the background has children that do not hear Ctrl-C
     hears = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
@@ -123,10 +123,10 @@ def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(tmp_path, summ
     _, complaint = command.communicate(timeout=100)
     assert command.returncode == 130, complaint
     half = summary("r")
-    assert 0 < len(half) < 60
+    assert 0 < len(half) < 24
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert f"{len(half)} of 60 plots were planned already" in done.stdout
-    assert len(summary("r")) == 60
+    assert f"{len(half)} of 24 plots were planned already" in done.stdout
+    assert len(summary("r")) == 24
     assert all(row["state"] == "planned" for row in summary("r").values())
 
 

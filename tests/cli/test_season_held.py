@@ -43,7 +43,8 @@ def test_every_command_says_who_keeps_it_waiting_within_its_patience(run, held, 
         code, _, err, made = run(command, held, *words)
         assert (code, made) == (2, set()), command
         assert "another program has held it" in err, command
-        assert monotonic() - began < 10 * transactions._PATIENCE_S, command
+        # not the half minute of who heeds no patience, on a machine that others keep busy
+        assert monotonic() - began < 25.0, command
 
 
 def test_the_seconds_are_counted_on_the_screen_while_it_waits(run, held, monkeypatch):

@@ -111,6 +111,46 @@ def test_a_damaged_file_is_compiled_anew_and_that_is_said_once(kept, caplog, end
     assert caplog.records == []
 
 
+def test_who_needs_a_loop_that_another_process_compiles_waits_and_loads_it(
+    kept, tmp_path, monkeypatch
+):
+    fcntl = pytest.importorskip("fcntl")
+    started()
+    elsewhere, waited = tmp_path / "elsewhere", []
+    kept.rename(elsewhere)
+    with (tmp_path / "loops_to_keep.py").open() as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+
+        def it_is_done(seconds):
+            waited.append(seconds)
+            shutil.copytree(elsewhere, kept, dirs_exist_ok=True)
+            fcntl.flock(other, fcntl.LOCK_UN)
+
+        monkeypatch.setattr(jit.time, "sleep", it_is_done)
+        assert started() == (RIGHT, 0)
+    assert len(waited) == 1
+
+
+def test_who_compiles_for_too_long_is_not_waited_for(kept, tmp_path, monkeypatch):
+    fcntl = pytest.importorskip("fcntl")
+    monkeypatch.setattr(jit._Turns, "most_s", 0.0)
+    with (tmp_path / "loops_to_keep.py").open() as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        assert started()[0] == RIGHT
+    assert len(list(kept.rglob("*.nbc"))) == 4
+
+
+@pytest.mark.usefixtures("kept")
+def test_a_loop_that_cannot_be_compiled_makes_nobody_wait(tmp_path):
+    fcntl = pytest.importorskip("fcntl")
+    started()
+    loops = importlib.import_module("loops_to_keep")
+    with pytest.raises(numba.TypingError):
+        loops.squares("three")
+    with (tmp_path / "loops_to_keep.py").open() as other:
+        fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
 @pytest.mark.usefixtures("kept")
 def test_a_named_tuple_of_another_name_is_no_harm(tmp_path, caplog):
     started()

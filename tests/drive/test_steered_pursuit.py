@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from fieldmon.drive.pursuit import REACH_M, Pace
 from fieldmon.drive.steered_pursuit import SteeredPursuit
-from fieldmon.drive.turning_circle import Room, way_of
+from fieldmon.drive.turning_circle import TurningRoom, way_of
 
 BOX = np.array([[-0.2, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.2, 0.3]])
 SHARPEST = 1.1
@@ -16,7 +16,7 @@ SHARPEST = 1.1
 
 def driven(line, posts, yaw=0.0):
     line = np.asarray(line, float)
-    pieces, stuck = way_of(line, yaw, Room(1.0, BOX, cKDTree(np.array(posts, float)), 0.3))
+    pieces, stuck = way_of(line, yaw, TurningRoom(1.0, BOX, cKDTree(np.array(posts, float)), 0.3))
     assert stuck is None
     way = SteeredPursuit(pieces, Pace(0.7), SHARPEST)
     (x, y), v, dt, poses = line[0], 0.0, 0.05, []

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from fieldmon.drive.turning_circle import Room, way_of
+from fieldmon.drive.turning_circle import TurningRoom, way_of
 
 BOX = np.array([[-0.2, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.2, 0.3]])
 NOTHING = cKDTree(np.array([[99.0, 99.0]]))
@@ -17,7 +17,7 @@ CORNER = np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 6.0]])
 
 
 def room(plants=NOTHING, radius_m=1.0):
-    return Room(radius_m, BOX, plants, 0.3)
+    return TurningRoom(radius_m, BOX, plants, 0.3)
 
 
 def bends(pieces):

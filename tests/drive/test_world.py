@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from fieldmon.drive.ground import Ground, rough_ground
+from fieldmon.drive.ground import UnevenGround, rough_ground
 from fieldmon.drive.world import lay_ground, world_xml
 from fieldmon.plot.layout import Planting, rectangle
 
@@ -41,6 +41,6 @@ def test_ground_is_as_high_as_its_heights_everywhere():
 
 
 def test_level_ground_of_a_raster_is_a_plane_without_height():
-    ground = Ground(np.array([-50.0, -50.0]), 1.0, np.zeros((101, 101)))
+    ground = UnevenGround(np.array([-50.0, -50.0]), 1.0, np.zeros((101, 101)))
     assert 'type="hfield"' in world_xml(rectangle(2, 2), 0.005, ground)
     assert 'type="plane"' in world_xml(rectangle(2, 2), 0.005)

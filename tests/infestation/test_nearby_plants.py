@@ -25,7 +25,7 @@ GRID = rectangle(21, 25)
 def test_the_distance_to_lines_is_the_planar_one_as_far_as_asked(grid, farthest_m, data):
     numbers = st.integers(-80, 80)
     ends = data.draw(st.lists(st.tuples(*[numbers] * 4), min_size=1, max_size=5))
-    metres = distance_m(PlantRows.of(grid), np.array(ends), farthest_m)
+    metres = distance_m(PlantRows.of(grid), np.array(ends, float), farthest_m)
     lines = shapely.MultiLineString([((a, b), (c, d)) for a, b, c, d in ends])
     true = shapely.distance(shapely.points(grid.xy_m), lines)
     near = true < farthest_m - 1e-6

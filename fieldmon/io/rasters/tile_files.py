@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from pmtiles import tile as pm
 from pmtiles.reader import MmapSource, Reader
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
@@ -46,8 +47,12 @@ def described(path: str) -> Described:
         return (_pm_described if _is_pm(path) else _mb_described)(path)
     except _BROKEN as bad:
         raise FileProblem(
-            f"{name} must be a map in tiles (MBTiles or PMTiles), but it cannot be read so "
-            f"({_short(bad)}). Export or download it again."
+            worded(
+                "{name} must be a map in tiles (MBTiles or PMTiles), but it cannot "
+                "be read so ({problem}). Export or download it again.",
+                name=name,
+                problem=_short(bad),
+            )
         ) from bad
 
 
@@ -98,8 +103,12 @@ def _pictures(picture: bytes, name: str) -> tuple[str, int]:
     mime = kind_of(picture)
     if mime is None:
         raise FileProblem(
-            f"The tiles of {name} must be pictures (PNG, JPEG, WebP), but they are not: such maps "
-            "are drawn by other programs. Export it as raster tiles."
+            worded(
+                "The tiles of {name} must be pictures (PNG, JPEG, WebP), but they "
+                "are not: such maps are drawn by other programs. Export it as "
+                "raster tiles.",
+                name=name,
+            )
         )
     return mime, side_of(picture)
 
@@ -118,7 +127,9 @@ def _mb_described(path: str) -> Described:
         said = dict(db.execute("SELECT name, value FROM metadata").fetchall())
         first, last = db.execute("SELECT min(zoom_level), max(zoom_level) FROM tiles").fetchone()
         if first is None:
-            raise FileProblem(f"{Path(path).name} must hold tiles, but it holds none.")
+            raise FileProblem(
+                worded("{name} must hold tiles, but it holds none.", name=Path(path).name)
+            )
         (sample,) = db.execute("SELECT tile_data FROM tiles LIMIT 1").fetchone()
         extent = db.execute(
             "SELECT min(tile_column), max(tile_column), min(tile_row), max(tile_row) FROM tiles "

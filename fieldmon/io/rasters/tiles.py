@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.sandbox import process
 
@@ -71,8 +72,16 @@ def read_tiles(path: Path, near: Field | None = None) -> Tileset:
         west, south, east, north = near.boundary.bounds
         if west > bounds[2] or east < bounds[0] or south > bounds[3] or north < bounds[1]:
             raise FileProblem(
-                f"{path.name} must show plot {near.name}, but it shows another place "
-                f"({bounds[0]:.3f} to {bounds[2]:.3f} east, {bounds[1]:.3f} to {bounds[3]:.3f} "
-                "north). Choose another map."
+                worded(
+                    "{name} must show plot {plot}, but it shows another place "
+                    "({west:.3f} to {east:.3f} east, {south:.3f} to {north:.3f} "
+                    "north). Choose another map.",
+                    name=path.name,
+                    plot=near.name,
+                    west=bounds[0],
+                    east=bounds[2],
+                    south=bounds[1],
+                    north=bounds[3],
+                )
             )
     return found

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, cast
 
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
 from fieldmon.io.packaged import packaged_names, packaged_text
@@ -86,13 +87,19 @@ def read_pest(source: Source) -> Pest:
     """Return the pest of a TOML file; raise `FileProblem` with the line where it is none."""
     name = source_name(source)
     if isinstance(source, tuple):
-        raise FileProblem(f"A pest must be one file, but there are {len(source)}: {name}.")
+        raise FileProblem(
+            worded("A pest must be one file, but there are {n}: {name}.", n=len(source), name=name)
+        )
     try:
         data = source.data if isinstance(source, Upload) else Path(source).read_bytes()
         text = data.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise FileProblem(
-            f"{name}: a pest must be text in UTF-8, but it cannot be read ({error})."
+            worded(
+                "{name}: a pest must be text in UTF-8, but it cannot be read ({error}).",
+                name=name,
+                error=error,
+            )
         ) from error
     return pest_from_text(text, name)
 
@@ -110,7 +117,9 @@ def pest_from_text(text: str, name: str) -> Pest:
     try:
         told = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise FileProblem(f"{name}: a pest must be TOML, but it is not: {error}.") from error
+        raise FileProblem(
+            worded("{name}: a pest must be TOML, but it is not: {error}.", name=name, error=error)
+        ) from error
     return _PestText(name, told, _lines_of(text)).pest()
 
 
@@ -287,19 +296,27 @@ class _PestText:
         try:
             return kind(**given)
         except SettingError as error:
-            sentence = str(error)
+            sentence = error.args[0]
             named = [key for key in given if re.search(rf"\b{re.escape(key)}\b", sentence)]
             key = named[0] if named else ""
             value = given.get(key)
             hot = isinstance(value, float) and key.endswith("_c") and value > _HOTTEST_C
-            hint = " Is it in Fahrenheit?" if hot else ""
+            if hot:
+                sentence = joined(" ", (sentence, worded("Is it in Fahrenheit?")))
             closer = at._replace(key=at.key or key)
             where = closer if closer in self.lines else at
-            self._refuse(where, f"{sentence}{hint}", error)
+            self._refuse(where, sentence, error)
 
     def _refuse(self, at: _At, sentence: str, cause: Exception | None = None) -> NoReturn:
         line = self.lines.get(at) or self.lines.get(at._replace(key="")) or 1
-        raise FileProblem(f"{self.name}, line {line}: {sentence}") from cause
+        raise FileProblem(
+            worded(
+                "{file}, {line}: {problem}",
+                file=self.name,
+                line=worded("line {n}", n=line),
+                problem=sentence,
+            )
+        ) from cause
 
 
 def _unknown(key: str, known: Iterable[str], of: str) -> str:

@@ -71,7 +71,9 @@ def _with_blocks(
         name, block = called[part.name]
         plots.setdefault(name, []).append(_block(part, block))
     fields = [_of_blocks(name, own) for name, own in plots.items()]
-    said = seen(f"{len(parts)} features are the blocks of {len(fields)} plot(s).")
+    said = seen(
+        worded("{n} features are the blocks of {plots} plot(s).", n=len(parts), plots=len(fields))
+    )
     number = _number(list(plots), options.feature)
     if number > len(fields):
         raise _which_plot(list(plots), str(number))

@@ -10,19 +10,21 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+# of numpy, and no literals: for each literal numba compiles anew what it is handed to
+_WAY: Any = np.arange(12)
 #: what may be driven in an aisle: nothing; in and out from the left, the right or both; through
 #: once or twice; in from the left or the right to where the day ends, with in and out from the
 #: other end or without; through from the left or the right, and later from the other end back in
 #: to where the day ends
-NOTHING, FROM_LEFT, FROM_RIGHT, FROM_BOTH, ONCE, TWICE = range(6)
-END_LEFT, END_RIGHT, END_LEFT_AND, END_RIGHT_AND, LEFT_BACK, RIGHT_BACK = range(6, 12)
+NOTHING, FROM_LEFT, FROM_RIGHT, FROM_BOTH, ONCE, TWICE = _WAY[:6]
+END_LEFT, END_RIGHT, END_LEFT_AND, END_RIGHT_AND, LEFT_BACK, RIGHT_BACK = _WAY[6:]
 N_WAYS = 12
 
 

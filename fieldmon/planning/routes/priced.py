@@ -6,7 +6,7 @@ then follows from its plants alone, and the best drive from a sweep up the ladde
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -41,6 +41,9 @@ if TYPE_CHECKING:
     Int = NDArray[np.int64]
 
 _NEVER = -1e300
+# no literals: see `frontier`
+_SIDES: Any = np.arange(4)
+_NONE, _BOTH = _SIDES[0], _SIDES[3]
 _SAME_PLACE_M = 1e-6
 
 
@@ -176,10 +179,9 @@ class Priced:
 
 @part
 def _put(
-    room: _Room, at: tuple[int, int], what: tuple[float, float], cut: tuple[int, int, int, int]
+    room: _Room, k: int, way: int, what: tuple[float, float], cut: tuple[int, int, int, int]
 ) -> None:
     """Note a way of driving an aisle if it is worth more than the one known."""
-    k, way = at
     if what[0] > room.worth[k, way]:
         room.worth[k, way], room.reward[k, way] = what
         for c in range(4):
@@ -242,29 +244,33 @@ def _value_through(
             held_of[side] += reward[i]
             turns += before >= 0 and before != side
             before = side
-    _put(room, (k, NOTHING), (0.0, 0.0), (first, end, 0, 0))
-    _put(room, (k, ONCE), (-across, 0.0), (first, end, 0, 0))
-    _put(room, (k, TWICE), (-2.0 * across, 0.0), (first, end, 0, 0))
+    _put(room, k, NOTHING, (0.0, 0.0), (first, end, _NONE, _NONE))
+    _put(room, k, ONCE, (-across, 0.0), (first, end, _NONE, _NONE))
+    _put(room, k, TWICE, (-2.0 * across, 0.0), (first, end, _NONE, _NONE))
     for side in range(2):
         if gains_of[side] > change:
-            worth, cut = gains_of[side] - change, (end, end, side + 1, 0)
-            _put(room, (k, ONCE), (worth - across, held_of[side]), cut)
-            _put(room, (k, TWICE), (worth - 2.0 * across, held_of[side]), cut)
+            worth, cut = gains_of[side] - change, (end, end, side + 1, _NONE)
+            _put(room, k, ONCE, (worth - across, held_of[side]), cut)
+            _put(room, k, TWICE, (worth - 2.0 * across, held_of[side]), cut)
     if turns == 0:
         return
-    gains, held, cut = gains_of[0] + gains_of[1] - change, held_of[0] + held_of[1], (end, end, 3, 0)
+    gains, held, cut = (
+        gains_of[0] + gains_of[1] - change,
+        held_of[0] + held_of[1],
+        (end, end, _BOTH, _NONE),
+    )
     turn = price * costs.turn_s
-    _put(room, (k, TWICE), (gains - 2.0 * across - min(turn, change), held), cut)
+    _put(room, k, TWICE, (gains - 2.0 * across - min(turn, change), held), cut)
     if feasible:
         worth = gains - across - min(turns * turn, turn + 2.0 * across)
-        _put(room, (k, ONCE), (worth, held), cut)
+        _put(room, k, ONCE, (worth, held), cut)
     else:
         worth = _once(ladder, reward, (k, stop, metre), (turn, min(turn, change)))
-        _put(room, (k, ONCE), (worth - change - across, held), cut)
+        _put(room, k, ONCE, (worth - change - across, held), cut)
         # one side on the way through, the other on the way back to where the day ends
         worth = gains - across - min(turn, change)
-        _put(room, (k, LEFT_BACK), (worth, held), cut)
-        _put(room, (k, RIGHT_BACK), (worth, held), cut)
+        _put(room, k, LEFT_BACK, (worth, held), cut)
+        _put(room, k, RIGHT_BACK, (worth, held), cut)
 
 
 @part
@@ -340,18 +346,18 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 continue
             if sides == 3:
                 gains -= both_sides
-            cut = (first, i, 0, sides)
-            _put(room, (k, FROM_RIGHT), (gains - 2.0 * deep, held), cut)
-            _put(room, (k, END_RIGHT), (gains - deep, held), cut)
+            cut = (first, i, _NONE, sides)
+            _put(room, k, FROM_RIGHT, (gains - 2.0 * deep, held), cut)
+            _put(room, k, END_RIGHT, (gains - deep, held), cut)
             if in_cut > first:
                 cut = (in_cut, i, in_sides, sides)
                 what = in_left + gains - 2.0 * deep, in_left_held + held
-                _put(room, (k, FROM_BOTH), what, cut)
+                _put(room, k, FROM_BOTH, what, cut)
                 what = in_left + gains - deep, in_left_held + held
-                _put(room, (k, END_RIGHT_AND), what, cut)
+                _put(room, k, END_RIGHT_AND, what, cut)
                 cut = (end_cut, i, end_sides, sides)
                 what = end_left + gains - 2.0 * deep, end_left_held + held
-                _put(room, (k, END_LEFT_AND), what, cut)
+                _put(room, k, END_LEFT_AND, what, cut)
         side = 1 if ladder.upper[i] else 0
         left_of[side] += reward[i] - stop
         left_held_of[side] += reward[i]
@@ -373,8 +379,8 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 end_left, end_left_held = gains - deep, held
                 end_cut, end_sides = i + 1, sides
     if in_cut > first:
-        _put(room, (k, FROM_LEFT), (in_left, in_left_held), (in_cut, end, in_sides, 0))
-        _put(room, (k, END_LEFT), (end_left, end_left_held), (end_cut, end, end_sides, 0))
+        _put(room, k, FROM_LEFT, (in_left, in_left_held), (in_cut, end, in_sides, _NONE))
+        _put(room, k, END_LEFT, (end_left, end_left_held), (end_cut, end, end_sides, _NONE))
 
 
 @loop

@@ -69,7 +69,8 @@ class Adaptive(Sampler):
                 "A robot must state what each time of looking detects (viewpoints) if the sampler "
                 f"is to choose, but its detection is given outright ({robot.detection})."
             )
-        seconds, detects = np.array(robot.viewpoints.steps).T
+        # contiguous, as the one time of others is: the day's loop is compiled once for both
+        seconds, detects = np.ascontiguousarray(np.array(robot.viewpoints.steps).T)
         return InspectionTimes(robot.stop_s + seconds, detects)
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:

@@ -1,11 +1,14 @@
 """What is ahead, in a sentence with its interval, and the weather that it is made from."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import streamlit as st
 
 from app.show import forecast
 from app.words import texts
+from app.words.units import UnitsInLanguage
 from fieldmon.infestation.forecast import Forecast
 
 DAYS = np.linspace(10.0, 40.0, 15)

@@ -71,7 +71,7 @@ def served(tmp_path_factory):
         yield SimpleNamespace(port=port, own=line.getsockname()[1], made=made, folder=folder,
                               said="\n".join(said), address=address)  # fmt: skip
         servers[0].should_exit = True
-        thread.join(30)
+        thread.join(180)
         assert not thread.is_alive(), "with the first server all of them end"
 
 

@@ -23,10 +23,10 @@ def test_the_outline_comes_first_and_what_other_pages_need_comes_after_a_page_wa
     loading.start()
     loading.load(map_sent=True)
     assert steps[:2] == ["_load_outline", "_load_first_page"]
-    assert loading.ready.wait(30)
+    assert loading.ready.wait(180)
     assert "_load_simulation" not in steps
     loading.shown.set()
-    loading.join(30)
+    loading.join(180)
     assert steps == ["_load_outline", "_load_first_page", "_load_planning", "_load_simulation"]
 
 
@@ -39,5 +39,5 @@ def test_a_page_is_not_kept_waiting_where_loading_fails(steps, monkeypatch):
     loading = preload.Preload()
     loading.start()
     loading.load(map_sent=False)
-    assert loading.ready.wait(30)
+    assert loading.ready.wait(180)
     assert steps == []

@@ -35,12 +35,12 @@ def test_it_ends_at_the_step_it_is_at_and_goes_on_from_there():
     assert steps.running
     steps.stop()
     steps.let.release()
-    steps.wait(30)
+    steps.wait(180)
     assert not steps.running
     assert steps.taken == 0
     steps.let.release(3)
     steps.begin()
-    steps.wait(30)
+    steps.wait(180)
     assert steps.taken == 3
     assert steps.problem is None
 
@@ -48,6 +48,6 @@ def test_it_ends_at_the_step_it_is_at_and_goes_on_from_there():
 def test_what_cannot_be_done_is_kept_as_its_sentence():
     failing = Failing()
     failing.begin()
-    failing.wait(30)
+    failing.wait(180)
     assert not failing.running
     assert str(failing.problem) == "There must be a plot."

@@ -33,7 +33,7 @@ def compared(plot, strategies, seeds=4, living=None):
     settings = ComparisonSettings(tuple(strategies), n_days=5, share=0.05, rate=0.1, seeds=seeds)
     running = Comparison(settings, LaidPlot(plot, chance, living), Robot())
     running.start()
-    running.wait(120)
+    running.wait(180)
     assert running.done == running.total
     return running
 
@@ -73,14 +73,14 @@ def test_a_stopped_comparison_goes_on_where_it_stood(plot):
     running = Comparison(settings, LaidPlot(plot, np.full(len(plot.grid), 0.01)), Robot())
     running.start()
     running.stop()
-    running.wait(60)
+    running.wait(180)
     part = running.done
     assert part < running.total
     assert not running.running
     running.start()
     until(lambda: running.done > part)
     running.stop()
-    running.wait(60)
+    running.wait(180)
     assert running.done > part
 
 

@@ -23,7 +23,7 @@ def run_of(planned, kind="charged", share=1e-9):
 def test_where_nothing_is_found_the_day_is_the_planned_one(planned):
     run = run_of(planned)
     run.start()
-    run.wait(60)
+    run.wait(180)
     assert run.problem is None
     assert [one.plant for one in run.day.trace.stops] == planned[1].work.plant.tolist()
     assert 0.9 < run.share <= 1.0
@@ -37,7 +37,7 @@ def test_a_day_that_is_stopped_is_not_kept_and_can_begin_again(planned):
     assert run.day is None
     assert (run.problem, run.share) == (None, 0.0)
     run.start()
-    run.wait(60)
+    run.wait(180)
     assert any(one.found for one in run.day.trace.stops)
 
 

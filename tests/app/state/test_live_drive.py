@@ -47,7 +47,7 @@ def test_way_finds_and_chances_of_a_day_come_as_it_is_driven(broker, plot, robot
     other.stop()
     until(lambda: live.heard().standing == "lost")
     live.stop()
-    live.wait(20)
+    live.wait(180)
     assert drive_play.as_live(live)["heard"]["standing"] == "ended"
 
 

@@ -27,7 +27,7 @@ def broker(tmp_path_factory):
     told = tmp_path_factory.mktemp("broker") / "mosquitto.conf"
     told.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\n")
     with subprocess.Popen([program, "-c", str(told)], stderr=subprocess.DEVNULL) as running:
-        until = time.monotonic() + 20
+        until = time.monotonic() + 180
         while True:
             try:
                 socket.create_connection(("127.0.0.1", port), timeout=1).close()

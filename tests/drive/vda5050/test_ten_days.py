@@ -30,7 +30,7 @@ def season(plot, tmp_path):
 
 def cut(wire):
     """Cut a line as a hill does, as soon as there is one: nobody says farewell."""
-    until = time.monotonic() + 20
+    until = time.monotonic() + 180
     while (line := wire.client.socket()) is None or not wire.client.is_connected():
         assert time.monotonic() < until
         time.sleep(0.002)

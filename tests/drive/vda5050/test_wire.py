@@ -50,10 +50,10 @@ def test_what_is_sent_while_the_line_is_cut_arrives(broker):
     one = Wire(broker, "one", ROBOT, ("order",))
     other = Wire(broker, "other", ROBOT, ())
     other.send("order", b"first")
-    assert one.heard.get(timeout=10) == ("order", b"first")
+    assert one.heard.get(timeout=180) == ("order", b"first")
     other.client.socket().close()  # as a robot behind a hill
     other.send("order", b"second")
-    heard = one.heard.get(timeout=30)
+    heard = one.heard.get(timeout=180)
     assert heard == ("order", b"second")
     one.close()
     other.close()

@@ -221,7 +221,7 @@ def prose_walk_of(trial: NoPriorTrial, prose: Prose) -> prose_model.ProseWalk:
         stop_s=looks_s + prose.turn_90_s,
         turn_s=hours.turn_180_s,
         change_s=hours.row_change_s,
-        day_s=hours.day_s,
+        day_s=float(hours.day_s),
         days=hours.days,
         reenter_anywhere=prose.reenter_anywhere,
         severity=trial.severity,

@@ -1,0 +1,84 @@
+"""Sentences of the library that were kept as plain text: told by their words, and said again.
+
+A season keeps what its import said as English sentences, which other programs read too. Which one
+it was is told by the words around its blanks; what stood in these is filled in again.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from string import Formatter
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+# fewer letters than this are no sentence, but what may stand in a blank by chance
+_LEAST = 12
+_ENDS = re.compile(r"(?<=[.!?]) (?=\S)")
+
+
+@dataclass(frozen=True)
+class KeptWords:
+    """The words of a sentence with blanks, as they are looked for in a finished one."""
+
+    words: str
+
+    @cached_property
+    def literals(self) -> tuple[str, ...]:
+        """Return what stands around the blanks."""
+        return tuple(literal for literal, *_ in Formatter().parse(self.words) if literal)
+
+    @cached_property
+    def letters(self) -> int:
+        """Return how many letters stand around the blanks."""
+        return sum(letter.isalpha() for literal in self.literals for letter in literal)
+
+    @cached_property
+    def _pattern(self) -> re.Pattern[str]:
+        made, known = "", set()
+        for literal, name, _, _ in Formatter().parse(self.words):
+            made += re.escape(literal)
+            if name in known:
+                made += f"(?P={name})"
+            elif name is not None:
+                known.add(name)
+                made += f"(?P<{name}>.+?)"
+        return re.compile(made, re.DOTALL)
+
+    def blanks(self, sentence: str) -> dict[str, str] | None:
+        """Return what stands in the blanks of a sentence; None if these are not its words."""
+        if not all(literal in sentence for literal in self.literals):
+            return None
+        found = self._pattern.fullmatch(sentence)
+        return None if found is None else found.groupdict()
+
+
+class KnownSentences:
+    """All words with blanks that a finished sentence may have been made of."""
+
+    def __init__(self, words: Iterable[str]) -> None:
+        kept = [KeptWords(one) for one in words]
+        many = [one for one in kept if one.letters >= _LEAST]
+        self._most_letters_first = sorted(many, key=lambda one: -one.letters)
+
+    def told(self, sentence: str) -> tuple[str, dict[str, str]] | None:
+        """Return the words of a sentence and what stands in their blanks; None: not known."""
+        for one in self._most_letters_first:
+            blanks = one.blanks(sentence)
+            if blanks is not None:
+                return one.words, blanks
+        return None
+
+
+def sentences(text: str) -> list[str]:
+    """Return the sentences of a text, one after the other.
+
+    Examples
+    --------
+    >>> sentences("Rows run north. They are 4.5 m apart.")
+    ['Rows run north.', 'They are 4.5 m apart.']
+    """
+    return _ENDS.split(text)

@@ -50,9 +50,10 @@ def content(tried: tuple[TriedAnswer, ...], plot: Plot, *, dark: bool) -> MapCon
         {"p": place.round(7).tolist(), "t": f"{k + 1}", "k": "leg"}
         for k, place in zip(seen, at, strict=True)
     ]  # fmt: skip
+    said = texts.ANSWERS_OF_RECORDS_ALT.format(name=plot.field.name, n=len(seen))
     return MapContent(
         f"answers {[one.answer for one in tried]}", answers_map.with_room(bounds).tolist(),
-        texts.ANSWERS_OF_RECORDS_ALT.format(n=len(seen)), made, labels=numbers,
+        said, made, labels=numbers,
         legend=[legends.part("", [*items, *rings])],
     )  # fmt: skip
 

@@ -22,7 +22,10 @@ def opened(path: Path) -> Season:
     """Return a season that all share; each call of it reads what is new in its file."""
     inode = path.stat().st_ino if path.is_file() else 0
     with _LOCK:  # two who ask at once get the same
-        return _opened(path, inode)
+        season = _opened(path, inode)
+        # what was added in QGIS since
+        season.drafts = season.take_drafts()
+        return season
 
 
 @lru_cache(maxsize=_FEW)

@@ -133,8 +133,8 @@ RECORDS_ON_MAP = (
 )
 ANSWER_RECORDS = "{near} of {n} on the plot, {found} finds"
 ANSWERS_OF_RECORDS_ALT = Plural(
-    "Map of the plot, and of {n} place where the records could lie.",
-    "Map of the plot, and of {n} places where the records could lie.",
+    "Map of plot {name}: {n} place where the records could lie.",
+    "Map of plot {name}: {n} places where the records could lie.",
 )
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {option} = {value}"

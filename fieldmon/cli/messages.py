@@ -131,6 +131,12 @@ def tell_assumed(assumed: Iterable[Assumed]) -> None:
         typer.echo(f"assumed: {said}", err=True)
 
 
+def tell_drafts(sentences: Iterable[str]) -> None:
+    """Print which findings of another program do not count."""
+    for sentence in sentences:
+        typer.echo(sentence, err=True)
+
+
 def tell_unusable(records: Observations, day: np.datetime64) -> None:
     """Print which records say nothing about a day."""
     from fieldmon.infestation.observations import usable  # noqa: PLC0415

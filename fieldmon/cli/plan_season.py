@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from fieldmon.cli.messages import tell_assumed
+from fieldmon.cli.messages import tell_assumed, tell_drafts
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
@@ -31,6 +31,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
 
     _refuse_what_was_chosen(context)
     season = Season(file)
+    tell_drafts(season.drafts)
     on, now = day_on(season.plot.field, day(options.on)), options.now
     if season.settings.team:
         _plan_team(season, options, on)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import FLAGS, Terminal
+from fieldmon.cli.messages import FLAGS, Terminal, tell_drafts
 from fieldmon.cli.named_values import chosen
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile
@@ -86,9 +86,13 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     if flags.on is not None:
         options = options.choose("day", str(day(flags.on)))
     options = chosen(options, flags.finding_option).on(kept.plot.field)
-    last, read = None, _read(kept, files, options)
-    if not flags.contradicting:
-        _refuse_contradictions(kept, read)
+    tell_drafts(kept.drafts)
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        copies = _copies(files, Path(folder))
+        last, read = None, _read(kept, files, options, copies)
+        if not flags.contradicting:
+            _refuse_contradictions(kept, read)
+        _take_corrections(kept, copies, flags.who)
     for file, inspections in zip(files, read, strict=True):
         done = kept.record(inspections, file.name, flags.who, confirmed=True)
         if len(inspections):
@@ -109,18 +113,45 @@ def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
         held = held.and_those(inspections)
 
 
-def _read(season: Season, files: list[Path], options: InspectionOptions) -> list[Inspections]:
+def _copies(files: list[Path], folder: Path) -> dict[Path, Path]:
+    """Return copies to read of the files that are seasons."""
+    from fieldmon.monitoring.transactions import copy_season, is_season  # noqa: PLC0415
+
+    copies = {}
+    for k, file in enumerate(files):
+        if is_season(file):
+            (folder / str(k)).mkdir()
+            copies[file] = folder / str(k) / file.name
+            copy_season(file, copies[file])
+    return copies
+
+
+def _take_corrections(season: Season, copies: dict[Path, Path], who: str) -> None:
+    """Take what QGIS or QField corrected and deleted in copies of this season."""
+    for file, copy in copies.items():
+        if season.corrections_in(copy):
+            n = season.take_corrections(copy, file.name, who)
+            typer.echo(f"{file.name}: {n} correction{'' if n == 1 else 's'} taken, by {who}")
+
+
+def _read(
+    season: Season, files: list[Path], options: InspectionOptions, copies: dict[Path, Path]
+) -> list[Inspections]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
-    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
     from fieldmon.monitoring import counting_copy  # noqa: PLC0415
-    from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
 
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
-        sources = [counting_copy(f, Path(folder)) if is_season(f) else f for f in files]
+        sources = dict(zip(files, files, strict=True))
+        for k, (file, copy) in enumerate(copies.items()):
+            (Path(folder) / str(k)).mkdir()
+            # what was corrected there is no new finding
+            corrected = [one.row for one in season.corrections_in(copy)]
+            sources[file] = counting_copy(copy, Path(folder) / str(k), corrected)
         read = []
-        for file, source in zip(files, sources, strict=True):
+        for file in files:
             with Terminal().answering(), _naming(file):
-                read.append(read_inspections(source, season.plot.grid, options))
+                read.append(dated(read_inspections(sources[file], season.plot.grid, options)))
     for file, found in zip(files, read, strict=True):
         for message in found.messages:
             typer.echo(f"{file.name}: {message.line(FLAGS['findings'])}", err=True)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.messages import tell_drafts
 from fieldmon.cli.options import SeasonFile, TheDate
 from fieldmon.cli.times import day
 
@@ -38,6 +39,7 @@ def status(
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     kept = Season(season)
+    tell_drafts(kept.drafts)
     now = kept.status(day(on) or kept.last_date())
     typer.echo("\n".join(lines(kept, now)))
     typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")

@@ -128,9 +128,12 @@ def _on_maps(folder: Path, output: Path) -> None:
     )
 
     rows = table(plots_in(folder))
-    typer.echo(f"{'Infested plants found per inspection, after':44} " + _columns(SHARES, "{:6.0%}"))
-    for name, who, values in rows:
-        typer.echo(f"{name:34} {who:9} " + _columns(values, "{:6.2f}"))
+    after = _columns(SHARES, "{:6.0%}")
+    typer.echo(f"{'Infested plants found after':44} {after}  per look, {after}  per hour")
+    for row in rows:
+        named = f"{row.name} (neighbours {row.correlation:.2f})"
+        found = _columns(row.per_look, "{:6.2f}")
+        typer.echo(f"{named:44} {row.who:9} {found}  {_columns(row.per_hour, '{:6.1f}')}")
     write_all(output, {"maps.csv": table_csv(rows)})
 
 

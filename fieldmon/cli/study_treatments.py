@@ -62,14 +62,24 @@ def treatments(
 
 def _tell(made: Sequence[TreatedSeason]) -> None:
     """Print the means by scenario, sampler and rule."""
-    typer.echo(f"{'scenario':42} {'sampler':15} {'rule':8} plant-days  ha sprayed   money")
+    from fieldmon.studies.verdicts.treated_seasons import against_nothing  # noqa: PLC0415
+
+    typer.echo(
+        f"{'scenario':42} {'sampler':15} {'rule':8} plant-days  ha sprayed   money  "
+        "plant-days over those of nothing, with 95 %"
+    )
     for key in dict.fromkeys((one.scenario, one.sampler, one.rule) for one in made):
         mine = [one for one in made if (one.scenario, one.sampler, one.rule) == key]
         days, area, money = (
             sum(getattr(one, name) for one in mine) / len(mine)
             for name in ("plant_days", "sprayed_ha", "cost")
         )
-        typer.echo(f"{key[0]:42} {key[1]:15} {key[2]:8} {days:10.0f} {area:11.2f} {money:7.0f}")
+        same = [one for one in made if (one.scenario, one.sampler) == key[:2]]
+        of = against_nothing(same, key[2])
+        typer.echo(
+            f"{key[0]:42} {key[1]:15} {key[2]:8} {days:10.0f} {area:11.2f} {money:7.0f}  "
+            f"{of.mean:.3f} ({of.low:.3f} to {of.high:.3f})"
+        )
 
 
 def _tell_areas(seeds: int) -> None:

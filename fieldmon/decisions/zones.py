@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.sparse import csr_array
+from scipy.optimize import linprog
+from scipy.sparse import csr_array, vstack
 from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.arrays import read_only
@@ -32,9 +33,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+    #: of a matrix: values, rows, columns
+    _Entries = tuple[Floats, NDArray[np.intp], NDArray[np.intp]]
 
 # the price at which zones keep within the ground allowed is halved so often
 _STEPS = 50
+# rings are tried by suspicion alone where more plants than so many are worth one
+_MOST_WORTH = 5_000
 
 
 @dataclass(frozen=True)
@@ -340,12 +345,16 @@ def _switched(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: Treatme
 def _knapsack(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: TreatmentCosts) -> Ints:
     """Return the zone of each plant ``(n,)``, -1: none: plants with their rings that pay.
 
-    The most suspected first; a ring costs only what no other has sprayed yet. Rings that touch are
-    one zone. Without a ring that is the best choice, with one a good one.
+    A ring costs only what no other has sprayed yet. Rings that touch are one zone. Without a ring
+    that is the best choice; with one they are tried in the order in which a linear program has
+    them, which is near the best (`ring_bound`).
     """
     treated = np.zeros(len(grid), bool)
     worth = np.flatnonzero(plants.gain > 0.0)
-    for i in worth[np.argsort(-plants.gain[worth], kind="stable")].tolist():
+    tried = worth[np.argsort(-plants.gain[worth], kind="stable")]
+    if sprayer.ring > 0 and len(worth) <= _MOST_WORTH:
+        tried = _rings(grid, plants.gain, sprayer.ring)[0]
+    for i in tried.tolist():
         around = _around(grid, i, sprayer.ring)
         new = around[~treated[around]]
         if float(plants.gain[new].sum()) > costs.per_zone * (len(new) == len(around)):
@@ -355,6 +364,71 @@ def _knapsack(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: Treatme
         alone = np.cumsum(treated & plants.once) - 1
         return np.where(treated, alone[grid.vine], -1)
     return _touching(grid, treated)
+
+
+def ring_bound(
+    grid: PlantGrid, chance: Floats, ring: int, costs: TreatmentCosts | None = None
+) -> float:
+    """Return what no choice of plants with their rings can save more than, less what it costs.
+
+    A linear program in which rings may be sprayed in part and zones cost nothing: how far the
+    choice of `best_zones` with a knapsack may be from the best.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    chance
+        ``(n,)`` chance that each plant is infested.
+    ring
+        Plants around each chosen one, as `Sprayer` has it.
+    costs
+        What treating costs; None: the defaults.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from fieldmon.plot.layout import rectangle
+    >>> grid, chance = rectangle(9, 9), np.full(81, 1e-4)
+    >>> chance[40] = 0.9
+    >>> zones = best_zones(grid, chance, Sprayer(rows=0, ring=1), TreatmentCosts(per_zone=0.0))
+    >>> bound = ring_bound(grid, chance, 1, TreatmentCosts(per_zone=0.0))
+    >>> bool(abs(zones.saved - zones.cost - bound) < 1e-9)
+    True
+    """
+    gain = _Plants.of(grid, chance, costs or TreatmentCosts()).gain
+    return _rings(grid, gain, ring)[1]
+
+
+def _rings(grid: PlantGrid, gain: Floats, ring: int) -> tuple[NDArray[np.intp], float]:
+    """Return plants to spray with their rings, the likeliest of the best choice first; the bound.
+
+    By a linear program in which a ring may be sprayed in part.
+    """
+    # only rings that hold a plant worth it can be worth it
+    worth = np.flatnonzero(gain > 0.0)
+    if not worth.size:
+        return worth, 0.0
+    centres = np.unique(np.concatenate([_around(grid, i, ring) for i in worth.tolist()]))
+    rings = [_around(grid, i, ring) for i in centres.tolist()]
+    plants, of_plant = np.unique(np.concatenate(rings), return_inverse=True)
+    n, m = len(plants), len(rings)
+    of_ring = n + np.repeat(np.arange(m), [len(one) for one in rings])
+    each, ones = np.arange(len(of_ring)), np.ones(len(of_ring))
+    # a ring takes all its plants along, and a plant is sprayed in a ring only
+    takes = _sparse((ones, each, of_ring), (-ones, each, of_plant), (len(each), n + m))
+    alone = np.ones(n), np.arange(n), np.arange(n)
+    limits = vstack([takes, _sparse(alone, (-ones, of_plant, of_ring), (n, n + m))])
+    weights = np.concatenate([-gain[plants], np.zeros(m)])
+    made = linprog(weights, limits, np.zeros(limits.shape[0]), bounds=(0.0, 1.0), method="highs")
+    order = np.lexsort((-gain[centres], -np.round(made.x[n:], 6)))
+    return centres[order], max(-float(made.fun), 0.0)
+
+
+def _sparse(one: _Entries, other: _Entries, shape: tuple[int, int]) -> csr_array:
+    """Return a matrix of values at rows and columns."""
+    values, rows, columns = (np.concatenate(pair) for pair in zip(one, other, strict=True))
+    return csr_array((values, (rows, columns)), shape)
 
 
 def _around(grid: PlantGrid, plant: int, ring: int) -> NDArray[np.intp]:

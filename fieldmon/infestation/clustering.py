@@ -46,18 +46,27 @@ class ClusterEstimate(NamedTuple):
     evidence
         ``(4,)`` logarithms of how likely all that was found beside finds this season is where
         infested plants stand side by side, in rows, across rows, or apart.
+    fresh
+        ``(2,)`` correlation of neighbours, along the row and across, where nobody has inspected.
     """
 
     outcome: NDArray[np.int8]
     detects: NDArray[np.float64]
     finds: NDArray[np.float64]
     evidence: NDArray[np.float64]
+    fresh: NDArray[np.float64]
 
     @classmethod
-    def none(cls, n: int, evidence: NDArray[np.float64] | None = None) -> ClusterEstimate:
-        """Return what is known of `n` plants on a morning, with the evidence of days before."""
+    def none(
+        cls, n: int, evidence: NDArray[np.float64] | None = None, lean: float = 0.5
+    ) -> ClusterEstimate:
+        """Return what is known of `n` plants on a morning, with the evidence of days before.
+
+        `lean` is how much more neighbours have in common along the row, see `leaning`.
+        """
         since = no_evidence() if evidence is None else evidence.copy()
-        return cls(np.full(n, -1, np.int8), np.zeros(n), np.full(2, _PRIOR_FINDS), since)
+        finds, fresh = np.full(2, _PRIOR_FINDS), 2.0 * CLUSTERING * np.array([lean, 1.0 - lean])
+        return cls(np.full(n, -1, np.int8), np.zeros(n), finds, since, fresh)
 
 
 def no_evidence() -> NDArray[np.float64]:
@@ -81,6 +90,19 @@ def chance_apart(evidence: NDArray[np.float64]) -> float:
     for k in range(_STANDS):
         total += np.exp(evidence[k] + _LIKELY[k] - most)
     return float(np.exp(evidence[_APART] + _LIKELY[_APART] - most) / total)
+
+
+@inlined
+def leaning(evidence: NDArray[np.float64]) -> float:
+    """Return how much of what neighbours have in common is along the row: a half if as across."""
+    most, total, lean = -np.inf, 0.0, 0.0
+    for k in range(_STANDS):
+        most = max(most, evidence[k] + _LIKELY[k])
+    for k in range(_STANDS):
+        weight = np.exp(evidence[k] + _LIKELY[k] - most)
+        total += weight
+        lean += weight * _BESIDE[k, 0] / (_BESIDE[k, 0] + _BESIDE[k, 1])
+    return float(lean / total)
 
 
 @part
@@ -127,7 +149,7 @@ def _update_evidence(
     find, other, e = pair
     along = 0 if abs(find - other) == 1 else 1
     excess = pair_chance[e] / chance[find] - chance[other]
-    fresh = min(max(excess / CLUSTERING, 0.0), 1.0)
+    fresh = min(max(excess / clusters.fresh[along], 0.0), 1.0)
     for k in range(_STANDS):
         infested = chance[other] + (1.0 - chance[other]) * _BESIDE[k, along] * fresh
         found = detects * infested
@@ -145,9 +167,11 @@ def clustering_scale(clusters: ClusterEstimate) -> float:
 
 @part
 def scale_clustering(
-    believed: tuple[NDArray[np.float64], NDArray[np.float64]], linked: Linked, scale: float
+    believed: tuple[NDArray[np.float64], NDArray[np.float64]],
+    linked: Linked,
+    scale: tuple[float, float],
 ) -> None:
-    """Scale what pairs have in common, all over the plot.
+    """Scale what pairs have in common along the row, and across, all over the plot.
 
     `believed` is ``chance (n,)`` and ``pair_chance (e,)``, the second changed in place.
     """
@@ -155,8 +179,10 @@ def scale_clustering(
     for i in range(np.uint64(chance.size)):
         p = chance[i]
         for e in range(np.uint32(linked.start[i]), np.uint32(linked.start[i + _NEXT])):
-            q = chance[np.uint32(linked.plant[e])]
-            scaled = p * q + scale * (pair_chance[e] - p * q)
+            j = np.uint32(linked.plant[e])
+            q = chance[j]
+            along = j + _NEXT == i or i + _NEXT == j
+            scaled = p * q + (scale[0] if along else scale[1]) * (pair_chance[e] - p * q)
             pair_chance[e] = bounded_pair_chance(scaled, p, q)
 
 
@@ -166,12 +192,18 @@ def learn_clustering(
     linked: Linked,
     inspections: tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]],
     clusters: ClusterEstimate,
+    lean: float,
 ) -> None:
     """Learn from a day's inspections beside its finds how much infested plants stand together.
 
-    `believed` is ``chance (n,)`` and ``pair_chance (e,)``, the second changed in place.
+    `believed` is ``chance (n,)`` and ``pair_chance (e,)``, the second changed in place; `lean` what
+    :func:`leaning` was in the morning, 0 where no direction is told from another.
     """
     plants, found, detects = inspections
     for k in range(plants.size):
         update_clusters(believed, linked, (0 + plants[k], found[k], detects[k]), clusters)
-    scale_clustering(believed, linked, clustering_scale(clusters))
+    along = across = clustering_scale(clusters)
+    if lean > 0.0:
+        now = leaning(clusters.evidence)
+        along, across = along * now / lean, across * (1.0 - now) / (1.0 - lean)
+    scale_clustering(believed, linked, (along, across))

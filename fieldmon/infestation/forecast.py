@@ -6,9 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import gammaincinv
 
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import counted
 from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +29,11 @@ if TYPE_CHECKING:
 NIGHTS = 14
 # how far a rate that nobody measured on the plot may be off, as a share (1 sigma; our choice): so
 # much of what is still to come
-_RATE_DOUBT = 0.25
+_RATE_DOUBT = 0.4
+# what arrives from outside is a guess of ours: how many finds it is worth. So it may well be that
+# nothing arrives, or four times as much (our choice)
+_ARRIVALS_KNOWN = 0.5
+_DRAWS = 2000
 # an interval of 90 % is so many standard deviations wide
 _SIGMAS = 3.29
 
@@ -112,26 +119,68 @@ def forecast(
     >>> bool(ahead.low[-1] < ahead.expected[-1] < ahead.high[-1])
     True
     """
-    belief, first = evening, float(evening.chance.sum())
-    expected, begins = [first], _ratios(now or _estimate(evening, grid, evening.doubt))
+    mornings = [evening]
+    for spread in nights:
+        mornings.append(mornings[-1].overnight(spread))
+    expected = np.array([float(one.chance.sum()) for one in mornings])
+    arrived = expected - _from_inside(evening, nights, expected)
+    found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
     # what is more now than believed sends out more: as a share, it stays in doubt
-    doubt = (begins[1] - begins[0]) / _SIGMAS
+    tonight = _deviation(now or _estimate(evening, grid, evening.doubt))
+    to_come = max(1.0 - expected[0] / max(expected[-1], 1e-9), 0.0)
+    fields = _deviation(_estimate(mornings[-1], grid, 0.0))
+    later = float(np.sqrt(tonight**2 + (_RATE_DOUBT * to_come) ** 2 + fields**2))
+    known = _ARRIVALS_KNOWN + max(found - 2.0, 0.0)
+    ends = [
+        _ends((inside, outside), doubt, known)
+        for inside, outside, doubt in zip(
+            (expected - arrived)[[0, -1]], arrived[[0, -1]], (tonight, later), strict=True
+        )
+    ]
+    # drawn tonight and for the last morning, which takes longest; between them evenly
+    begin, end = ends
+    low, high = (np.linspace(begin[k], end[k], len(expected)) for k in range(2))
+    return Forecast(expected, np.floor(expected * low), np.ceil(expected * high), weather)
+
+
+def _from_inside(evening: Belief, nights: Sequence[Spread], expected: Floats) -> Floats:
+    """Return the expected number each morning, but for what came from outside and its offspring."""
+    if not isinstance(evening, TracedPairs):
+        return expected
+    belief = evening.without_arrivals
+    inside = [float(belief.chance.sum())]
     for spread in nights:
         belief = belief.overnight(spread)
-        expected.append(float(belief.chance.sum()))
-    to_come = max(expected[-1] - first, 0.0) / max(expected[-1], 1e-9)
-    doubt = float(np.hypot(doubt, _RATE_DOUBT * to_come))
-    ends = _ratios(_estimate(belief, grid, doubt))
-    of = np.array(expected)
-    # drawn tonight and for the last morning, which takes longest; between them evenly
-    low, high = (np.linspace(*pair, len(of)) for pair in zip(begins, ends, strict=True))
-    return Forecast(of, np.floor(of * low), np.ceil(of * high), weather)
+        inside.append(float(belief.chance.sum()))
+    least: Floats = np.minimum(np.array(inside), expected)
+    return least
 
 
 def _estimate(belief: Belief, grid: PlantGrid, doubt: float) -> PlotEstimate:
     return estimate_plot(grid, belief.chance, belief.pair_chance, doubt=doubt)
 
 
-def _ratios(made: PlotEstimate) -> tuple[float, float]:
-    """Return the ends of the interval over the expected number."""
-    return made.low / made.expected, made.high / made.expected
+def _deviation(made: PlotEstimate) -> float:
+    """Return the standard deviation of the number, over the number; never none."""
+    return max((made.high - made.low) / made.expected / _SIGMAS, 0.01)
+
+
+def _ends(parts: tuple[float, float], doubt: float, known: float) -> tuple[float, float]:
+    """Return the ends of the interval over the expected number.
+
+    Parameters
+    ----------
+    parts
+        Expected of what was on the plot, and of what arrives.
+    doubt
+        How far the first may be off, as a share.
+    known
+        As many finds tell how much arrives.
+    """
+    draws = RandomStreams(0).of("forecast").random((2, _DRAWS))
+    inside, outside = (
+        part * gammaincinv(shape, drawn) / shape
+        for part, shape, drawn in zip(parts, (doubt**-2.0, known), draws, strict=True)
+    )
+    low, high = np.quantile(inside + outside, (0.05, 0.95)) / sum(parts)
+    return float(low), float(high)

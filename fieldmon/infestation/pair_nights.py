@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import Linked
 
+    # along the row, and across
+    _Rates = tuple[float, float]
+
 _1 = np.uint64(1)
 # rows of the room for the neighbours of a plant: chance that each infects it; that it escapes each
 # where there is an infestation beside it; and that with the most infested neighbour left out
@@ -28,17 +31,24 @@ _INFECTS, _ESCAPES, _ESCAPES_BUT = 0, 1, 2
 
 
 def night_of_pairs(
-    believed: tuple[NDArray[np.float64], NDArray[np.float64]], linked: Linked, spread: Spread
+    believed: tuple[NDArray[np.float64], NDArray[np.float64]],
+    linked: Linked,
+    spread: Spread,
+    lean: float = 0.5,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return ``chance (n,)`` and ``pair_chance (e,)`` of the next morning from those of a night."""
+    """Return ``chance (n,)`` and ``pair_chance (e,)`` of the next morning from those of a night.
+
+    `lean` is the share of what goes to neighbours that goes along the row.
+    """
     chance, pair_chance = believed
     after, pair_after = np.empty_like(chance), np.empty_like(pair_chance)
     density, escape = np.empty_like(chance), np.empty_like(pair_chance)
-    rule = spread.rate_per_day, spread.to == "one", spread.arrivals_per_day
+    along, across = (min(2.0 * share * spread.rate_per_day, 1.0) for share in (lean, 1.0 - lean))
+    rule = (along, across), spread.to == "one", spread.arrivals_per_day
     room = np.empty((3, int(np.diff(linked.start).max(initial=0))))
     _find_local_density(believed, density, linked)
     _find_escapes(believed, (after, density, escape), linked, room, rule)
-    _find_pairs(believed, (after, pair_after, density, escape), linked, rule[0])
+    _find_pairs(believed, (after, pair_after, density, escape), linked, spread.rate_per_day)
     return after, pair_after
 
 
@@ -64,7 +74,7 @@ def _find_escapes(
     after: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
     room: NDArray[np.float64],
-    rule: tuple[float, bool, float],
+    rule: tuple[_Rates, bool, float],
 ) -> None:
     """Find every plant's chance in the morning, and what its pairs need.
 
@@ -88,11 +98,12 @@ def _escape_any(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     after: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
-    given: tuple[NDArray[np.float64], tuple[float, bool, float]],
+    given: tuple[NDArray[np.float64], tuple[_Rates, bool, float]],
 ) -> float:
     """Return the chance that a clean plant stays so; find it but for each of its neighbours."""
     chance, (_, density, escape) = believed[0], after
     room, (rate, to_one, arrivals) = given
+    rates = rate, to_one
     first, degree = linked.start[i], linked.start[i + _1] - linked.start[i]
     total, together = 0.0, 0.0
     # the most infested neighbour, and the next
@@ -101,7 +112,7 @@ def _escape_any(
         j, infested = _beside_clean(believed, linked, np.uint64(first + k), 1.0 - chance[i])
         total += infested
         together += infested * density[j] ** 2
-        room[_INFECTS, k] = _transmits(linked, (rate, to_one), j) * infested
+        room[_INFECTS, k] = _transmits(linked, rates, (i, j)) * infested
         if infested > most:
             most, second, which = infested, most, k
         elif infested > second:
@@ -145,11 +156,12 @@ def _escape_four(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     after: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
-    rule: tuple[float, bool, float],
+    rule: tuple[_Rates, bool, float],
 ) -> float:
     """Do the same for a plant with four neighbours, to the same digits."""
     chance, (_, density, escape) = believed[0], after
     rate, to_one, arrivals = rule
+    rates = rate, to_one
     stay, clean = 1.0 - arrivals, 1.0 - chance[i]
     e0 = np.uint64(np.uint32(linked.start[i]))
     e1, e2, e3 = e0 + _1, e0 + np.uint64(2), e0 + np.uint64(3)
@@ -167,10 +179,10 @@ def _escape_four(
     second = greater(other_more, less) if first_two else greater(more, other_less)
     which = b1 > b0 if first_two else 2 + (b3 > b2)
     g, g_but = _one_infestation(b0 + b1 + b2 + b3, together, (most, second))
-    s0 = _transmits(linked, (rate, to_one), j0) * b0
-    s1 = _transmits(linked, (rate, to_one), j1) * b1
-    s2 = _transmits(linked, (rate, to_one), j2) * b2
-    s3 = _transmits(linked, (rate, to_one), j3) * b3
+    s0 = _transmits(linked, rates, (i, j0)) * b0
+    s1 = _transmits(linked, rates, (i, j1)) * b1
+    s2 = _transmits(linked, rates, (i, j2)) * b2
+    s3 = _transmits(linked, rates, (i, j3)) * b3
     f0, f1, f2, f3 = _escapes(s0, g), _escapes(s1, g), _escapes(s2, g), _escapes(s3, g)
     escape[e0] = stay * (1.0 - g * (1.0 - f1 * f2 * f3))
     escape[e1] = stay * (1.0 - g * (1.0 - f0 * f2 * f3))
@@ -195,9 +207,11 @@ def _beside_clean(
 
 
 @inlined
-def _transmits(linked: Linked, rule: tuple[float, bool], j: np.uint32) -> float:
-    """Return the chance that an infested plant infests a given neighbour."""
-    rate, to_one = rule
+def _transmits(linked: Linked, rule: tuple[_Rates, bool], way: tuple[int, np.uint32]) -> float:
+    """Return the chance that an infested plant j infests its neighbour i."""
+    (along, across), to_one = rule
+    i, j = way
+    rate = along if j + _1 == i or i + _1 == j else across
     return rate / (linked.start[np.uint64(j) + _1] - linked.start[j]) if to_one else rate
 
 

@@ -65,7 +65,7 @@ class PairApproximation:
         n, linked = len(self.chance), self.grid.linked
         believed = self.chance.copy(), self.pair_chance.copy()
         inspections = plants, found, learning.detects(len(plants))
-        learn_clustering(believed, linked, inspections, ClusterEstimate.none(n))
+        learn_clustering(believed, linked, inspections, ClusterEstimate.none(n), 0.0)
         _learn_pairs(believed, linked, inspections, learning.treated, Neighbourhood.of(n))
         return PairApproximation(self.grid, *believed)
 

@@ -21,10 +21,12 @@ from fieldmon.infestation.clustering import (
     ClusterEstimate,
     chance_apart,
     kept_evidence,
+    leaning,
     learn_clustering,
     no_evidence,
 )
 from fieldmon.infestation.cohorts import Cohorts
+from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
@@ -96,6 +98,8 @@ class TracedPairs:
         and spread at once.
     wind_m_s
         Where the wind has gone of late, by which finds are traced.
+    latency
+        For how many nights infestations hide, as far as inspections tell; None: a pest was named.
     """
 
     grid: PlantGrid
@@ -108,6 +112,7 @@ class TracedPairs:
     share_at_start: float
     cohorts: Cohorts | None = None
     wind_m_s: tuple[float, float] = (0.0, 0.0)
+    latency: Latency | None = None
 
     @classmethod
     def of(cls, grid: PlantGrid, chance: Floats, clustering: float = CLUSTERING) -> TracedPairs:
@@ -118,11 +123,14 @@ class TracedPairs:
         together = pair_chances(chance, grid, clustering)
         unseen, mean = np.full(len(chance), _SENT), float(chance.mean())
         counts = OriginCounts.none()
-        return cls(grid, chance, together, shares, unseen, counts, no_evidence(), mean)
+        latency = Latency.none(chance)
+        return cls(
+            grid, chance, together, shares, unseen, counts, no_evidence(), mean, latency=latency
+        )
 
     def of_pest(self, pest: Pest) -> TracedPairs:
         """Return the same, of a plot on which this pest lives."""
-        return replace(self, cohorts=Cohorts.none(pest, len(self.chance)))
+        return replace(self, cohorts=Cohorts.none(pest, len(self.chance)), latency=None)
 
     @property
     def pest(self) -> Pest | None:
@@ -161,10 +169,11 @@ class TracedPairs:
     @property
     def in_sight(self) -> TracedPairs:
         """The same of what an inspection can see: a day is planned by it."""
-        if self.cohorts is None or not self.cohorts.ages:
+        hidden = self._hidden()
+        if hidden is None:
             return self
         start, other = self.grid.adjacent
-        seen = 1.0 - self.cohorts.hidden
+        seen = 1.0 - hidden
         both = self.pair_chance * np.repeat(seen, np.diff(start)) * seen[other]
         return replace(self, chance=np.maximum(self.chance * seen, LEAST_CHANCE), pair_chance=both)
 
@@ -195,31 +204,47 @@ class TracedPairs:
         n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
         none = np.zeros((2, n))
         told = self.counts.detects(learning.detects(len(plants)))
-        inspections = plants, found, self._shown(plants, told)
+        shown = self._shown(plants, told)
+        inspections = plants, found, shown
         day = _Day(self.shares.copy(), self.chance.copy(), *none, *nothing)
-        clusters = ClusterEstimate.none(n, self.evidence)
+        lean = leaning(self.evidence)
+        clusters = ClusterEstimate.none(n, self.evidence, lean)
         believed = self.chance.copy(), self.pair_chance.copy()
-        learn_clustering(believed, self.grid.linked, inspections, clusters)
+        learn_clustering(believed, self.grid.linked, inspections, clusters, lean)
         evidence = kept_evidence(clusters.evidence)
         jumps = self._jumps(evidence)
         traces = self.traces.own()
         each = self.reach.kernels * self.beyond[:, None, None]
         room = _Room(each, Neighbourhood.of(n), Raised.of(n))
         rule = learning.treated, jumps
-        _learn(believed, self.grid.linked, inspections, rule, (day, traces), room)
+        # of what a clean inspection leaves, so much was hidden, and the rest overlooked
+        hidden = (told - shown) / np.maximum(told * (1.0 - shown), LEAST_CHANCE)
+        inspections_of = *inspections, hidden.clip(0.0, 1.0)
+        _learn(believed, self.grid.linked, inspections_of, rule, (day, traces), room)
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence,
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
+            latency=self.latency
+            and self.latency.inspected(plants, found, told, believed[0] / self.chance),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return lowered.counting(self, day)
 
     def _shown(self, plants: NDArray[np.int32], detects: Floats) -> Floats:
         """Return the chance that inspections find what is there, seen yet or not, ``(k,)``."""
-        if self.cohorts is None or not self.cohorts.ages:
-            return detects
-        return detects * (1.0 - self.cohorts.hidden[plants])
+        hidden = self._hidden(plants)
+        return detects if hidden is None else detects * (1.0 - hidden)
+
+    def _hidden(self, plants: NDArray[np.int32] | None = None) -> Floats | None:
+        """Return the share of plants' chances that no inspection can see, ``(k,)``; None: none."""
+        if self.cohorts is not None and self.cohorts.ages:
+            return self.cohorts.hidden if plants is None else self.cohorts.hidden[plants]
+        if self.latency is not None and self.latency.matters:
+            return self.latency.hidden(
+                self.chance if plants is None else self.chance[plants], plants
+            )
+        return None
 
     def _lowered(self, after: TracedPairs, day: _Day, beyond: Floats) -> Floats:
         """Return how much less likely plants are as no relatives were found about them, ``(n,)``.
@@ -271,7 +296,7 @@ class TracedPairs:
         rate = spread.rate_per_day * min(1.0, beside * self.counts.scale[BESIDE_IT])
         near = replace(spread, rate_per_day=rate, arrivals_per_day=0.0)
         pairs = self.chance, self.pair_chance
-        chance, pair_chance = night_of_pairs(pairs, self.grid.linked, near)
+        chance, pair_chance = night_of_pairs(pairs, self.grid.linked, near, leaning(self.evidence))
         brought = self._brought(reach, moves, sends, spread)
         arrives = 1.0 - np.exp(-brought.sum(axis=0))
         gain = (1.0 - chance) * arrives
@@ -288,6 +313,8 @@ class TracedPairs:
 
     def _aged(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
         """Return a morning with the young a night older, and with the wind of late."""
+        if self.latency is not None:
+            return replace(morning, latency=self.latency.overnight(self.chance, morning.chance))
         if self.cohorts is None or not isinstance(spread, PestSpread):
             return morning
         gain = np.maximum(morning.chance - self.chance, 0.0)
@@ -324,12 +351,33 @@ class TracedPairs:
         shares: NDArray[np.float32] = parts / parts.sum(axis=1, keepdims=True)
         return shares
 
+    @property
+    def arrivals_found(self) -> float:
+        """How many finds came from outside of the plot, as the season's inspections have it."""
+        return float(self.counts.found[[ANYWHERE, BY_EDGE]].sum())
+
+    @property
+    def without_arrivals(self) -> TracedPairs:
+        """The same of what did not come from outside, and nothing will."""
+        expected, found = self.counts.expected.copy(), self.counts.found.copy()
+        expected[[ANYWHERE, BY_EDGE]], found[[ANYWHERE, BY_EDGE]] = 1e12, 0.0
+        shares = self.shares.astype(np.float64)
+        outside = shares[:, [ANYWHERE, BY_EDGE]].sum(axis=1)
+        brought = np.einsum("i,ik->k", self.chance, shares)
+        # what came from the plant beside it came from where that one did
+        arrived = brought[[ANYWHERE, BY_EDGE]].sum() / max(
+            brought.sum() - brought[BESIDE_IT], 1e-12
+        )
+        inside = 1.0 - outside - shares[:, BESIDE_IT] * min(arrived, 1.0)
+        return replace(self.times(inside), counts=OriginCounts(found, expected))
+
     def treated(self, left: Floats) -> TracedPairs:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
         start, other = self.grid.adjacent
         chance = np.maximum(self.chance * left, LEAST_CHANCE)
         together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
-        return replace(self, chance=chance, pair_chance=together)
+        latency = self.latency and self.latency.treated(left)
+        return replace(self, chance=chance, pair_chance=together, latency=latency)
 
 
 def _moving(spread: PestSpread, rate: float | None, moves: float) -> PestSpread:
@@ -385,16 +433,17 @@ class _Room(NamedTuple):
 def _learn(
     believed: tuple[Floats, Floats],
     linked: Linked,
-    inspections: tuple[NDArray[np.int32], NDArray[np.bool_], Floats],
+    inspections: tuple[NDArray[np.int32], NDArray[np.bool_], Floats, Floats],
     rule: tuple[bool, float],
     work: tuple[_Day, Traces],
     room: _Room,
 ) -> None:
     """Learn from a day's inspections, one after the other, in place.
 
-    `rule` is whether finds are treated, and the chance that insects jump.
+    `inspections` end with the share of what each leaves that was hidden, not overlooked; `rule` is
+    whether finds are treated, and the chance that insects jump.
     """
-    plants, found, detects = inspections
+    plants, found, detects, hidden = inspections
     treated, jumps = rule
     day, traces = work
     chance = believed[0]
@@ -405,8 +454,9 @@ def _learn(
         n = update_neighbourhood(believed, linked, (i, found[k]), (detects[k], treated), room.near)
         for t in range(n):
             _share(day, chance, room.near.plant[t])
-        day.shares[i, :] = 0.0
-        day.shares[i, OVERLOOKED] = 1.0
+        for o in range(N_ORIGINS):
+            day.shares[i, o] *= 0.0 if found[k] else hidden[k]
+        day.shares[i, OVERLOOKED] += 1.0 if found[k] else 1.0 - hidden[k]
         if found[k]:
             n = trace(believed, linked, traces, (i, p, jumps), room.raised)
             for t in range(n):

@@ -97,6 +97,14 @@ def end(db: sqlite3.Connection, batch: int, rows: int, *, grows: bool = False) -
     touch(db, schema.BATCHES.name)
 
 
+def count_findings(db: sqlite3.Connection) -> None:
+    """Let each batch of findings have as many rows as are left of it: some may be corrections."""
+    db.execute(
+        "UPDATE batches SET rows = (SELECT count(*) FROM inspections WHERE batch = batches.fid) "
+        "WHERE kind = 'findings'"
+    )
+
+
 def all_of(db: sqlite3.Connection) -> tuple[Batch, ...]:
     """Return every batch, the last one first."""
     rows = db.execute(

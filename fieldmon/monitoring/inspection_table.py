@@ -17,6 +17,7 @@ from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.transactions import copy_season
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -28,12 +29,16 @@ _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 
 
-def counting_copy(season: Path, folder: Path) -> Path:
-    """Return a copy of a season that holds only the inspections that were not undone there."""
+def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
+    """Return a copy of a season with only the inspections that were not undone there.
+
+    Rows `besides` them are left out too.
+    """
     copy = folder / season.name
     copy_season(season, copy)
     with closing(sqlite3.connect(copy)) as db:
         db.execute("DELETE FROM inspections WHERE undone = 1")
+        db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
         db.commit()
     return copy
 

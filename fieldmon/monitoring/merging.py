@@ -56,7 +56,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
 
     Raise `FileProblem` if it is no copy of the same season.
     """
-    _refuse_strangers(db, other)
+    refuse_strangers(db, other)
     copies = [{table.name: _rows(one, table) for table in TAKEN} for one in (db, other)]
     phones = [phone_tables.brought(one) for one in (db, other)]
     batches = _merged_batches(copies)
@@ -79,7 +79,8 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
     return said
 
 
-def _refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
+def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
+    """Raise `FileProblem` unless both are copies of one season."""
     for table in SAME:
         names = ", ".join(table.names)
         wanted = f"SELECT {names} FROM {table.name} ORDER BY fid"  # noqa: S608 - names of ours

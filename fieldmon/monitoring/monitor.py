@@ -14,7 +14,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import PriorSettings, prior_chance
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.history import BeliefSettings, in_sight
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
@@ -183,12 +183,13 @@ class Monitor:
         self.day_number += 1
 
     def _scene(self) -> Scene:
+        believed = in_sight(self._belief)
         return Scene(
             aisles=self.plot.aisles,
             robot=self.robot,
-            chance=self._belief.chance,
-            pair_chance=self._belief.pair_chance,
-            traces=self._belief.traces,
+            chance=believed.chance,
+            pair_chance=believed.pair_chance,
+            traces=believed.traces,
             last_inspected=self._last_inspected,
             day=self.day_number,
             at=resting_place(self.robot, self._trail),
@@ -337,7 +338,7 @@ class MonitorDay:
     def _plan_on(self, at: int, now_s: float) -> None:
         """Begin again where the robot stands, from what is believed after all that was told."""
         monitor = self._monitor
-        believed = monitor._believed_after(self)  # noqa: SLF001 - as above
+        believed = in_sight(monitor._believed_after(self))  # noqa: SLF001 - as above
         last = monitor.last_inspected.copy()
         last[[stop.plant for stop, _ in self._told]] = monitor.day_number
         scene = replace(

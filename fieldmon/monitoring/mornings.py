@@ -14,6 +14,7 @@ import numpy as np
 
 import fieldmon.infestation
 from fieldmon.compute.digest import digest
+from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import OriginCounts
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate
@@ -35,9 +36,11 @@ if TYPE_CHECKING:
 # every so many days a morning stays at hand, and the last two of these in the file beside the
 # newest: of a plot of 100 000 plants each is 4 MB
 _EVERY, _IN_FILE = 8, 2
+# how the names of arrays begin that are of what hides
+_LATENCY = "latency_"
 
 
-class _Kept(NamedTuple):
+class _KeptMorning(NamedTuple):
     """A morning as the file keeps it: a name for what it follows from, and for what it is."""
 
     causes: str
@@ -61,7 +64,7 @@ class Mornings:
 
     history: History
     known: dict[int, Belief] = field(default_factory=dict)
-    kept: dict[int, _Kept] = field(default_factory=dict)
+    kept: dict[int, _KeptMorning] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.known[0] = self.history.first_morning
@@ -90,7 +93,7 @@ class Mornings:
         known = {day: morning for day, morning in self.known.items() if day <= since}
         return Mornings(history, known, {d: kept for d, kept in self.kept.items() if d <= since})
 
-    def _unpacked(self, day: int, kept: _Kept) -> Belief | None:
+    def _unpacked(self, day: int, kept: _KeptMorning) -> Belief | None:
         """Return a morning that the file keeps; None: it is not that of what happened."""
         if kept.causes != _causes(self.history, day) or kept.content != digest(kept.chances):
             return None
@@ -108,7 +111,7 @@ def take(db: sqlite3.Connection, mornings: Mornings) -> None:
     if mornings.history.living is not None:
         return
     for day, *kept in db.execute("SELECT day, causes, content, chances FROM mornings"):
-        mornings.kept[day] = _Kept(*kept)
+        mornings.kept[day] = _KeptMorning(*kept)
     rows = db.execute(
         "SELECT day, expected_left, low, high, chance_clean, causes FROM days "
         "WHERE causes IS NOT NULL"
@@ -186,6 +189,7 @@ def _arrays(morning: Belief) -> Arrays | None:
         return {"chance": morning.chance, "pair_chance": morning.pair_chance}
     if not isinstance(morning, TracedPairs) or morning.cohorts is not None:
         return None
+    latency = {} if morning.latency is None else vars(morning.latency)
     return {
         "chance": morning.chance,
         "pair_chance": morning.pair_chance,
@@ -193,6 +197,7 @@ def _arrays(morning: Belief) -> Arrays | None:
         "unseen": morning.unseen,
         "evidence": morning.evidence,
         "counts": np.array([morning.counts.found, morning.counts.expected]),
+        **{f"{_LATENCY}{name}": values for name, values in latency.items()},
     }
 
 
@@ -209,6 +214,10 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     if any(wanted[name].shape != arrays[name].shape for name in wanted):
         return None
     counts = arrays.pop("counts", None)
+    own: dict[str, object] = {}
     if counts is not None:
-        arrays["counts"] = OriginCounts(*counts)
-    return replace(first, **arrays)  # type: ignore[type-var]
+        own["counts"] = OriginCounts(*counts)
+    latency = [name for name in arrays if name.startswith(_LATENCY)]
+    if latency:
+        own["latency"] = Latency(**{name[len(_LATENCY) :]: arrays.pop(name) for name in latency})
+    return replace(first, **arrays, **own)  # type: ignore[type-var]

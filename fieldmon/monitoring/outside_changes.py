@@ -5,7 +5,7 @@ The file notes it by itself (`fieldmon.monitoring.schema.watch`), whoever the ot
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 from typing import TYPE_CHECKING
 
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 _MOST_NAMED = 5
 _DONE = {"update": "was changed", "delete": "was deleted", "insert": "was added"}
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
-_SEEN = ("plant", "date", "time", "result", "count", "who", "notes")
+#: columns that say what was seen
+SEEN = ("plant", "date", "time", "result", "count", "who", "notes")
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,10 @@ class OutsideChange:
     row: int
     what: str
     was: str
+
+    def at_row(self, row: int) -> OutsideChange:
+        """Return the same change of another row, as of another copy."""
+        return replace(self, row=row)
 
     def __str__(self) -> str:
         """Return what was done to which row."""
@@ -116,18 +121,14 @@ def correct(
     batch = batches.begin(db, "corrections", "changed by another program", who)
     for change in found:
         if change.what != "delete":
-            _take_row(db, change, plot, settings, batch)
-    # what a batch added is what is left of it: some rows were deleted, some are corrections now
-    db.execute(
-        "UPDATE batches SET rows = (SELECT count(*) FROM inspections WHERE batch = batches.fid) "
-        "WHERE kind = 'findings'"
-    )
+            take_row(db, change, plot, settings, batch)
+    batches.count_findings(db)
     db.execute("UPDATE batches SET rows = ? WHERE fid = ?", (len(found), batch))
     db.execute("UPDATE outside_changes SET batch = ? WHERE batch IS NULL", (batch,))
     return len(found)
 
 
-def _take_row(
+def take_row(
     db: sqlite3.Connection,
     change: OutsideChange,
     plot: tuple[PlantGrid, RowLabel],
@@ -136,7 +137,7 @@ def _take_row(
 ) -> None:
     """Make one row of inspections what it says now, in every column."""
     row = db.execute(
-        f"SELECT {', '.join(_SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
+        f"SELECT {', '.join(SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
         (change.row,),
     ).fetchone()
     try:
@@ -166,7 +167,7 @@ def _take_row(
 
 def _inspection(row: tuple[object, ...]) -> Inspections:
     """Return one inspection from what its row says; raise where it makes no sense."""
-    said = dict(zip(_SEEN, row, strict=True))
+    said = dict(zip(SEEN, row, strict=True))
     on = date.fromisoformat(str(said["date"])[:10])
     second = np.nan if said["time"] is None else inspection_lots.second_of(str(said["time"]))
     count = np.nan if said["count"] is None else float(str(said["count"]))

@@ -14,6 +14,7 @@ import zipfile
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.io.writers.qml import choice_list, field, numbered, option
 from fieldmon.monitoring.qgis_styles import ASKED_STYLES, PHOTO_STYLES, STYLES
 
 if TYPE_CHECKING:
@@ -168,10 +169,11 @@ def _checked(on: bool) -> str:  # noqa: FBT001 - one flag
 def _layer(file: str, one: Shown, shape: str) -> str:
     source = f"./{file}|layername={one.table}" + (f"|subset={one.only}" if one.only else "")
     style = (STYLES | PHOTO_STYLES | ASKED_STYLES)[one.table]
-    parts = r"<mapTip>.*</mapTip>|<renderer-v2.*</renderer-v2>"
+    parts = r"<mapTip>.*</mapTip>|<renderer-v2.*</renderer-v2>|<labeling.*</labeling>"
     drawn = "".join(re.findall(parts, style, re.DOTALL))
     return (
-        f'<maplayer type="vector" geometry="{_SHAPES[shape]}" readOnly="{int(not one.edited)}">'
+        f'<maplayer type="vector" geometry="{_SHAPES[shape]}" readOnly="{int(not one.edited)}" '
+        f'labelsEnabled="{int("<labeling" in style)}">'
         f"<id>{one.id}</id><datasource>{escape(source)}</datasource>"
         f"<layername>{escape(one.title)}</layername><srs>{_system(4326)}</srs>"
         f'<provider encoding="UTF-8">ogr</provider>{_form() if one.edited else ""}'
@@ -195,35 +197,19 @@ def _themes(earlier: list[Shown]) -> str:
 
 def _form() -> str:
     """Return what people fill in of a finding: a choice list, today's date, a count."""
-    results = "".join(f'<Option type="Map">{_option(a, b)}</Option>' for a, b in _RESULTS)
-    day = _option("display_format", "yyyy-MM-dd") + _option("field_format", "yyyy-MM-dd")
-    count = (
-        *(_option("AllowNull", "true", "bool"), _option("Min", "0", "int")),
-        *(_option("Max", "999", "int"), _option("Step", "1", "int"), _option("Style", "SpinBox")),
-    )
+    day = option("display_format", "yyyy-MM-dd") + option("field_format", "yyyy-MM-dd")
     return (
         "<fieldConfiguration>"
-        + "".join(_field(name, "Hidden") for name in _HIDDEN)
-        + _field("result", "ValueMap", f'<Option type="List" name="map">{results}</Option>')
-        + _field("date", "DateTime", f"{day}{_option('calendar_popup', 'true', 'bool')}")
-        + _field("count", "Range", "".join(count))
+        + "".join(field(name, "Hidden") for name in _HIDDEN)
+        + choice_list("result", _RESULTS)
+        + field("date", "DateTime", f"{day}{option('calendar_popup', 'true', 'bool')}")
+        + numbered("count")
         + "</fieldConfiguration><defaults>"
         '<default field="date" expression="to_date(now())" applyOnUpdate="0"/>'
         '<default field="undone" expression="0" applyOnUpdate="0"/></defaults><constraints>'
         '<constraint field="result" constraints="1" notnull_strength="1" unique_strength="0" '
         'exp_strength="0"/></constraints>'
     )
-
-
-def _field(name: str, widget: str, inside: str = "") -> str:
-    return (
-        f'<field name="{name}" configurationFlags="None"><editWidget type="{widget}"><config>'
-        f'<Option type="Map">{inside}</Option></config></editWidget></field>'
-    )
-
-
-def _option(name: str, value: str, kind: str = "QString") -> str:
-    return f'<Option type="{kind}" name="{name}" value="{escape(value)}"/>'
 
 
 def _system(code: int) -> str:

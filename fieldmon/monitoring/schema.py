@@ -298,14 +298,15 @@ CAUSES = (
     *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS, OUTSIDE_CHANGES, LABELS, LOG),
     *phone_tables.TABLES,
 )
-_INSPECTED = (
+#: what an inspection says, for people; of a trigger's row `old`
+INSPECTED = (
     "coalesce(old.result, '') || ' at row ' || coalesce(old.line, '') || ', plant ' "
     "|| coalesce(old.number, '') || ' on ' || coalesce(old.date, '')"
 )
 #: layers that nobody may change unnoticed: what is shown or known of each row, and those of its
 #: columns that make no difference
 _WATCHED: dict[str, tuple[str, tuple[str, ...]]] = {
-    "inspections": (_INSPECTED, ("notes",)),
+    "inspections": (INSPECTED, ("notes",)),
     "treatments": ("coalesce(old.product, '') || ' on ' || coalesce(old.date, '')", ()),
     "settings": ("old.name || ' = ' || old.value", ()),
     "batches": ("coalesce(old.source, '')", ()),

@@ -25,8 +25,10 @@ from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
     batches,
     cautions,
+    copy_corrections,
     day_figures,
     derived_layers,
+    drafts,
     inspection_lots,
     inspection_table,
     label_table,
@@ -177,6 +179,8 @@ class Season:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
             self.risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
+        #: findings that another program added to the file, and why some of them do not count
+        self.drafts = self.take_drafts()
 
     def __repr__(self) -> str:
         """Say which file and which plot."""
@@ -733,6 +737,75 @@ class Season:
             n = outside_changes.correct(db, plot, settings, who)
             if n:
                 season_log.append(db, "corrected", who, states=season_log.states(db), rows=n)
+                self._refresh(db)
+        return n
+
+    def take_drafts(self) -> tuple[str, ...]:
+        """Let findings count that another program added to the file itself.
+
+        They are a batch of their own. Return a sentence for each that does not count, and why; it
+        stays as it is. Where more was changed, nothing is taken before that is settled.
+        """
+        plot = self.plot.grid, self.label
+        with self._lock, self.store.reading() as db:
+            if not drafts.any_waiting(db) or outside_changes.waiting(db):
+                return ()
+            known = self._read(db)
+            found = drafts.read(db, plot, known.settings, known.history.inspections)
+        if any(one.inspection is not None for one in found):
+            try:
+                with self._writing() as db:
+                    before = self._read(db)
+                    found = drafts.read(db, plot, before.settings, before.history.inspections)
+                    good = [one for one in found if one.inspection is not None]
+                    self._take_drafts(db, good, before.settings)
+            except FileProblem as error:  # who may only read it reads it without them
+                return (str(error),)
+        return tuple(one.sentence for one in found if one.inspection is None)
+
+    def _take_drafts(
+        self, db: sqlite3.Connection, taken: list[drafts.Draft], settings: MonitoringSettings
+    ) -> None:
+        batch = batches.begin(db, "findings", drafts.SOURCE, "")
+        said = (self.plot.grid, self.label), settings, batch
+        news = drafts.keep(db, taken, *said)
+        batches.end(db, batch, len(taken))
+        self._log_seen(db, news, (batch, drafts.SOURCE, ""))
+        # there are as many rows as before: all is read again
+        self._refresh(db, settings.day(news.date.min().item()))
+
+    def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
+        """Return what another program changed of inspections in a copy of this season.
+
+        A file that is no copy of it has none.
+        """
+        with self.store.reading() as db, Store(copy).reading() as theirs:
+            try:
+                merging.refuse_strangers(db, theirs)
+            except FileProblem:
+                return ()
+            return copy_corrections.waiting(theirs)
+
+    def take_corrections(self, copy: Path, name: str, who: str) -> int:
+        """Take what was corrected or deleted in a copy of this season; return how many were new.
+
+        They are a batch of their own, of this person. Raise `FileProblem` if a changed row makes no
+        sense or is not here, and `SettingError` if nobody is named.
+        """
+        if not who.strip():
+            raise SettingError(
+                worded(
+                    "Corrections must have an author, but {name} was changed by another program "
+                    "and nobody says who did. Give --who NAME.",
+                    name=name,
+                )
+            )
+        with self._lock, self.store.writing() as db, Store(copy).reading() as theirs:
+            plot = self.plot.grid, self.label
+            n = copy_corrections.take(db, theirs, plot, _settings(db), (name, who.strip()))
+            if n:
+                states = season_log.states(db)
+                season_log.append(db, "corrected", who.strip(), states=states, rows=n)
                 self._refresh(db)
         return n
 

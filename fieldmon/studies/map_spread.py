@@ -3,6 +3,11 @@
 Each way of spreading has its numbers fitted on one half of a plot and foretells the other, so that
 none is told what it is asked. Scored are the plants that were clean: minus the logarithm of the
 chance given to what was seen, on average.
+
+Half of a plot tells little of which kernel it is, and the one that fits it best foretells the other
+half worse than no kernel at all where few plants were infested. So the last way takes all of them,
+and as many anywhere besides, each as likely as it foretold what was seen so far, on earlier dates
+too (Bayesian model averaging: Hoeting et al. 1999, Stat. Sci. 14:382).
 """
 
 from __future__ import annotations
@@ -29,6 +34,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Mask = NDArray[np.bool_]
+    #: how many numbers are fitted, and what they bring to each plant
+    _Way = tuple[int, Callable[[Floats], Floats]]
 
 #: public maps of several dates
 DATED = ("citrus_ctv_IVI3and4.csv", "hop_viruses_HpLV.csv", "DidymellaWatermelon.csv")
@@ -37,6 +44,8 @@ _LEAST = 1e-3
 # mean jumps, in plants, from which a kernel's is taken; and how often the rows are preferred
 _REACHES = (0.7, 1.5, 3.0, 6.0, 12.0)
 _ALONG = (0.33, 1.0, 3.0)
+_WAYS = ("no_change", "evenly", "thesis", "kernel", "weighed")
+_N_KERNELS = len(_REACHES) * len(_ALONG)
 # a date must bring so many, and leave so many clean
 _FEW = 5
 
@@ -54,6 +63,8 @@ class Interval(NamedTuple):
         ``(n,)`` who was infested.
     half
         ``(n,)`` which half of the plot each plant is in.
+    earlier
+        Who was infested before and after each earlier interval of the map.
     """
 
     name: str
@@ -61,6 +72,11 @@ class Interval(NamedTuple):
     before: Mask
     after: Mask
     half: Mask
+    earlier: tuple[tuple[Mask, Mask], ...] = ()
+
+    def as_of(self, before: Mask, after: Mask) -> Interval:
+        """Return another interval of the same map."""
+        return self._replace(before=before, after=after, earlier=())
 
 
 @dataclass(frozen=True)
@@ -81,8 +97,10 @@ class MapScores:
         The thesis's rule: with a chance each plant next to an infested one.
     kernel
         An exponential kernel with arrivals from outside.
+    weighed
+        All such kernels and as many anywhere, weighed by what they foretold so far.
     reach
-        Its mean jump in plants, of either half.
+        Mean jump of the one kernel in plants, of either half.
     """
 
     name: str
@@ -92,6 +110,7 @@ class MapScores:
     evenly: float
     thesis: float
     kernel: float
+    weighed: float
     reach: tuple[float, float]
 
     def sentence(self) -> str:
@@ -99,7 +118,8 @@ class MapScores:
         return (
             f"{self.name:34} {self.new:3d} of {self.clean:4d} new; log score: no change "
             f"{self.no_change:.3f}, evenly {self.evenly:.3f}, the thesis's rule {self.thesis:.3f}, "
-            f"kernel {self.kernel:.3f} (mean jump {self.reach[0]:g} and {self.reach[1]:g} plants)"
+            f"kernel {self.kernel:.3f} (mean jump {self.reach[0]:g} and {self.reach[1]:g} plants), "
+            f"kernels weighed {self.weighed:.3f}"
         )
 
 
@@ -115,37 +135,64 @@ def intervals_in(folder: Path) -> list[Interval]:
 def _intervals(of: PlantMap) -> list[Interval]:
     grid = of.aisles().grid
     half = np.arange(len(grid)) % of.n_plants >= of.n_plants // 2
-    made = []
+    made: list[Interval] = []
     for k in range(len(of.dates) - 1):
         before, after = of.infested[k], of.infested[k + 1]
         new, clean = np.count_nonzero(after & ~before), np.count_nonzero(~before)
         if new >= _FEW and clean - new >= _FEW and before.any():
             name = f"{of.name} {of.dates[k]} to {of.dates[k + 1]}"
-            made.append(Interval(name, grid, before, after, half))
+            earlier = tuple((one.before, one.after) for one in made)
+            made.append(Interval(name, grid, before, after, half, earlier))
     return made
 
 
 def scores(of: Interval) -> MapScores:
     """Return how well each way of spreading foretells an interval."""
-    ways: dict[str, list[Callable[[Floats], Floats]]] = {
-        "no_change": [_nothing],
-        "evenly": [_evenly],
-        "thesis": [_beside(of)],
-        "kernel": _kernels(of),
-    }
-    scored, reaches = {}, []
-    for name, candidates in ways.items():
-        total = 0.0
-        for half in (False, True):
-            told, asked = (~of.before & (of.half == side) for side in (half, not half))
-            chance, which = _fitted(candidates, of, told)
-            total += _minus_log(chance[asked], of.after[asked]).sum()
-            if name == "kernel":
-                reaches.append(_REACHES[which // len(_ALONG)])
-        scored[name] = float(total / np.count_nonzero(~of.before))
-    new = int(np.count_nonzero(of.after & ~of.before))
-    clean = int(np.count_nonzero(~of.before))
-    return MapScores(of.name, clean, new, **scored, reach=(reaches[0], reaches[1]))
+    clean = ~of.before
+    total, reaches, ways = dict.fromkeys(_WAYS, 0.0), [], _ways(of)
+    before = np.zeros(1 + _N_KERNELS)
+    for then in of.earlier:
+        past = of.as_of(*then)
+        before += [one.evidence for one in _fits(past, _ways(past), ~past.before)]
+    for half in (False, True):
+        told, asked = (clean & (of.half == side) for side in (half, not half))
+        each = _fits(of, ways, told)
+        best = 1 + int(np.argmax([one.evidence for one in each[1:]]))
+        reaches.append(_REACHES[(best - 1) // len(_ALONG)])
+        chances = {
+            "no_change": _chance(_nothing, np.zeros(1), of),
+            "evenly": each[0].chance,
+            "thesis": _fitted((1, _beside(of)), of, told).chance,
+            "kernel": each[best].chance,
+            "weighed": _weighed(each, before),
+        }
+        for name, chance in chances.items():
+            total[name] += float(_minus_log(chance[asked], of.after[asked]).sum())
+    n = np.count_nonzero(clean)
+    scored = {name: one / n for name, one in total.items()}
+    new = int(np.count_nonzero(of.after & clean))
+    return MapScores(of.name, int(n), new, **scored, reach=(reaches[0], reaches[1]))
+
+
+class _Fit(NamedTuple):
+    """The evidence for a way, fitted, and every plant's chance by it ``(n,)``.
+
+    The evidence is the logarithm of the likelihood, less what numbers that were fitted gain by
+    themselves (Schwarz 1978, Ann. Stat. 6:461).
+    """
+
+    evidence: float
+    chance: Floats
+
+
+def _weighed(each: list[_Fit], before: Floats) -> Floats:
+    """Return the chances by all ways, as likely as what was seen so far makes each."""
+    known = before + np.array([one.evidence for one in each])
+    # as likely as not the infested stand tells nothing; else each kernel is as likely
+    known += np.log(np.append(0.5, np.full(_N_KERNELS, 0.5 / _N_KERNELS)))
+    weight = np.exp(known - known.max())
+    chance: Floats = weight / weight.sum() @ np.array([one.chance for one in each])
+    return chance
 
 
 def _nothing(_: Floats) -> Floats:
@@ -171,14 +218,15 @@ def _beside(of: Interval) -> Callable[[Floats], Floats]:
     return brought
 
 
-def _kernels(of: Interval) -> list[Callable[[Floats], Floats]]:
-    """Return what each candidate kernel brings to each plant, by its rate and that of arrivals."""
+def _ways(of: Interval) -> list[_Way]:
+    """Return what evenly, and each kernel, brings to each plant, and how many numbers it has."""
     spacing_m = float(np.sqrt(of.grid.row_spacing_m * of.grid.plant_spacing_m))
-    return [
+    kernels = [
         _by_kernel(of, DistanceKernel("exponential", reach * spacing_m, 1.0 / along))
         for reach in _REACHES
         for along in _ALONG
     ]
+    return [(1, _evenly), *((2, one) for one in kernels)]
 
 
 def _by_kernel(of: Interval, kernel: DistanceKernel) -> Callable[[Floats], Floats]:
@@ -191,21 +239,22 @@ def _by_kernel(of: Interval, kernel: DistanceKernel) -> Callable[[Floats], Float
     return brought
 
 
-def _fitted(
-    candidates: list[Callable[[Floats], Floats]], of: Interval, told: Mask
-) -> tuple[Floats, int]:
-    """Return every plant's chance by the candidate that fits the plants told best, and which."""
-    best, chance, which = np.inf, np.zeros(len(of.before)), 0
-    for k, brought in enumerate(candidates):
+def _fits(of: Interval, ways: list[_Way], told: Mask) -> list[_Fit]:
+    return [_fitted(way, of, told) for way in ways]
 
-        def score(numbers: Floats, brought: Callable[[Floats], Floats] = brought) -> float:
-            return float(_minus_log(_chance(brought, numbers, of)[told], of.after[told]).sum())
 
-        begins = np.log(np.array([0.2, 0.02]))
-        made = minimize(score, begins, method="Nelder-Mead", options={"maxiter": 200})
-        if made.fun < best:
-            best, chance, which = made.fun, _chance(brought, made.x, of), k
-    return chance, which
+def _fitted(way: _Way, of: Interval, told: Mask) -> _Fit:
+    """Return a way with the numbers that fit the plants told best."""
+    numbers, brought = way
+
+    def score(tried: Floats) -> float:
+        return float(_minus_log(_chance(brought, tried, of)[told], of.after[told]).sum())
+
+    begins = np.log(np.array([0.2, 0.02])[:numbers])
+    made = minimize(score, begins, method="Nelder-Mead", options={"maxiter": 200})
+    n = max(int(np.count_nonzero(told)), 1)
+    evidence = -made.fun - 0.5 * numbers * np.log(n)
+    return _Fit(float(evidence), _chance(brought, made.x, of))
 
 
 def _chance(brought: Callable[[Floats], Floats], numbers: Floats, of: Interval) -> Floats:

@@ -14,6 +14,7 @@ from fieldmon.decisions.zones import (
     Zones,
     best_zones,
     outlines,
+    ring_bound,
     whole_plot,
 )
 from fieldmon.errors import SettingError
@@ -196,3 +197,23 @@ def test_what_cannot_be_is_refused(made):
 def test_it_says_itself_in_a_line():
     assert isinstance(best_zones(ROW, np.full(9, 0.5)), Zones)
     assert repr(best_zones(ROW, np.zeros(9))) == "<Zones: 0 zones of 0 m2>"
+
+
+def test_rings_save_nearly_what_the_best_of_all_choices_does_and_never_more_than_their_bound():
+    """Beside every choice of plants of 3 x 4, with the ring of each."""
+    grid, costs = rectangle(3, 4), TreatmentCosts(per_ha=300.0, per_zone=0.0, works=1.0)
+    start, other = grid.adjacent
+    rings = [{i, *other[start[i] : start[i + 1]].tolist()} for i in range(12)]
+    for seed in range(3):
+        chance = np.random.default_rng(seed).random(12)
+        m2 = grid.row_spacing_m * grid.plant_spacing_m
+        gain = chance * costs.per_infested_plant - costs.per_ha * m2 / 10_000
+        best = max(
+            gain[list(set().union(*(rings[i] for i in range(12) if chosen >> i & 1)))].sum()
+            for chosen in range(1, 2**12)
+        )
+        zones = best_zones(grid, chance, Sprayer(rows=0, ring=1), costs)
+        assert best > 0.0
+        assert 0.9 * best <= zones.saved - zones.cost <= best + 1e-9
+        assert best <= ring_bound(grid, chance, 1, costs) + 1e-9
+    assert ring_bound(grid, np.full(12, 1e-4), 1, costs) == 0.0

@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 from fieldmon.infestation.clustering import (
     ClusterEstimate,
     clustering_scale,
+    leaning,
+    no_evidence,
     scale_clustering,
     update_clusters,
 )
@@ -67,12 +69,22 @@ def test_finds_side_by_side_say_more_and_finds_alone_say_less_up_to_a_bound():
     assert 0.0 <= clustering_scale.py_func(estimate(alone)) < 1.0
 
 
-@given(st.floats(0.0, 1.5))
-def test_scaling_moves_what_pairs_have_in_common_and_no_chance(scale):
+@given(st.floats(0.0, 1.5), st.floats(0.0, 1.5))
+def test_scaling_moves_what_pairs_have_in_common_and_no_chance(along, across):
     chance, pair_chance = MORNING.chance.copy(), MORNING.pair_chance.copy()
-    scale_clustering.py_func((chance, pair_chance), GRID.linked, scale)
+    scale_clustering.py_func((chance, pair_chance), GRID.linked, (along, across))
     np.testing.assert_array_equal(chance, MORNING.chance)
     apart = chance[OWN] * chance[NEIGHBOUR]
+    scale = np.where(GRID.row[OWN] == GRID.row[NEIGHBOUR], along, across)
     np.testing.assert_allclose(
         pair_chance - apart, scale * (MORNING.pair_chance - apart), atol=1e-12
     )
+
+
+def test_finds_along_the_row_lean_neighbours_that_way_and_finds_across_the_other():
+    in_rows = estimate([(i, GRID.row[i] % 3 == 0, 0.84) for i in range(N)])
+    across = estimate([(i, i % 7 % 3 == 0, 0.84) for i in range(N)])
+    at_first = leaning.py_func(no_evidence())
+    assert at_first == pytest.approx(0.5, abs=0.03)
+    assert leaning.py_func(in_rows.evidence) > 0.8
+    assert leaning.py_func(across.evidence) < 0.2

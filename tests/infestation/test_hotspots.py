@@ -3,6 +3,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import binom, false_discovery_control, hypergeom
@@ -13,6 +14,7 @@ from fieldmon.infestation.hotspots import (
     _tail,
     _window_p,
     hot_spots,
+    outlines_m,
     record_states,
     states,
 )
@@ -319,3 +321,16 @@ def test_states_of_another_plot_are_refused():
 def test_a_setting_out_of_range_is_refused(wrong):
     with pytest.raises(SettingError, match=str(next(iter(wrong.values())))):
         HotSpotSettings(**wrong)
+
+
+def test_an_outline_holds_the_plants_of_its_own_hot_spot_and_of_no_other():
+    rng = np.random.default_rng(1)
+    state = strewn(rng, len(GRID), 0.01)
+    state = with_cluster(state, GRID, 5 * 40 + 6, 7.0, 1.0, rng)
+    state = with_cluster(state, GRID, 24 * 40 + 33, 10.0, 1.0, rng)
+    spots = hot_spots(GRID, state)
+    assert len(spots) == 2
+    for k, outline in enumerate(outlines_m(GRID, spots)):
+        inside = shapely.contains_xy(outline, GRID.xy_m)
+        assert inside[spots.of_plant == k].all()
+        assert not inside[spots.of_plant == 1 - k].any()

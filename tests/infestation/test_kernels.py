@@ -83,3 +83,12 @@ def test_a_kernel_far_below_a_plant_s_spacing_goes_to_the_plants_beside_it():
 def test_impossible_kernels_are_refused(bad):
     with pytest.raises(SettingError):
         DistanceKernel(**{"shape": "cauchy", "scale_m": 1.0, **bad})
+
+
+def test_both_shapes_are_cut_off_where_the_same_share_of_jumps_is_left():
+    left = [
+        np.exp(-DistanceKernel("exponential", 4.0).reach_m() / 4.0),
+        1.0 / np.hypot(1.0, DistanceKernel("cauchy", 4.0).reach_m() / 4.0),  # of two dimensions
+    ]
+    assert left[0] == pytest.approx(left[1])
+    assert 0.0 < left[0] < 0.1

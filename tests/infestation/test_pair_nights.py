@@ -33,7 +33,7 @@ def test_a_plant_with_four_neighbours_comes_out_the_same_the_short_way(seed, rat
     now = believed(seed)
     density = np.empty(N)
     _find_local_density(now, density, GRID.linked)
-    rule = (rate, bool(seed % 2), 0.001 * (seed % 3))
+    rule = ((rate, 0.5 * rate), bool(seed % 2), 0.001 * (seed % 3))
     short, long = (np.full(len(NEIGHBOUR), np.nan) for _ in range(2))
     for i in np.flatnonzero(np.diff(START) == 4)[:5].astype(np.uint64):
         room = np.empty((3, 4))
@@ -92,3 +92,30 @@ def test_a_plot_of_one_plant_has_a_night_too():
     belief = PairApproximation.of(grid, np.array([0.3]))
     after = belief.overnight(Spread(0.5, arrivals_per_day=0.1))
     assert after.chance == pytest.approx([1.0 - 0.7 * 0.9])
+
+
+def test_the_density_about_a_plant_is_the_mean_chance_of_its_neighbours_given_that_it_is_infested():
+    chance, both = believed(3)
+    density = np.empty(N)
+    _find_local_density((chance, both), density, GRID.linked)
+    given_it = both / chance[OWN]
+    for i in range(N):
+        assert density[i] == pytest.approx(given_it[i == OWN].mean())
+    _find_local_density((chance, chance[OWN]), density, GRID.linked)  # they share one fate
+    assert density == pytest.approx(1.0)
+
+
+def test_what_goes_along_the_row_does_not_go_across():
+    one = np.full(len(GRID), 1e-6)
+    middle = len(GRID) // 2
+    one[middle] = 0.9
+    pairs = PairApproximation.of(GRID, one, clustering=0.0)
+    believed = pairs.chance, pairs.pair_chance
+    evenly, _ = night_of_pairs(believed, GRID.linked, Spread(0.4, "one"))
+    along, _ = night_of_pairs(believed, GRID.linked, Spread(0.4, "one"), 0.8)
+    start, other = GRID.adjacent
+    beside = other[start[middle] : start[middle + 1]]
+    in_row = GRID.row[beside] == GRID.row[middle]
+    assert in_row.any()
+    assert along[beside[in_row]] == pytest.approx(1.6 * evenly[beside[in_row]], rel=1e-3)
+    assert along[beside[~in_row]] == pytest.approx(0.4 * evenly[beside[~in_row]], rel=1e-3)

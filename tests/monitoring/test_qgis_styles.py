@@ -5,7 +5,7 @@ from contextlib import closing
 from xml.etree import ElementTree as ET
 
 from fieldmon.infestation.inspections import RESULT_NAMES
-from fieldmon.monitoring.qgis_styles import STYLES, Symbol, add_styles
+from fieldmon.monitoring.qgis_styles import STYLES, add_styles
 
 
 def test_every_layer_has_a_style_that_is_xml(path):
@@ -39,13 +39,10 @@ def test_the_classes_of_a_chance_leave_no_gap_from_0_to_1():
     assert [upper for _, upper in ranges[:-1]] == [lower for lower, _ in ranges[1:]]
 
 
-def test_a_symbol_says_its_colour_to_new_programs_and_old_ones():
-    symbol = ET.fromstring(Symbol("marker", "1,2,3,255", 2.5, "diamond").qml("7"))  # noqa: S314
-    assert symbol.get("name") == "7"
-    new = {o.get("name"): o.get("value") for o in symbol.iter("Option") if o.get("name")}
-    old = {p.get("k"): p.get("v") for p in symbol.iter("prop")}
-    assert new == old
-    assert (new["color"], new["size"], new["name"]) == ("1,2,3,255", "2.5", "diamond")
+def test_stops_carry_their_order():
+    stops = ET.fromstring(STYLES["stops"])  # noqa: S314 - our own
+    assert stops.get("labelsEnabled") == "1"
+    assert stops.find("labeling").find(".//text-style").get("fieldName") == '"stop"'
 
 
 def test_styles_are_added_once_a_layer_and_are_the_default():

@@ -7,7 +7,7 @@ from fieldmon.studies.samplers.mapped_plots import plots_in, table
 
 def test_on_mapped_plots_forty_percent_looks_find_about_what_dynamics_do_or_more(shared):
     plots = plots_in(shared / "plant_maps")
-    at_40 = {(name, who): values[-1] for name, who, values in table(plots)}
+    at_40 = {(row.name, row.who): row.per_look[-1] for row in table(plots)}
     names = [each.name for each in plots]
     lead = np.array([at_40[name, "adaptive"] - at_40[name, "dynamic"] for name in names])
     assert len(names) == 9

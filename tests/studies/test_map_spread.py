@@ -19,17 +19,38 @@ def made(reach_m, rate, seed):
     return Interval("made", grid, before, after, np.arange(576) % 24 >= 12)
 
 
-def test_the_kernel_that_spread_foretells_better_than_the_others():
-    told = [scores(made(4.5, 4.0, seed)) for seed in range(3)]
+@pytest.fixture(scope="module")
+def told():
+    """Return the scores of three plots in which a kernel spread."""
+    return [scores(made(4.5, 4.0, seed)) for seed in range(3)]
+
+
+def test_the_kernel_that_spread_foretells_better_than_the_others(told):
     for one in told:
         assert one.kernel < one.evenly
         assert one.kernel < one.no_change
     assert np.mean([one.kernel for one in told]) < np.mean([one.thesis for one in told])
 
 
-def test_scores_of_nothing_and_of_evenly_are_as_by_hand():
-    interval = made(4.5, 4.0, 1)
-    told = scores(interval)
+def test_kernels_weighed_foretell_nearly_as_well_as_whichever_way_is_right(told):
+    """Where the stand tells where new ones come, and where it tells nothing."""
+    assert sum(one.weighed for one in told) < sum(one.evenly for one in told) - 0.02
+    grid, draws = rectangle(24, 24), np.random.default_rng(1)
+    before = draws.random(576) < 0.04
+    after = before | (draws.random(576) < 0.05)
+    anywhere = scores(Interval("anywhere", grid, before, after, np.arange(576) % 24 >= 12))
+    assert anywhere.weighed < anywhere.evenly + 0.005
+
+
+def test_earlier_dates_tell_which_kernel_it_is():
+    first, now = made(4.5, 4.0, 1), made(4.5, 1.0, 2)
+    alone, informed = scores(now), scores(now._replace(earlier=((first.before, first.after),)))
+    assert informed.weighed < alone.weighed + 0.01
+    assert informed.kernel == alone.kernel
+
+
+def test_scores_of_nothing_and_of_evenly_are_as_by_hand(told):
+    interval, told = made(4.5, 4.0, 1), told[1]
     assert told.no_change == pytest.approx(
         -(told.new * np.log(1e-3) + (told.clean - told.new) * np.log(1 - 1e-3)) / told.clean
     )

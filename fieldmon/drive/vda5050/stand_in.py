@@ -130,6 +130,11 @@ class StandIn:
         }
         self.wire.send("state", encoded("state", self._headers["state"], body))
 
+    def drive_to(self, there: tuple[float, float]) -> None:
+        """Drive to a place, metres east and north of the datum; a real robot does so here."""
+        here = self.self.place or there
+        self._pass(math.dist(here, there) / self._speed_m_s)
+
     def _hear(self) -> None:
         try:
             kind, data = self.wire.heard.get(timeout=0.005 if self.self.todo else 0.1)
@@ -168,7 +173,7 @@ class StandIn:
         there = (node["nodePosition"]["x"], node["nodePosition"]["y"])
         if me.place is not None and there != me.place:
             me.theta = math.atan2(there[1] - me.place[1], there[0] - me.place[0])
-            self._pass(math.dist(me.place, there) / self._speed_m_s)
+            self.drive_to(there)
         me.place, me.node, me.sequence = there, node["nodeId"], node["sequenceId"]
         me.edges = [one for one in me.edges if one["sequenceId"] > me.sequence]
         for action in node["actions"]:

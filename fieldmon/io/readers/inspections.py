@@ -78,6 +78,23 @@ def read_inspections(
     return rows.having(inspections, more)
 
 
+def dated(read: Imported[Inspections]) -> Imported[Inspections]:
+    """Leave out, and say so, which inspections have no date where others have one.
+
+    Where none has one they stay: the day of the work is then to be asked for.
+    """
+    without = np.isnat(read.value.date)
+    if not without.any() or without.all():
+        return read
+    said = worded(
+        "{n} record(s) have no date, as others have: left out. Give them one, or the day of all "
+        "that have none.",
+        n=int(without.sum()),
+    )
+    day = Remedy("day", "2026-04-06", worded("Say the day of those that have none"))
+    return read.having(read.value.take(~without), (dropped(said, None, day),))
+
+
 def look_up(
     rows: InspectionRows, grid: PlantGrid, options: InspectionOptions
 ) -> tuple[Inspections, tuple[ImportMessage, ...]]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import sqlite3
 import tempfile
 import zipfile
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,24 +17,34 @@ from shapely import LineString, Point
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
+from fieldmon.io.writers import qml
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from fieldmon.io.writers.day_file import HandoffPlan
 
 _WGS84 = "EPSG:4326"
 _MOST_BYTES = 254  # of text in a cell of a shapefile's table
+# what is read in the list of findings, and what is written
+_CHOICES = (("found infested", "yes"), ("looked clean", "no"), ("could not look", "skipped"))
+_SHOWN = {
+    "yes": ("found infested", qml.Symbol("marker", qml.RED, 2.6, "diamond")),
+    "no": ("looked clean", qml.Symbol("marker", qml.BLUE, 1.8)),
+    "skipped": ("could not look", qml.Symbol("marker", qml.GREY, 2.0, "cross2")),
+    "": ("to inspect", qml.Symbol("marker", qml.YELLOW, 2.2)),
+}
+_NOT_FILLED_IN = {"fid", "plant", "arrive_s", "inspect_s", "chance"}
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal days make equal files
 
 
 def route_gpkg(plan: HandoffPlan) -> bytes:
     """Return a day as GeoPackage with the layers ``stops`` and ``route``, in WGS 84.
 
-    ``found``, ``count``, ``who``, ``notes`` and ``time`` of the stops are empty, to be filled in
-    with QField or QGIS.
+    In QGIS and QField stops carry their order, and findings are chosen from a list. ``found``,
+    ``count``, ``who``, ``notes`` and ``time`` of the stops are empty, to be filled in.
     """
 
     def write(folder: Path) -> Path:
@@ -41,6 +53,7 @@ def route_gpkg(plan: HandoffPlan) -> bytes:
         stops["time"] = pd.Series([pd.NaT] * len(stops), dtype="datetime64[ms]")
         _write(stops, path, "GPKG", layer="stops", geometry_type="Point")
         _write(_line(plan), path, "GPKG", layer="route", geometry_type="LineString")
+        _add_styles(path, stops.columns)
         return path
 
     return _made(lambda folder: write(folder).read_bytes())
@@ -69,6 +82,28 @@ def route_shapefile(plan: HandoffPlan) -> bytes:
         return packed.getvalue()
 
     return _made(write)
+
+
+def _add_styles(path: Path, columns: Iterable[str]) -> None:
+    """Let QGIS show stops by what was found, with their order, and offer what to fill in."""
+    with closing(sqlite3.connect(path)) as db:
+        db.execute(qml.TABLE)
+        db.execute(
+            "INSERT OR IGNORE INTO gpkg_contents (table_name, data_type, identifier) "
+            "VALUES ('layer_styles', 'attributes', 'layer_styles')"
+        )
+        drawn = qml.by_value("found", _SHOWN)
+        renderer = drawn[drawn.index("<renderer-v2") : drawn.index("</qgis>")]
+        hidden = "".join(qml.field(name, "Hidden") for name in columns if name in _NOT_FILLED_IN)
+        form = (
+            f"<fieldConfiguration>{hidden}{qml.choice_list('found', _CHOICES)}"
+            f"{qml.numbered('count')}</fieldConfiguration>"
+        )
+        stops = qml.qml(renderer + qml.labelled('"stop"') + form, "Symbology|Labeling|Fields|Forms")
+        stops = stops.replace("<qgis ", '<qgis labelsEnabled="1" ', 1)
+        route = qml.single(qml.Symbol("line", qml.BLACK, 0.7))
+        qml.add(db, {"stops": stops, "route": route})
+        db.commit()
 
 
 def _made(write: Callable[[Path], bytes]) -> bytes:

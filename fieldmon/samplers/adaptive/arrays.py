@@ -49,8 +49,11 @@ class BeliefArrays(NamedTuple):
     clusters
         What the inspections since say of how much infested plants stand together.
     scale
-        ``(2,)`` what was made of that: how much closer they stand than was believed, and the
-        chance that insects jump beyond the plants next to them.
+        ``(3,)`` what was made of that: how much closer they stand than was believed, the chance
+        that insects jump beyond the plants next to them, and how much they lean along the row.
+    level
+        ``(3,)`` finds of the day, finds that were expected of it, and how many times as likely as
+        in the morning plants are taken to be infested because of that.
     traces, raised
         What a find says of plants farther away, and room for those.
     """
@@ -64,6 +67,7 @@ class BeliefArrays(NamedTuple):
     morning_pair_chance: Float
     clusters: ClusterEstimate
     scale: Float
+    level: Float
     traces: Traces
     raised: Raised
 

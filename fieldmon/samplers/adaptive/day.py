@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inlined, loop, part
+from fieldmon.infestation.belief import bounded_chance, bounded_pair_chance
 from fieldmon.infestation.clustering import (
     chance_apart,
     clustering_scale,
+    leaning,
     scale_clustering,
     update_clusters,
 )
@@ -39,6 +41,8 @@ if TYPE_CHECKING:
 
 # how much closer or less close infested plants must stand than thought to think again
 _NOTABLE = 0.1
+#: how many finds the morning's idea of how many plants are infested is worth (our choice)
+LEVEL_FINDS = 10.0
 
 
 @loop
@@ -159,6 +163,8 @@ def _learn(
     i, found, detects = result
     believed = belief.chance, belief.pair_chance
     p = belief.chance[i]
+    belief.level[0] += found
+    belief.level[1] += detects * p / belief.level[2]
     n = update_neighbourhood(believed, linked, (i, found), (detects, True), belief.near)
     if found:
         _trace(travel, linked, belief, rows, (i, p))
@@ -197,14 +203,50 @@ def _trace(
 def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe how much infested plants stand together, once it differs enough from what was."""
     _learn_jumps(linked, belief, rows)
+    _learn_level(linked, belief, rows)
     scale = clustering_scale(belief.clusters)
-    if abs(scale - belief.scale[0]) < _NOTABLE * belief.scale[0]:
+    # where finds are not traced, no direction is told from another
+    lean = 0.5 if belief.traces.kernel.size == 1 else leaning(belief.clusters.evidence)
+    turned = abs(lean - belief.scale[2]) >= _NOTABLE * min(belief.scale[2], 1.0 - belief.scale[2])
+    if abs(scale - belief.scale[0]) < _NOTABLE * belief.scale[0] and not turned:
         return
-    scale_clustering(
-        (belief.chance, belief.pair_chance), linked, scale / max(belief.scale[0], LEAST)
-    )
-    belief.scale[0] = scale
+    ratio = scale / max(belief.scale[0], LEAST)
+    ratios = ratio * lean / belief.scale[2], ratio * (1.0 - lean) / (1.0 - belief.scale[2])
+    scale_clustering((belief.chance, belief.pair_chance), linked, ratios)
+    belief.scale[0], belief.scale[2] = scale, lean
     rows.stale[:] = True
+
+
+@part
+def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
+    """Believe in more or fewer infested plants, once finds differ enough from those expected.
+
+    Every plant's odds are multiplied; what neighbours have in common stays, as a correlation.
+    """
+    level = belief.level[0] / belief.level[1]
+    if belief.traces.kernel.size == 1 or abs(level - belief.level[2]) < _NOTABLE * belief.level[2]:
+        return
+    chance, pair_chance, ratio = belief.chance, belief.pair_chance, level / belief.level[2]
+    for i in range(chance.size):
+        p = chance[i]
+        more = times_odds(p, ratio)
+        for e in range(linked.start[i], linked.start[i + 1]):
+            q = chance[linked.plant[e]]
+            other = times_odds(q, ratio)
+            spread = p * (1.0 - p) * q * (1.0 - q)
+            kept = np.sqrt(more * (1.0 - more) * other * (1.0 - other) / spread)
+            both = more * other + (pair_chance[e] - p * q) * kept
+            pair_chance[e] = bounded_pair_chance(both, more, other)
+    for i in range(chance.size):
+        chance[i] = times_odds(chance[i], ratio)
+    belief.level[2] = level
+    rows.stale[:], rows.most[:] = True, -1.0
+
+
+@inlined
+def times_odds(chance: float, ratio: float) -> float:
+    """Return a chance whose odds are so many times as high."""
+    return bounded_chance(chance * ratio / (1.0 - chance + chance * ratio))
 
 
 @part

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.clustering import ClusterEstimate, chance_apart
+from fieldmon.infestation.clustering import ClusterEstimate, chance_apart, leaning
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.tracing import Raised, Traces
 from fieldmon.samplers.adaptive.arrays import (
@@ -19,7 +19,7 @@ from fieldmon.samplers.adaptive.arrays import (
     OwnRow,
     RowTours,
 )
-from fieldmon.samplers.adaptive.day import drive_day
+from fieldmon.samplers.adaptive.day import LEVEL_FINDS, drive_day
 from fieldmon.samplers.adaptive.tours import measure_ways
 from fieldmon.samplers.base import InspectionTimes, Sampler, Scene, Stops
 
@@ -88,6 +88,7 @@ class Adaptive(Sampler):
             pair_chance = pair_chances(scene.chance, scene.grid, self.beside_find)
         n, n_rows = len(scene.chance), scene.grid.n_rows
         traces = Traces.none(n) if scene.traces is None else scene.traces.own()
+        lean = 0.5 if scene.traces is None else leaning(traces.evidence)
         belief = BeliefArrays(
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
@@ -96,8 +97,9 @@ class Adaptive(Sampler):
             np.full(n, NOWHERE),
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
-            ClusterEstimate.none(n, traces.evidence),
-            np.array([1.0, chance_apart(traces.evidence)]),
+            ClusterEstimate.none(n, traces.evidence, lean),
+            np.array([1.0, chance_apart(traces.evidence), lean]),
+            np.array([LEVEL_FINDS, LEVEL_FINDS, 1.0]),
             traces,
             Raised.of(n),
         )

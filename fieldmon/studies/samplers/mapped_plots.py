@@ -1,4 +1,4 @@
-"""Samplers on mapped plots: how many infested plants the first 5, 10, 20 and 40 % looks find."""
+"""Samplers on mapped plots: what the first 5, 10, 20 and 40 % looks find, per look and per hour."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.adaptive import Adaptive
@@ -18,10 +19,13 @@ from fieldmon.samplers.sweeps import Naive
 from fieldmon.studies.plant_maps import PUBLIC_MAPS, read_plant_map
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
     from fieldmon.studies.plant_maps import PlantMap
@@ -31,6 +35,7 @@ SHARES = (0.05, 0.10, 0.20, 0.40)
 _FLAT = 0.1
 # a day lasts for a twentieth of the plants, with some time to drive
 _DAY, _DRIVING = 0.05, 1.3
+_HOUR_S = 3600.0
 
 
 FILES = (
@@ -69,16 +74,16 @@ def _name(of: PlantMap, date: str) -> str:
     return f"{file.split('.', maxsplit=1)[0]} {part or date}".strip()
 
 
-def found_at(plot: DatedMap, sampler: Sampler) -> list[int]:
-    """Return how many infested plants were found when each of `SHARES` was inspected.
+def found_at(plot: DatedMap, sampler: Sampler) -> tuple[list[int], list[float]]:
+    """Return infested plants found, and hours worked, when each of `SHARES` was inspected.
 
     No plant is inspected twice, every infested one inspected is found, and none infects another.
     """
     n = len(plot.infested)
     robot = Robot(detection=1.0, returns=False)
-    belief = PairApproximation.of(plot.aisles.grid, np.full(n, _FLAT))
+    belief = _believed(sampler)(plot.aisles.grid, np.full(n, _FLAT))
     seen = np.zeros(n, np.bool_)
-    order = np.empty(0, np.int32)
+    order, done_s = np.empty(0, np.int32), np.empty(0)
     while len(order) < SHARES[-1] * n:
         scene = Scene(
             plot.aisles,
@@ -89,39 +94,85 @@ def found_at(plot: DatedMap, sampler: Sampler) -> list[int]:
             seconds_left=max(_DAY * n, 2.0) * robot.visit_s * _DRIVING,
             trail=order,
             pair_chance=belief.pair_chance,
+            traces=belief.traces,
         )
         work = work_day(scene, sampler, plot.infested)
         if not len(work):
             break
+        before_s = done_s[-1] if len(done_s) else 0.0
+        done_s = np.concatenate([done_s, before_s + work.arrive_s + work.stop_s])
         order = np.concatenate([order, work.plant])
         seen[work.plant] = True
         belief = belief.learn(work.plant, work.found, Learning(detection=1.0))
     finds = np.cumsum(plot.infested[order])
-    return [int(finds[min(round(share * n), len(order)) - 1]) for share in SHARES]
+    last = [min(round(share * n), len(order)) - 1 for share in SHARES]
+    return [int(finds[k]) for k in last], [float(done_s[k]) / _HOUR_S for k in last]
 
 
-def table(plots: list[DatedMap]) -> list[tuple[str, str, list[float]]]:
-    """Return finds per inspected plant at `SHARES`: map, sampler, ``(4,)``.
+def _believed(sampler: Sampler) -> Callable[[PlantGrid, NDArray[np.float64]], Belief]:
+    """Return the belief that suits a sampler best, as in `contenders`."""
+    return TracedPairs.of if isinstance(sampler, Adaptive) else PairApproximation.of
 
-    Means over the four corners from which work can begin; for random looks the expected share.
+
+def correlation(plot: DatedMap) -> float:
+    """Return how much alike neighbours are: the correlation of the two of every pair."""
+    start, other = plot.aisles.grid.adjacent
+    state = plot.infested - plot.infested.mean()
+    alike = float((np.repeat(state, np.diff(start)) * state[other]).mean())
+    return alike / max(float(state.var()), 1e-12)
+
+
+class MapRow(NamedTuple):
+    """What a sampler came to on a map: means over the four corners from which work can begin.
+
+    Parameters
+    ----------
+    name, correlation
+        The map, and how much alike its neighbours are.
+    who
+        The sampler.
+    per_look, per_hour
+        ``(4,)`` finds at `SHARES`; of random looks the share expected, and no hours.
     """
-    samplers: dict[str, Sampler] = {"adaptive": Adaptive(), "dynamic": Dynamic(), "naive": Naive()}
+
+    name: str
+    correlation: float
+    who: str
+    per_look: list[float]
+    per_hour: list[float]
+
+
+def table(plots: list[DatedMap]) -> list[MapRow]:
+    """Return what each sampler finds on each map."""
+    samplers: dict[str, Sampler] = {
+        "adaptive": Adaptive(),
+        "dynamic": Dynamic(),
+        "tuned": Dynamic(suspicious=0.06),
+        "naive": Naive(),
+    }
     rows = []
     for each in plots:
-        n = len(each.infested)
+        alike, looks = correlation(each), [round(share * len(each.infested)) for share in SHARES]
         for who, sampler in samplers.items():
-            looks = [round(share * n) for share in SHARES]
-            finds = np.mean([found_at(turned, sampler) for turned in _turned(each)], axis=0)
-            rows.append((each.name, who, [f / k for f, k in zip(finds, looks, strict=True)]))
-        rows.append((each.name, "random", [float(each.infested.mean())] * len(SHARES)))
+            made = [found_at(turned, sampler) for turned in _turned(each)]
+            finds, hours = (np.mean(values, axis=0) for values in zip(*made, strict=True))
+            per_look = [float(f / k) for f, k in zip(finds, looks, strict=True)]
+            rows.append(MapRow(each.name, alike, who, per_look, (finds / hours).tolist()))
+        expected = [float(each.infested.mean())] * len(SHARES)
+        rows.append(MapRow(each.name, alike, "random", expected, []))
     return rows
 
 
-def table_csv(rows: list[tuple[str, str, list[float]]]) -> str:
+def table_csv(rows: list[MapRow]) -> str:
     """Return such a table as CSV."""
-    head = ",".join(["map", "sampler", *(f"finds_per_look_at_{share:.0%}" for share in SHARES)])
-    lines = [f"{name},{who}," + ",".join(f"{v:.4f}" for v in values) for name, who, values in rows]
-    return "\n".join([head.replace("%", "_pct"), *lines, ""])
+    columns = [f"finds_per_{what}_at_{share:.0%}" for what in ("look", "hour") for share in SHARES]
+    head = ",".join(["map", "neighbour_correlation", "sampler", *columns])
+    lines = [head.replace("%", "_pct")]
+    for row in rows:
+        hours = [f"{v:.4f}" for v in row.per_hour] or [""] * len(SHARES)
+        values = [*(f"{v:.4f}" for v in row.per_look), *hours]
+        lines.append(",".join([row.name, f"{row.correlation:.3f}", row.who, *values]))
+    return "\n".join([*lines, ""])
 
 
 def _turned(each: DatedMap) -> list[DatedMap]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.decisions.zones import Sprayer, TreatmentCosts, best_zones, whole_plot
+from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import work_day
@@ -18,6 +19,7 @@ from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import simulated_days
+from fieldmon.simulation.statistics import SummaryStatistics, summary_statistics
 from fieldmon.simulation.treating import WHOLE, ZONES, TreatmentRule
 from fieldmon.studies.samplers.scenarios import Scenario
 
@@ -32,6 +34,7 @@ RULES = (NOTHING, WHOLE, ZONES)
 LEVEL = 0.02
 _COSTS = TreatmentCosts(per_ha=100.0, per_zone=0.5)
 _HOURS, _DAYS = 4.0, 25
+_OF_RATIO = ("mean", "low", "high", "q05", "q95")
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,35 @@ def treated_seasons(
                 TreatedSeason(scenario.name, seed, name, rule, float(lost), area, spent, money)
             )
     return made
+
+
+def against_nothing(made: Sequence[TreatedSeason], rule: str) -> SummaryStatistics:
+    """Return infested plant-days by a rule over those of the same seasons without treatment.
+
+    The geometric mean over the seeds, with its interval of 95 %.
+
+    Parameters
+    ----------
+    made
+        Seasons of one scenario and sampler, by every rule.
+    rule
+        Which of `RULES`.
+
+    Raises
+    ------
+    SettingError
+        If there is no season by the rule.
+    """
+    days = {(one.seed, one.rule): max(one.plant_days, 1.0) for one in made}
+    seeds = sorted({one.seed for one in made if one.rule == rule})
+    if not seeds:
+        raise SettingError(
+            f"There must be a season treated by the rule {rule!r}, but there is none."
+        )
+    logs = np.log([days[seed, rule] / days[seed, NOTHING] for seed in seeds])
+    of = summary_statistics(logs)
+    mean, low, high, q05, q95 = (float(np.exp(getattr(of, name))) for name in _OF_RATIO)
+    return replace(of, mean=mean, low=low, high=high, q05=q05, q95=q95)
 
 
 def known_samplers() -> tuple[str, ...]:

@@ -57,7 +57,7 @@ def test_one_file_is_plot_and_records_each_with_its_own_answer(app, tmp_path):
     next(one for one in app.button if one.label.startswith("1 · plots · ")).click().run()
     assert plot_name(app).startswith("square")
     assert "are not used on this plot" in texts_of(app)
-    press(app, "finds")
+    press(app, "2 · finds · 5 of 5 on the plot, 3 finds")
     assert not app.warning
     assert "5 of 5 records shown (3 with pests, 2 without)" in texts_of(app)
     assert plot_name(app).startswith("square")

@@ -1,8 +1,11 @@
 """The simulated robot keeps the standard's rules for orders that come late, or twice."""
 
+import ast
+
 from fieldmon.drive.vda5050.messages import encoded, header_of
 from fieldmon.drive.vda5050.stand_in import StandIn
 from tests.drive.vda5050.conftest import ROBOT
+from tests.paths import ROOT
 
 
 def order(update, *places, first=0):
@@ -38,3 +41,25 @@ def test_orders_are_driven_once_and_in_their_order(broker):
     drive(robot, order(0, 0.0, 10.0))  # late
     assert robot.self.place == (15.0, 0.0)
     robot.wire.close()
+
+
+def test_a_robot_of_ones_own_says_how_it_drives(broker):
+    """As the ROS 2 bridge of the documentation does."""
+    been = []
+
+    class Own(StandIn):
+        def drive_to(self, there):
+            been.append(there)
+
+    robot = Own(broker, ROBOT, lambda plant: False)  # noqa: ARG005
+    drive(robot, order(0, 0.0, 10.0, 12.0))
+    assert been == [(10.0, 0.0), (12.0, 0.0)]
+    robot.wire.close()
+
+
+def test_the_ros_2_bridge_of_the_documentation_changes_what_is_there():
+    tree = ast.parse((ROOT / "docs" / "examples" / "vda5050_ros2.py").read_text())
+    (bridge,) = [one for one in tree.body if isinstance(one, ast.ClassDef)]
+    assert [one.id for one in bridge.bases] == ["StandIn"]
+    made = {one.name for one in bridge.body if isinstance(one, ast.FunctionDef)}
+    assert made - {"__init__"} <= set(dir(StandIn))

@@ -19,7 +19,7 @@ from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_file.rows import rows_in
 from fieldmon.io.readers.inspection_options import InspectionOptions
-from fieldmon.io.readers.inspections import look_up, read_inspections
+from fieldmon.io.readers.inspections import dated, look_up, read_inspections
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import plant_at, row_label
@@ -432,3 +432,11 @@ def test_how_far_a_position_is_off_is_measured_along_its_row_and_across(two_bloc
         read_one = read(f"lon,lat,found\n{lon:.9f},{lat:.9f},x\n", grid=grid)
         assert read_one.value.plant.tolist() == [plant]
         assert not read_one.of(Severity.DOUBTFUL)
+
+
+def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
+    brought = dated(read("plant,result,date\n1,found,2026-04-06\n2,clean,\n3,clean,2026-04-07\n"))
+    assert brought.value.plant.tolist() == [1, 3]
+    assert any("1 record(s) have no date" in str(one) for one in brought.messages)
+    none = read("plant,result\n1,found\n")
+    assert dated(none) is none

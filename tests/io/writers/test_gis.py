@@ -5,11 +5,12 @@ import re
 import sqlite3
 import struct
 import zipfile
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pyogrio
 
-from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
@@ -36,7 +37,7 @@ def check(plan, stops, line):
 
 def test_geopackage_is_read_by_gdal_to_the_centimetre(tmp_path, plan):
     (path,) = write_handoff(plan, tmp_path / "route.gpkg")
-    assert [name for name, _ in pyogrio.list_layers(path)] == ["stops", "route"]
+    assert [name for name, shape in pyogrio.list_layers(path) if shape] == ["stops", "route"]
     stops, line = (pyogrio.read_dataframe(path, layer=name) for name in ("stops", "route"))
     check(plan, stops, line)
 
@@ -70,6 +71,31 @@ def test_the_geopackage_comes_back_edited(tmp_path):
     assert findings.count[0] == 4
     np.testing.assert_array_equal(findings.second, [9 * 3600 + 12 * 60, np.nan])
     assert findings.date.astype(str).tolist() == ["2026-11-18"] * 2
+
+
+def styles_of(path):
+    with sqlite3.connect(path) as db:
+        return dict(db.execute("SELECT f_table_name, styleQML FROM layer_styles"))
+
+
+def test_stops_of_a_geopackage_carry_their_order_and_a_list_to_choose_findings_from(tmp_path):
+    plan = usual()
+    (path,) = write_handoff(plan, tmp_path / "route.gpkg")
+    styles = styles_of(path)
+    assert styles.keys() == {"stops", "route"}
+    stops = ET.fromstring(styles["stops"])  # noqa: S314 - our own
+    assert stops.get("labelsEnabled") == "1"
+    assert stops.find(".//text-style").get("fieldName") == '"stop"'
+    widget = stops.find(".//field[@name='found']/editWidget")
+    words = [o.get("value") for o in widget.iter("Option") if o.get("value")]
+    shown = {one.get("value") for one in stops.iter("category")}
+    assert shown == {*words, ""}
+    # whatever is chosen from the list is read again
+    edited = pyogrio.read_dataframe(path, layer="stops").head(len(words))
+    edited["found"] = words
+    pyogrio.write_dataframe(edited, tmp_path / "edited.gpkg", layer="stops")
+    read = read_inspections(tmp_path / "edited.gpkg", plan.grid).value
+    assert read.result.tolist() == [FOUND, CLEAN, SKIPPED]
 
 
 # --- zipped shapefile --------------------------------------------------------------------------

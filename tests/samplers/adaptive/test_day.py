@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.adaptive.day import times_odds
+from fieldmon.samplers.sweeps import Naive
 from tests.scenes import scene_on
 
 GRID = rectangle(12, 15)
@@ -90,3 +93,20 @@ def test_the_scene_is_left_as_it_was():
     work_day(scene, Adaptive(), np.ones(N, np.bool_))
     np.testing.assert_array_equal(scene.chance, chance)
     np.testing.assert_array_equal(scene.pair_chance, pair_chance)
+
+
+def test_where_all_plants_are_infested_unannounced_the_day_is_driven_as_a_sweep():
+    belief = TracedPairs.of(GRID, np.full(N, 0.02))
+    robot = Robot(hours=1.5)
+    scene = replace(
+        scene_on(GRID), robot=robot, chance=belief.chance, pair_chance=belief.pair_chance,
+        traces=belief.traces, seconds_left=robot.day_s,
+    )  # fmt: skip
+    every = np.ones(N, np.bool_)
+    assert len(work_day(scene, Adaptive(), every)) >= 0.95 * len(work_day(scene, Naive(), every))
+
+
+def test_odds_are_multiplied_and_chances_stay_chances():
+    assert times_odds.py_func(0.5, 3.0) == pytest.approx(0.75)
+    assert times_odds.py_func(0.2, 1.0) == pytest.approx(0.2)
+    assert 0.0 < times_odds.py_func(1e-6, 0.01) < times_odds.py_func(1.0 - 1e-6, 100.0) < 1.0

@@ -2,10 +2,14 @@
 
 import pytest
 
+from fieldmon.errors import SettingError
+from fieldmon.simulation.treating import WHOLE
 from fieldmon.studies.samplers.scenarios import Scenario
 from fieldmon.studies.verdicts.treated_seasons import (
     NOTHING,
     RULES,
+    TreatedSeason,
+    against_nothing,
     area_at_equal_left,
     treated_scenarios,
     treated_seasons,
@@ -20,6 +24,18 @@ def test_every_rule_meets_the_same_insects_and_money_is_what_was_spent_and_lost(
     for one in made:
         assert one.cost == pytest.approx(one.spent + 0.1 * one.plant_days)
         assert one.plant_days <= nothing.plant_days
+
+
+def test_a_rule_is_held_against_nothing_seed_by_seed():
+    """Two seasons, half and a fifth of the plant-days: their geometric mean."""
+    days = {(1, NOTHING): 100.0, (2, NOTHING): 50.0, (1, WHOLE): 50.0, (2, WHOLE): 10.0}
+    made = [TreatedSeason("a", s, "naive", r, lost, 0, 0, 0) for (s, r), lost in days.items()]
+    of = against_nothing(made, WHOLE)
+    assert of.mean == pytest.approx(0.1**0.5)
+    assert of.low < of.mean < of.high
+    assert against_nothing(made, NOTHING).mean == 1.0
+    with pytest.raises(SettingError, match="a season treated by"):
+        against_nothing(made, "zones")
 
 
 @pytest.mark.parametrize("scenario", treated_scenarios(), ids=lambda one: one.start)

@@ -1,0 +1,159 @@
+"""Findings that another program (QGIS, QField) added to the season itself: drafts, and who counts.
+
+A draft has no digest. It counts from the season's next opening on, if it says what was seen at
+which plant and when; what does not stays a draft, and is told of.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import FieldmonError
+from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.io.readers.inspection_file.rows import InspectionRows
+from fieldmon.io.readers.inspection_options import InspectionOptions
+from fieldmon.io.readers.inspections import look_up
+from fieldmon.monitoring import inspection_lots, inspection_table
+from fieldmon.monitoring.geopackage import geometry, touch
+from fieldmon.monitoring.recorded_before import contradictions, said_before
+from fieldmon.monitoring.schema import INSPECTIONS
+
+if TYPE_CHECKING:
+    import sqlite3
+
+    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.plot.grid import PlantGrid, RowLabel
+
+SOURCE = "added by another program"
+# by the index of digests that count, which is small where nothing waits
+_DRAFTS = "digest IS NULL AND undone = 0"
+_SAID = {"found": PRESENT, "clean": ABSENT, "skipped": UNKNOWN}
+
+
+class Draft(NamedTuple):
+    """A finding that another program added.
+
+    Parameters
+    ----------
+    row
+        Its number in the layer of inspections.
+    inspection
+        What it says, or None.
+    why
+        Why it does not count; "" where it does.
+    """
+
+    row: int
+    inspection: Inspections | None
+    why: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """Return for people why it does not count."""
+        return worded(
+            "Row {row} of the layer inspections, which another program added, does not count: "
+            "{why} Mend it there, or delete it.",
+            row=self.row,
+            why=self.why if self.why.endswith(".") else f"{self.why}.",
+        )
+
+
+def any_waiting(db: sqlite3.Connection) -> bool:
+    """Tell whether there are drafts."""
+    found = db.execute(f"SELECT 1 FROM inspections WHERE {_DRAFTS} LIMIT 1")  # noqa: S608 - ours
+    return found.fetchone() is not None
+
+
+def read(
+    db: sqlite3.Connection,
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+    held: Inspections,
+) -> list[Draft]:
+    """Return the drafts of a season, besides those that say what it holds already.
+
+    `held` are the inspections that count. Of two drafts that contradict, the first counts.
+    """
+    names = "fid, geom, plant, date, time, result, count, who, notes"
+    wanted = f"SELECT {names} FROM inspections WHERE {_DRAFTS} ORDER BY fid"  # noqa: S608 - ours
+    rows = db.execute(wanted).fetchall()
+    drafts = []
+    for row, *said in rows:
+        try:
+            one = _inspection(said, plot[0])
+            inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
+            if said_before(one, held).any():
+                continue
+            contradictions(one, held).refuse(plot[1])
+        except (FieldmonError, ValueError, TypeError) as error:
+            drafts.append(Draft(row, None, str(error)))
+        else:
+            held = held.and_those(one)
+            drafts.append(Draft(row, one))
+    return drafts
+
+
+def keep(
+    db: sqlite3.Connection,
+    taken: list[Draft],
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+    batch: int,
+) -> Inspections:
+    """Let drafts count, each in its own row; return what they say."""
+    news = Inspections.none()
+    for draft in taken:
+        assert draft.inspection is not None  # noqa: S101 - these count
+        news = news.and_those(draft.inspection)
+        (made,) = inspection_table.rows(draft.inspection, *plot, settings, (batch, ""))
+        values = dict(zip(INSPECTIONS.names, made, strict=True))
+        names = ", ".join(f"{name} = ?" for name in values)
+        db.execute(
+            f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
+            (*values.values(), draft.row),
+        )
+    touch(db, INSPECTIONS.name)
+    return news
+
+
+def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
+    """Return what a draft says; raise with the reason where it makes no sense."""
+    place, plant, on, at, result, count, who, notes = said
+    if on in {None, ""}:
+        raise ValueError("it has no date")
+    if result not in _SAID:
+        raise ValueError(f"its result is none of {', '.join(RESULT_NAMES.values())}")
+    day = np.datetime64(str(on)[:10], "D")
+    second = np.nan if at in {None, ""} else inspection_lots.second_of(str(at))
+    when = np.datetime64("NaT", "s")
+    if not np.isnan(second):
+        when = day.astype("datetime64[s]") + np.timedelta64(round(second), "s")
+    rows = _one_row(place, plant, _SAID[str(result)], count)
+    rows = rows | {"when": np.array([when]), "day": np.array([day])}
+    rows = rows | {"who": np.array([str(who or "")]), "notes": np.array([str(notes or "")])}
+    found, messages = look_up(InspectionRows(**rows), grid, InspectionOptions())
+    if not len(found):
+        raise ValueError(messages[0].sentence if messages else "it names no plant")
+    return found
+
+
+def _one_row(place: object, plant: object, result: int, count: object) -> dict[str, np.ndarray]:
+    point = geometry(place) if isinstance(place, bytes) else None
+    lonlat = (point.x, point.y) if point is not None and not point.is_empty else (np.nan, np.nan)
+    return {
+        "plant": np.array([-1 if plant is None else int(str(plant))]),
+        "line": np.zeros(1, np.int64),
+        "number": np.zeros(1, np.int64),
+        "face": np.zeros(1, np.int8),
+        "lonlat": np.array([lonlat], float),
+        "accuracy_m": np.array([np.nan]),
+        "result": np.array([result], np.int8),
+        "count": np.array([np.nan if count is None else float(str(count))]),
+        "doubt": np.array([""]),
+        "source_row": np.ones(1, np.int64),
+        "block": np.array([""]),
+    }

@@ -1,0 +1,72 @@
+"""A finding corrected or deleted in a copy comes into the season, with its author."""
+
+import shutil
+
+import pytest
+
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season
+from tests.monitoring.seasons import BEGINS, three_results
+from tests.monitoring.test_outside_changes import outside
+
+
+@pytest.fixture
+def copy(path, tmp_path):
+    (tmp_path / "field").mkdir()
+    return shutil.copy(path, tmp_path / "field" / "copy.gpkg")
+
+
+def test_a_corrected_finding_is_corrected_in_the_season_by_its_author(path, copy):
+    outside(copy, "UPDATE inspections SET result = 'found', who = 'Bo' WHERE fid = 1")
+    season = Season(path)
+    season.record(three_results(), "tuesday.csv")  # the season went on meanwhile
+    plant = int(season.history.inspections.plant[0])
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 1
+    assert season.history.states(0)[plant] == FOUND
+    last = season.batches()[0]
+    assert (last.kind, last.who, last.rows) == ("corrections", "Ann", 1)
+    assert last.source == "changed in copy.gpkg"
+    assert season.log()[-1].kind == "corrected"
+    assert season.verify() == ()
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 0  # twice is once
+    assert len(season.history.inspections) == 15
+
+
+def test_a_deleted_finding_counts_no_more_and_is_kept(path, copy):
+    outside(copy, "DELETE FROM inspections WHERE fid = 3")
+    season = Season(path)
+    plant = int(season.history.inspections.plant[2])
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 1
+    assert season.history.states(0)[plant] == -1
+    with season.store.reading() as db:
+        assert db.execute("SELECT undone FROM inspections WHERE fid = 3").fetchone() == (1,)
+    assert season.verify() == ()
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 0
+
+
+def test_corrections_have_an_author(path, copy):
+    outside(copy, "DELETE FROM inspections WHERE fid = 3")
+    with pytest.raises(SettingError, match="--who"):
+        Season(path).take_corrections(copy, "copy.gpkg", " ")
+
+
+def test_what_makes_no_sense_or_is_not_here_is_refused_whole(path, copy):
+    outside(copy, "DELETE FROM inspections WHERE fid = 2",
+            "UPDATE inspections SET result = 'maybe' WHERE fid = 1")  # fmt: skip
+    season = Season(path)
+    with pytest.raises(FileProblem, match="maybe"):
+        season.take_corrections(copy, "copy.gpkg", "Ann")
+    assert len(season.history.inspections) == 12
+    outside(copy, "UPDATE inspections SET result = 'found' WHERE fid = 1")
+    season.undo()
+    with pytest.raises(FileProblem, match="no longer"):
+        season.take_corrections(copy, "copy.gpkg", "Ann")
+
+
+def test_a_file_that_is_no_copy_of_the_season_has_none(path, tmp_path):
+    from tests.monitoring.seasons import a_season
+
+    other = a_season(tmp_path / "other.gpkg")
+    assert Season(path).corrections_in(other.path) == ()
+    assert other.status(BEGINS).found == 0

@@ -1,0 +1,104 @@
+"""Findings added to the season itself by another program count from its next opening on."""
+
+import sqlite3
+from contextlib import closing
+
+import pytest
+
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season, outside_changes
+from fieldmon.monitoring.drafts import SOURCE
+from tests.monitoring.seasons import BEGINS, state
+from tests.monitoring.test_outside_changes import outside
+
+PLANT = 200
+
+
+def add(path, plant=PLANT, **said):
+    """Add a finding as QGIS does: a point, a result, a date."""
+    row = {"result": "found", "date": str(BEGINS)} | said
+    names = ", ".join(row)
+    with closing(sqlite3.connect(path)) as db:
+        db.execute(
+            f"INSERT INTO inspections (geom, {names}) "  # noqa: S608 - written here
+            f"SELECT geom, {', '.join('?' * len(row))} FROM plants WHERE plant = ?",
+            (*row.values(), plant),
+        )
+        db.commit()
+
+
+def test_a_finding_saved_into_the_season_counts_at_its_next_opening(path):
+    before = Season(path).history.states(0)[PLANT]
+    add(path, who="Ann", notes="underside", time="09:30:00", count=3)
+    season = Season(path)
+    assert season.drafts == ()
+    inspections = season.history.inspections
+    (k,) = (inspections.plant == PLANT).nonzero()[0]
+    assert before == -1
+    assert inspections.result[k] == FOUND
+    assert (inspections.who[k], inspections.notes[k]) == ("Ann", "underside")
+    assert (inspections.second[k], inspections.count[k]) == (9.5 * 3600, 3)
+    last = season.batches()[0]
+    assert (last.source, last.rows, last.kind) == (SOURCE, 1, "findings")
+    assert season.log()[-1].kind == "seen"
+    assert season.held_to_log() == ()
+    assert state(path) == 13  # the draft's own row, not another one beside it
+    with season.store.reading() as db:
+        assert outside_changes.waiting(db) == ()
+    # opened again, nothing more happens; and it can be taken back
+    revision = Season(path).revision
+    assert Season(path).revision == revision
+    season.undo()
+    assert Season(path).history.states(0)[PLANT] == -1
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        ({"date": None}, "no date"),
+        ({"result": None}, "none of"),
+        ({"result": "maybe"}, "none of"),
+        ({"date": "2020-01-01"}, "began on"),
+        ({"date": "soon"}, "soon"),
+        ({"plant": 99999, "plant_says": 1}, "none of 0 to"),
+    ],
+)
+def test_a_point_that_says_too_little_stays_a_draft_and_the_others_count(path, said, why):
+    bad = dict(said)
+    if bad.pop("plant_says", None):
+        outside(path, "SELECT 1")
+        with closing(sqlite3.connect(path)) as db:
+            db.execute(
+                "INSERT INTO inspections (geom, plant, result, date) "
+                "SELECT geom, 99999, 'found', ? FROM plants WHERE plant = 5", (str(BEGINS),)
+            )  # fmt: skip
+            db.commit()
+    else:
+        add(path, plant=PLANT + 1, **bad)
+    add(path)
+    season = Season(path)
+    (sentence,) = season.drafts
+    assert "Row 13 of the layer inspections" in sentence
+    assert why in sentence
+    assert season.history.states(0)[PLANT] == FOUND
+    assert season.status(BEGINS).found == 4
+    assert Season(path).drafts == season.drafts  # said until it is mended
+    outside(path, "DELETE FROM inspections WHERE fid = 13")
+    assert Season(path).drafts == ()
+
+
+def test_what_contradicts_the_season_is_said_and_does_not_count(path):
+    held = Season(path).history.inspections
+    add(path, plant=int(held.plant[0]), result="found")
+    season = Season(path)
+    assert len(season.drafts) == 1
+    assert len(season.history.inspections) == 12
+
+
+def test_where_more_was_changed_nothing_is_taken_before_that_is_settled(path):
+    add(path)
+    outside(path, "DELETE FROM inspections WHERE fid = 1")
+    season = Season(path)
+    assert season.drafts == ()
+    season.correct("Ann")
+    assert Season(path).history.states(0)[PLANT] == FOUND

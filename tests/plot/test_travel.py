@@ -19,6 +19,7 @@ from fieldmon.plot.projection import Frame
 from fieldmon.plot.road_network import row_lines
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles, crosses_rows, drive_m, driven_s, robot_clock
+from fieldmon.plot.trees import trees_grid
 from tests.crooked import crooked_grids
 
 FRAME = Frame(35.15, 30.36)
@@ -416,6 +417,6 @@ def test_only_where_plants_stand_in_no_rows_none_are_changed():
     grid, robot = rectangle(3, 3), Robot(row_change_s=7.0)
     straight, quick = Aisles.of(grid), Robot(row_change_s=0.0)
     assert straight.worked_by(robot) is robot
-    among_trees = Aisles.of(replace(grid, in_rows=False))
+    among_trees = Aisles.of(trees_grid(grid.lonlat()))
     assert among_trees.worked_by(robot) == replace(robot, row_change_s=0.0)
     assert among_trees.worked_by(quick) is quick

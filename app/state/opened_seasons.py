@@ -6,9 +6,11 @@ No Streamlit in here.
 from __future__ import annotations
 
 import threading
+from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
 
 if TYPE_CHECKING:
@@ -23,8 +25,9 @@ def opened(path: Path) -> Season:
     inode = path.stat().st_ino if path.is_file() else 0
     with _LOCK:  # two who ask at once get the same
         season = _opened(path, inode)
-        # what was added in QGIS since
-        season.drafts = season.take_drafts()
+        # what was added in QGIS since; a file in trouble says so to what is asked of it next
+        with suppress(FileProblem):
+            season.drafts = season.take_drafts()
         return season
 
 

@@ -9,23 +9,31 @@ from dataclasses import dataclass
 import numpy as np
 
 
-def by_adjacency(grid, spread):
+def by_adjacency(grid, spread, lean=0.5):
     """Return for every plant the sets it may infest in a night, with their chances.
 
     As `Spread` says it: each neighbour by itself, one of them, or all of them at once. A set is a
-    number whose bit j stands for plant j. A kernel by distance would return the like.
+    number whose bit j stands for plant j. A kernel by distance would return the like. `lean` is
+    the share of what goes to neighbours that goes along the row.
     """
     start, neighbour = grid.adjacent
     told = []
     for i in range(len(grid)):
         near = neighbour[start[i] : start[i + 1]].tolist()
         rate = spread.rate_per_day if near else 0.0
+        rates = {j: 2 * rate * (lean if abs(i - j) == 1 else 1.0 - lean) for j in near}
         if spread.to == "each":
-            told.append(independently(dict.fromkeys(near, rate)))
+            told.append(independently(rates))
         elif spread.to == "one":
-            told.append({1 << j: rate / len(near) for j in near} | {0: 1.0 - rate})
-        else:
-            told.append({sum(1 << j for j in near): rate, 0: 1.0 - rate})
+            ways = {1 << j: each / len(near) for j, each in rates.items()}
+            told.append(ways | {0: 1.0 - sum(ways.values())})
+        else:  # whom less goes to is infested only together with the others
+            less = min(rates.values(), default=0.0)
+            more = [j for j, each in rates.items() if each > less]
+            sets = {sum(1 << j for j in near): less}
+            if more:
+                sets[sum(1 << j for j in more)] = max(rates.values()) - less
+            told.append(sets | {0: 1.0 - sum(sets.values())})
     return told
 
 

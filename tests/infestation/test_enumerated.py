@@ -8,6 +8,7 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.origins import JUMPED
@@ -156,8 +157,10 @@ def a_night_by_pencil(belief, truth, spread):
     sends = spread.rate_per_day * (degree if spread.to != "one" else 1.0)
     beside = min(1.0, 1.0 - belief.jumps * (1.0 - reach.beside))
     near = Spread(spread.rate_per_day * beside, spread.to)
+    # rows are a little likelier at first to be what the infested stand in
+    lean = leaning(belief.evidence)
     sent = sends * belief.jumps * reach.beyond * scale[JUMPED:]
-    infects = together(by_adjacency(grid, near), by_kernels(cells(grid), reach.kernels, sent))
+    infects = together(by_adjacency(grid, near, lean), by_kernels(cells(grid), reach.kernels, sent))
     # what arrives where nobody is infested: nothing but arrivals
     nobody = TracedPairs.of(grid, np.full(len(grid), 1e-9))
     return truth.overnight(infects, nobody.overnight(spread).chance)

@@ -6,32 +6,43 @@ an id of its own, and the season takes it once.
 
 import json
 import uuid
+from contextlib import closing
 from datetime import UTC, datetime
+from http.client import HTTPConnection, HTTPException
+from time import monotonic
 from time import sleep as wait
-from urllib.error import URLError
-from urllib.request import Request, urlopen
+from urllib.parse import urlsplit
+
+
+class RefusedError(Exception):
+    """The season will never take what was asked, as it is: the status, and why."""
 
 
 class SeasonOverHttp:
     """A season at an address such as ``http://127.0.0.1:8501/api/v1/seasons/gate``, and its key."""
 
     def __init__(self, address, key):
-        self.address, self.key = address, key
+        self.at, self.key = urlsplit(address), key
 
     def ask(self, what, body=None):
         """Get a document, or send one; tried until the season answers."""
         data = None if body is None else json.dumps(body).encode()
         headers = {"Authorization": f"Bearer {self.key}", "Content-Type": "application/json"}
+        method, path = "GET" if data is None else "POST", f"{self.at.path}/{what}"
         while True:
             try:
-                with urlopen(
-                    Request(f"{self.address}/{what}", data, headers), timeout=60
-                ) as answer:
-                    return json.load(answer)
-            except URLError as error:
-                if getattr(error, "code", 503) in {401, 403, 404, 413, 422}:
-                    raise  # it will never be taken as it is
+                with closing(HTTPConnection(self.at.netloc, timeout=60)) as line:
+                    line.request(method, path, data, headers)
+                    answer = line.getresponse()
+                    told = answer.read()
+            except (OSError, HTTPException):
                 wait(1.0)
+                continue
+            if answer.status == 200:
+                return json.loads(told)
+            if answer.status in {400, 401, 403, 404, 413, 422}:
+                raise RefusedError(answer.status, told.decode())
+            wait(1.0)
 
     def tell(self, plant, found):
         """Say what was seen at a plant; None: it could not be looked at."""
@@ -41,8 +52,9 @@ class SeasonOverHttp:
         return self.ask("findings", {"sent": now, "findings": [finding]})
 
 
-def drive_day(season, go_and_look, most=10_000):
-    """Drive a day: `go_and_look` is told a place (lon, lat), and returns what was seen there."""
+def drive_day(season, go_and_look, hours=4.0, most=10_000):
+    """Drive some hours: `go_and_look` is told a place (lon, lat), and returns what it saw there."""
+    over = monotonic() + 3600 * hours
     plot, day = season.ask("plot"), season.ask("day")
     left = day["route"]["plants"]
     told = []
@@ -53,5 +65,6 @@ def drive_day(season, go_and_look, most=10_000):
         season.tell(plant, found)
         told.append(plant)
         if found:  # the rest of the day, from all that is known now
-            left = season.ask("route", {})["route"]["plants"]
+            seconds = max(0, int(over - monotonic()))
+            left = season.ask("route", {"seconds_left": seconds})["route"]["plants"]
     return told

@@ -3,6 +3,7 @@
 import asyncio
 
 from app.startup.upload_limits import UploadLimits, Uploads, is_upload
+from tests.app.api.asking import in_own_loop
 
 FEW = UploadLimits(files=3, megabytes=10, all_files=5, all_megabytes=15)
 
@@ -55,4 +56,4 @@ def test_an_upload_that_trickles_in_for_too_long_is_given_up():
     async def ask():
         return await Uploads(UploadLimits(seconds=0.01)).timed(trickle)()
 
-    assert asyncio.run(ask()) == {"type": "http.disconnect"}
+    assert in_own_loop(ask) == {"type": "http.disconnect"}

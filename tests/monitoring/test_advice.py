@@ -34,7 +34,9 @@ def test_a_corner_is_treated_and_not_the_plot(season):
     assert advice.above >= 1
     assert advice.headline().startswith("Do not treat the whole plot, but ")
     corner = season.plot.grid.xy_m[advice.zones.treated] - season.plot.grid.xy_m.min(axis=0)
-    assert np.median(corner.max(axis=1)) < 24
+    # the rows in which finds lay may go on
+    assert np.median(corner.max(axis=1)) <= 24
+    assert len(corner) < len(season.plot.grid) / 4
     assert advice.saving > 0.0
     assert "The chance that it is enough is" in " ".join(advice.sentences())
 

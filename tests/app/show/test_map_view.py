@@ -12,6 +12,7 @@ from app.show.maps import deck
 from app.state.map_store import STORE
 from app.words import texts
 from app.words.units import UnitsInLanguage
+from fieldmon.drive.vda5050.watcher import FAILED, LIVE, LOST, PAUSED, WAITING
 from tests.app.chosen import a_plot
 from tests.app.driving import go, map_of
 from tests.paths import ROOT
@@ -156,4 +157,7 @@ def test_every_word_of_the_map_is_one_that_its_script_shows():
     folder = ROOT / "app" / "map_view" / "src"
     source = "".join(path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.js")))
     asked = set(re.findall(r"\b(?:words|said)\.([a-z_]+)\b(?!\()", source))
-    assert asked == set(texts.MAP_WORDS)
+    # how a robot stands is shown by its own word: the watcher's, the page's, the script's
+    assert "words[heard.standing]" in source
+    standings = {*(WAITING, LIVE, PAUSED, FAILED, LOST), "ended", "away"}
+    assert asked | standings == set(texts.MAP_WORDS)

@@ -239,7 +239,7 @@ def grid_from_plants(
     else:
         bent = bent_rows(xy_m, line, planting.row_spacing_m, said)
     if bent is not None:
-        area = None if field is None else _held_area(field, frame, xy_m)
+        area = None if field is None else held_area(field, frame, xy_m)
         return measured_grid(frame, xy_m, (bent, called), Ground(area, obstacles), planting)
     order = np.lexsort((xy_m[:, 0], line))
     xy_m, line = xy_m[order], line[order]
@@ -247,14 +247,14 @@ def grid_from_plants(
     reach = shapely.difference(_reach(pieces, planting), obstacles)
     if field is None:
         return assemble(frame, pieces, _polygons(reach), planting)
-    area = _held_area(field, frame, xy_m)
+    area = held_area(field, frame, xy_m)
     lanes = _boxes(pieces.lane_x_m, pieces.aisle_y_m)
     if not shapely.covers(shapely.buffer(area, 100 * SLACK_M), lanes).all():
         area = _polygons(shapely.union(area, reach))
     return assemble(frame, pieces, area, planting)
 
 
-def _held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
+def held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
     """Return where one may drive on a field, which must hold some of the plants."""
     area = frame.geometry_m(field.drivable())
     if not shapely.contains_xy(area, xy_m).any():

@@ -12,6 +12,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
 from fieldmon.plot.grid import PlantGrid
+from fieldmon.plot.layout import held_area
 from fieldmon.plot.row_detection import frame_around
 
 if TYPE_CHECKING:
@@ -105,19 +106,8 @@ def _ground(xy_m: Float, usual_m: float, field: Field | None) -> MultiPolygon:
     about = shapely.union_all(shapely.buffer(shapely.points(xy_m), _ABOUT * usual_m, quad_segs=4))
     if field is not None:
         frame = field.frame()
-        area = frame.geometry_m(field.drivable())
-        on_it = shapely.contains_xy(area, xy_m)
-        if not on_it.any():
-            raise PlotError(
-                worded(
-                    "Measured plants must stand on plot {name!r}, but none of {n} "
-                    "does. Choose the plants' own plot, or check the coordinate "
-                    "systems.",
-                    name=field.name,
-                    n=len(xy_m),
-                )
-            )
-        if on_it.all():
+        area = held_area(field, frame, xy_m)
+        if shapely.contains_xy(area, xy_m).all():
             return area
         no_go = frame.geometry_m(field.no_go)
         about = shapely.difference(shapely.union(area, about), no_go)

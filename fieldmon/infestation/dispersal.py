@@ -11,6 +11,7 @@ from scipy import fft
 
 from fieldmon.compute.jit import loop, routine
 from fieldmon.compute.random_streams import coin, coin_bits
+from fieldmon.infestation.belief import lesser
 from fieldmon.infestation.cells import Cells
 
 if TYPE_CHECKING:
@@ -115,8 +116,8 @@ class Dispersal:
             Name the table of coins.
         """
         found = np.zeros(len(self.cells.of_plant), np.bool_)
-        where = self.cells[:4]
-        _reach(senders, (sends, self.long_share), (key, turn), (where, self._dealt), found)
+        where = self._at, self._of_cells, self._dealt
+        _reach(senders, (sends, self.long_share), (key, turn), where, found)
         return found
 
     def by_sum(self, sent: Floats) -> Floats:
@@ -145,16 +146,32 @@ class Dispersal:
         return part
 
     @cached_property
-    def _dealt(self) -> tuple[Floats, NDArray[np.int32], int]:
-        """The kernel as a table from which a cell is drawn by one coin, and cells a row of it.
+    def _at(self) -> NDArray[np.int32]:
+        """The cell of each plant, across and along, ``(n, 2)``."""
+        at = np.divmod(self.cells.of_plant, self.cells.shape[1])
+        return np.column_stack(at).astype(np.int32)
+
+    @cached_property
+    def _of_cells(self) -> tuple[NDArray[np.int32], NDArray[np.int32], tuple[int, int]]:
+        """The plants of each cell, small enough to stay near the processor."""
+        start, plant = self.cells.start.astype(np.int32), self.cells.plant.astype(np.int32)
+        return start, plant, (int(self.cells.shape[0]), int(self.cells.shape[1]))
+
+    @cached_property
+    def _dealt(self) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
+        """The kernel as a table from which a cell is drawn by one coin.
 
         Walker's alias table (Vose 1991, IEEE Trans. Softw. Eng. 17:972): how much of each entry is
-        its own cell, and the cell that has the rest.
+        its own cell, and how far across and along that one is, and the one that has the rest.
         """
+        across, along = self.shares.shape
         own = self.shares.ravel() * self.shares.size
         other = np.arange(own.size, dtype=np.int32)
         _deal(own, other, np.empty(own.size, np.int32))
-        return own, other, self.shares.shape[1]
+        steps = np.divmod(np.arange(own.size, dtype=np.int32), along)
+        away = np.column_stack(steps).astype(np.int32) - np.array([across // 2, along // 2])
+        away = away.astype(np.int32)
+        return own, np.ascontiguousarray(away), np.ascontiguousarray(away[other])
 
     @cached_property
     def _padded(self) -> tuple[int, int]:
@@ -253,32 +270,32 @@ def _reach(
     senders: Plants,
     sends: tuple[float, float],
     coins: tuple[np.uint64, int],
-    to: tuple[tuple[NDArray[np.int64], ...], tuple[Floats, NDArray[np.int32], int]],
+    where: tuple[
+        NDArray[np.int32],
+        tuple[NDArray[np.int32], NDArray[np.int32], tuple[int, int]],
+        tuple[Floats, NDArray[np.int32], NDArray[np.int32]],
+    ],
     found: Mask,
 ) -> None:
     """Draw jumps and mark the plants that they reach; `sends` ends with the share of long ones."""
     mean, long_share = sends
     key, turn = coins
-    (of_plant, start, plant, shape), (own, other, wide) = to
-    across, along, n = shape[0], shape[1], found.size
-    up, left = own.size // wide // 2, wide // 2
-    none = np.exp(-min(mean, _AT_ONCE))
+    at, (start, plant, shape), (own, to, to_other) = where
+    (across, along), n = shape, found.size
+    none = np.exp(-lesser(mean, _AT_ONCE))
     for i in senders:
         drawn = coin(key, turn * n + i)
-        if drawn < none:
-            if mean <= _AT_ONCE:
-                continue
+        if drawn < none and mean <= _AT_ONCE:
+            continue
         table = coin_bits(key ^ _JUMPS, turn * n + i)
         for jump in range(_jumps(drawn, mean, none, table)):
             if long_share > 0.0 and coin(table, jump + _FAR) < long_share:
                 found[int(coin(table, jump + _ANY) * n)] = True
                 continue
-            at = coin(table, jump) * own.size
-            cell = int(at)
-            if at - cell >= own[cell]:
-                cell = other[cell]
-            y = of_plant[i] // along + cell // wide - up
-            x = of_plant[i] % along + cell % wide - left
+            lands = coin(table, jump) * own.size
+            cell = int(lands)
+            step = to[cell] if lands - cell < own[cell] else to_other[cell]
+            y, x = at[i, 0] + step[0], at[i, 1] + step[1]
             if 0 <= y < across and 0 <= x < along:
                 first = start[y * along + x]
                 here = start[y * along + x + 1] - first
@@ -291,20 +308,21 @@ def _reach(
 @routine
 def _jumps(drawn: float, mean: float, none: float, table: np.uint64) -> int:
     """Return a number drawn by Poisson: by one coin, of many jumps by one for each part."""
-    left, number, part = mean, 0, 0
-    while left > 0.0:
-        here = min(left, _AT_ONCE)
-        chance = none if left >= _AT_ONCE or part == 0 else np.exp(-here)
+    number, part = 0, 1
+    while True:
+        here = lesser(mean, _AT_ONCE)
+        chance = none if mean >= _AT_ONCE or part == 1 else np.exp(-here)
         below, k = chance, 0
         while drawn >= below and chance > 0.0:
             k += 1
             chance *= here / k
             below += chance
         number += k
-        left -= here
-        part += 1
+        mean -= _AT_ONCE
+        if mean <= 0.0:
+            return number
         drawn = coin(table, part + 2 * _ANY)
-    return number
+        part += 1
 
 
 @loop

@@ -37,11 +37,14 @@ def ours(hosts, rate, share):
     cells = cells_of(hosts)
     kernel = DistanceKernel("exponential", MEAN_M).on_cells(cells.size_m, (12, 12), own=True)
     dispersal = Dispersal(cells, kernel)
-    ended = []
+    ended, starts = [], []
+    for seed in range(TIMES):
+        draws = RandomStreams(seed).of("start").random(len(cells.of_plant))
+        starts.append(draws < share)
 
     def season():
-        streams = RandomStreams(len(ended))
-        infested = streams.of("start").random(len(cells.of_plant)) < share
+        seed = len(ended) % TIMES
+        streams, infested = RandomStreams(seed), starts[seed].copy()
         for day, key in zip(range(DAYS), streams.keys("spread"), strict=False):
             infested |= dispersal.reached(np.flatnonzero(infested), rate, key, day)
         ended.append(int(infested.sum()))

@@ -336,7 +336,7 @@ def tongue(language: str) -> Tongue:
     found = _catalogue(language)
 
     def say(sentence: str) -> str:
-        return _said(sentence, language) or str(sentence)
+        return _said(sentence, language) or _said_again(str(sentence), language) or str(sentence)
 
     letters = "".join(sorted({*"".join(found.words()), *ENGLISH_TONGUE.letters}))
     return Tongue(language, say, language in RIGHT_TO_LEFT, letters)

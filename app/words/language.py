@@ -247,6 +247,8 @@ def marked_as_english(sentence: str) -> str:
 
 def _said(sentence: object, language: str) -> str | None:
     """Return a sentence in a language; None if there are no words for it."""
+    if isinstance(sentence, BaseException) and sentence.args:
+        sentence = sentence.args[0]
     if not isinstance(sentence, Worded):
         return None
     found = _catalogue(language)

@@ -83,12 +83,9 @@ def report(  # noqa: PLR0913, PLR0917 - the command's options
     checked_ending(output)
     kept = [Season(path) for path in seasons]
     tongue, units = spoken(language, kept[0].settings.language)
-    if certification:
-        made = _certified(kept, until, units)
-    else:
-        made = _made(kept[0], on, until, units)
-    made = made.said_in(tongue)
-    typer.echo(f"Report written to {write_report(made, output, paper.value)}")
+    made = _certified(kept, until, units) if certification else _made(kept[0], on, until, units)
+    to = write_report(made.said_in(tongue), output, paper.value)
+    typer.echo(f"Report written to {to}")
 
 
 def _certified(seasons: list[Season], until: str | None, units: Units) -> Report:

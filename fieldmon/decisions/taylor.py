@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -61,7 +62,11 @@ class TaylorLaw:
         for name, value in vars(self).items():
             if not 0.0 < value < np.inf:
                 raise SettingError(
-                    f"Taylor's {name} must be a number above 0, but it is {value:g}."
+                    worded(
+                        "Taylor's {name} must be a number above 0, but it is {value:g}.",
+                        name=name,
+                        value=value,
+                    )
                 )
 
     def variance(self, mean: Any) -> Floats:  # noqa: ANN401 - an array or a number
@@ -91,8 +96,11 @@ class TaylorLaw:
         """
         if not 0.0 < share < 1.0:
             raise SettingError(
-                f"A share of leaves must lie between 0 and 1, but it is {share:g}: where all or "
-                "none are infested, presence says nothing of the mean."
+                worded(
+                    "A share of leaves must lie between 0 and 1, but it is {share:g}: where all or "
+                    "none are infested, presence says nothing of the mean.",
+                    share=share,
+                )
             )
         low, high = -20.0, 20.0
         for _ in range(_STEPS):
@@ -204,8 +212,12 @@ def mean_band(
 def _share(leaves: int, infested: int) -> float:
     if not 0 < infested < leaves:
         raise SettingError(
-            "Of the leaves some must be infested and some clean, for presence to say something of "
-            f"the mean, but {infested} of {leaves} are infested."
+            worded(
+                "Of the leaves some must be infested and some clean, for presence to say "
+                "something of the mean, but {infested} of {leaves} are infested.",
+                infested=infested,
+                leaves=leaves,
+            )
         )
     return infested / leaves
 
@@ -249,8 +261,11 @@ class EmptyLeaves:
         told = (mean > 0.0) & (empty > 0.0) & (empty < 1.0)
         if np.count_nonzero(told) < 3 or np.ptp(empty[told]) == 0.0:
             raise SettingError(
-                "A line needs three samples or more with some leaves empty and some not, of "
-                f"different shares, but there are {np.count_nonzero(told)}."
+                worded(
+                    "A line needs three samples or more with some leaves empty and some not, of "
+                    "different shares, but there are {n}.",
+                    n=np.count_nonzero(told),
+                )
             )
         x, y = np.log(-np.log(empty[told])), np.log(mean[told])
         spread = float(((x - x.mean()) ** 2).sum())

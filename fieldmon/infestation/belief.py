@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from fieldmon.compute.jit import inlined
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -46,7 +47,11 @@ class Learning:
             values = np.atleast_1d(getattr(self, name))
             if not ((values >= 0.0) & (values <= 1.0)).all():
                 raise SettingError(
-                    f"{name} must be a chance in 0..1, but it is {getattr(self, name)}."
+                    worded(
+                        "{name} must be a chance in 0..1, but it is {self}.",
+                        name=name,
+                        self=getattr(self, name),
+                    )
                 )
 
     def detects(self, inspections: int) -> NDArray[np.float64]:

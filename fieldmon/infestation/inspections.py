@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -66,14 +66,22 @@ class Inspections:
             values = np.asarray(getattr(self, name))
             if len(values) != k:
                 raise ObservationError(
-                    f"All columns of the inspections must have {k} entries, "
-                    f"but {name} has {len(values)}."
+                    worded(
+                        "All columns of the inspections must have {k} entries, but {name} has {n}.",
+                        k=k,
+                        name=name,
+                        n=len(values),
+                    )
                 )
             # a view: the caller's own array stays as it is
             column = values.astype(type_, copy=False).view()
             if name in _WHOLE and not np.array_equal(column, values):
                 raise ObservationError(
-                    f"The {name} of inspections must be whole numbers of {type_}."
+                    worded(
+                        "The {name} of inspections must be whole numbers of {type}.",
+                        name=name,
+                        type=type_,
+                    )
                 )
             column.setflags(write=False)
             object.__setattr__(self, name, column)

@@ -133,8 +133,11 @@ class MonitoringSettings:
             if one.name.casefold() == who.casefold():
                 return one
         raise SettingError(
-            f"One of the team must be named ({', '.join(one.name for one in self.team)}), but it "
-            f"is {who!r}."
+            worded(
+                "One of the team must be named ({names}), but it is {who!r}.",
+                names=", ".join(one.name for one in self.team),
+                who=who,
+            )
         )
 
     def day(self, on: date) -> int:

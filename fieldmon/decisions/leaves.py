@@ -48,12 +48,7 @@ def of_leaves(threshold: Threshold, leaves: int, counted: float, *, presence: bo
         )
     if (threshold.is_share or presence) and counted > leaves:
         raise SettingError(
-            worded(
-                "No more leaves can be infested than were looked at, but {counted:g} of "
-                "{leaves} are.",
-                counted=counted,
-                leaves=leaves,
-            )
+            f"No more leaves can be infested than were looked at, but {counted:g} of {leaves} are."
         )
     if presence and not threshold.is_share:
         return _by_presence(threshold, leaves, int(counted))

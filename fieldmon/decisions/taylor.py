@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
-from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -62,11 +61,7 @@ class TaylorLaw:
         for name, value in vars(self).items():
             if not 0.0 < value < np.inf:
                 raise SettingError(
-                    worded(
-                        "Taylor's {name} must be a number above 0, but it is {value:g}.",
-                        name=name,
-                        value=value,
-                    )
+                    f"Taylor's {name} must be a number above 0, but it is {value:g}."
                 )
 
     def variance(self, mean: Any) -> Floats:  # noqa: ANN401 - an array or a number
@@ -96,11 +91,8 @@ class TaylorLaw:
         """
         if not 0.0 < share < 1.0:
             raise SettingError(
-                worded(
-                    "A share of leaves must lie between 0 and 1, but it is {share:g}: where all or "
-                    "none are infested, presence says nothing of the mean.",
-                    share=share,
-                )
+                f"A share of leaves must lie between 0 and 1, but it is {share:g}: where all or "
+                "none are infested, presence says nothing of the mean."
             )
         low, high = -20.0, 20.0
         for _ in range(_STEPS):
@@ -212,12 +204,8 @@ def mean_band(
 def _share(leaves: int, infested: int) -> float:
     if not 0 < infested < leaves:
         raise SettingError(
-            worded(
-                "Of the leaves some must be infested and some clean, for presence to say "
-                "something of the mean, but {infested} of {leaves} are infested.",
-                infested=infested,
-                leaves=leaves,
-            )
+            "Of the leaves some must be infested and some clean, for presence to say something of "
+            f"the mean, but {infested} of {leaves} are infested."
         )
     return infested / leaves
 
@@ -261,11 +249,8 @@ class EmptyLeaves:
         told = (mean > 0.0) & (empty > 0.0) & (empty < 1.0)
         if np.count_nonzero(told) < 3 or np.ptp(empty[told]) == 0.0:
             raise SettingError(
-                worded(
-                    "A line needs three samples or more with some leaves empty and some not, of "
-                    "different shares, but there are {n}.",
-                    n=np.count_nonzero(told),
-                )
+                "A line needs three samples or more with some leaves empty and some not, of "
+                f"different shares, but there are {np.count_nonzero(told)}."
             )
         x, y = np.log(-np.log(empty[told])), np.log(mean[told])
         spread = float(((x - x.mean()) ** 2).sum())

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from fieldmon.compute.jit import inlined
-from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -47,11 +46,7 @@ class Learning:
             values = np.atleast_1d(getattr(self, name))
             if not ((values >= 0.0) & (values <= 1.0)).all():
                 raise SettingError(
-                    worded(
-                        "{name} must be a chance in 0..1, but it is {self}.",
-                        name=name,
-                        self=getattr(self, name),
-                    )
+                    f"{name} must be a chance in 0..1, but it is {getattr(self, name)}."
                 )
 
     def detects(self, inspections: int) -> NDArray[np.float64]:

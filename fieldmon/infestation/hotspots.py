@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.jit import routine
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
@@ -68,25 +68,16 @@ class HotSpotSettings:
     def __post_init__(self) -> None:
         if self.radius_m is not None and not 0.0 < self.radius_m < np.inf:
             raise SettingError(
-                worded(
-                    "The radius of a hot spot's window must be above 0 m, but it is {radius_m}.",
-                    radius_m=self.radius_m,
-                )
+                f"The radius of a hot spot's window must be above 0 m, but it is {self.radius_m}."
             )
         if not 0.0 < self.false_share < 1.0:
             raise SettingError(
-                worded(
-                    "The tolerated share of false hot spots must lie between 0 and 1, but it is "
-                    "{false_share}.",
-                    false_share=self.false_share,
-                )
+                "The tolerated share of false hot spots must lie between 0 and 1, "
+                f"but it is {self.false_share}."
             )
         if self.least_finds < 2:
             raise SettingError(
-                worded(
-                    "A hot spot must hold 2 finds or more, but least_finds is {least_finds}.",
-                    least_finds=self.least_finds,
-                )
+                f"A hot spot must hold 2 finds or more, but least_finds is {self.least_finds}."
             )
 
 
@@ -227,11 +218,8 @@ def hot_spots(
     settings = settings or HotSpotSettings()
     if len(state) != len(grid):
         raise ObservationError(
-            worded(
-                "The states of the plants must have one entry a plant ({n}), but there are {n_2}.",
-                n=len(grid),
-                n_2=len(state),
-            )
+            f"The states of the plants must have one entry a plant ({len(grid)}), "
+            f"but there are {len(state)}."
         )
     vine = grid.vine
     either = np.full(len(grid), UNKNOWN, np.int8)

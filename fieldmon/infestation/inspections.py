@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -66,22 +66,14 @@ class Inspections:
             values = np.asarray(getattr(self, name))
             if len(values) != k:
                 raise ObservationError(
-                    worded(
-                        "All columns of the inspections must have {k} entries, but {name} has {n}.",
-                        k=k,
-                        name=name,
-                        n=len(values),
-                    )
+                    f"All columns of the inspections must have {k} entries, "
+                    f"but {name} has {len(values)}."
                 )
             # a view: the caller's own array stays as it is
             column = values.astype(type_, copy=False).view()
             if name in _WHOLE and not np.array_equal(column, values):
                 raise ObservationError(
-                    worded(
-                        "The {name} of inspections must be whole numbers of {type}.",
-                        name=name,
-                        type=type_,
-                    )
+                    f"The {name} of inspections must be whole numbers of {type_}."
                 )
             column.setflags(write=False)
             object.__setattr__(self, name, column)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from scipy.special import i0e
 
-from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -61,26 +60,16 @@ class DistanceKernel:
     def __post_init__(self) -> None:
         if self.shape not in {"exponential", "cauchy"}:
             raise SettingError(
-                worded(
-                    "A kernel's shape must be 'exponential' or 'cauchy', but it is {shape!r}.",
-                    shape=self.shape,
-                )
+                f"A kernel's shape must be 'exponential' or 'cauchy', but it is {self.shape!r}."
             )
         for name in ("scale_m", "across"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise SettingError(
-                    worded(
-                        "A kernel's {name} must be above 0, but it is {self}.",
-                        name=name,
-                        self=getattr(self, name),
-                    )
+                    f"A kernel's {name} must be above 0, but it is {getattr(self, name)}."
                 )
         if not 0.0 <= self.long_share <= 1.0:
             raise SettingError(
-                worded(
-                    "A kernel's share of long jumps must be in 0..1, but it is {long_share}.",
-                    long_share=self.long_share,
-                )
+                f"A kernel's share of long jumps must be in 0..1, but it is {self.long_share}."
             )
 
     def reach_m(self, wind_m_s: tuple[float, float] = _CALM) -> float:

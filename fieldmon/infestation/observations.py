@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -53,13 +53,8 @@ class Observations:
         for name, values in vars(self).items():
             if len(values) != m:
                 raise ObservationError(
-                    worded(
-                        "All columns of the observations must have {m} entries, but {name} has "
-                        "{n}.",
-                        m=m,
-                        name=name,
-                        n=len(values),
-                    )
+                    f"All columns of the observations must have {m} entries, "
+                    f"but {name} has {len(values)}."
                 )
             values.setflags(write=False)
 

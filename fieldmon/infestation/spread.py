@@ -9,7 +9,6 @@ import numpy as np
 
 from fieldmon.compute.jit import loop
 from fieldmon.compute.random_streams import coin, coin_bits, coin_limit
-from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -47,18 +46,12 @@ class Spread:
         for name in ("rate_per_day", "arrivals_per_day"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise SettingError(
-                    worded(
-                        "The spread's {name} must be a chance in 0..1, but it is {self}.",
-                        name=name,
-                        self=getattr(self, name),
-                    )
+                    f"The spread's {name} must be a chance in 0..1, "
+                    f"but it is {getattr(self, name)}."
                 )
         if self.to not in _TO:
             raise SettingError(
-                worded(
-                    "Spread goes to 'each', 'one' or 'all' of the neighbours, but it is {to!r}.",
-                    to=self.to,
-                )
+                f"Spread goes to 'each', 'one' or 'all' of the neighbours, but it is {self.to!r}."
             )
 
 

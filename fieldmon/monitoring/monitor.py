@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import PriorSettings, prior_chance
@@ -157,9 +156,7 @@ class Monitor:
         """
         if self._day is not None:
             raise SettingError(
-                worded(
-                    "A day must end and its night pass before the next begins. Call night() first."
-                )
+                "A day must end and its night pass before the next begins. Call night() first."
             )
         self._day = MonitorDay(self, self._scene(), self._sampler)
         return self._day
@@ -180,9 +177,7 @@ class Monitor:
             If the day has not ended yet.
         """
         if self._day is not None and not self._day.ended:
-            raise SettingError(
-                worded("The day must end before the night. Leave its with statement first.")
-            )
+            raise SettingError("The day must end before the night. Leave its with statement first.")
         self._belief = self.belief_settings.overnight(self._belief)
         self._day = None
         self.day_number += 1
@@ -316,17 +311,11 @@ class MonitorDay:
         """
         stop = self._asked
         if stop is None:
-            raise ObservationError(
-                worded("A plant must be asked for before it is told of. Call ask().")
-            )
+            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
         done_s = stop.arrive_s + stop.inspect_s
         if at_s is not None and at_s < self._since_s:
             raise ObservationError(
-                worded(
-                    "The day's clock must go on, but it was {since_s:.0f} s and is {at_s:.0f} s.",
-                    since_s=self._since_s,
-                    at_s=at_s,
-                )
+                f"The day's clock must go on, but it was {self._since_s:.0f} s and is {at_s:.0f} s."
             )
         self._told.append((stop, found))
         self._asked = None
@@ -392,11 +381,7 @@ def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.
     given = np.asarray(chance, np.float64)
     if given.shape != (len(plot.grid),) or not ((given >= 0) & (given <= 1)).all():
         raise SettingError(
-            worded(
-                "A chance map must have a chance in 0..1 for each of {n} plants, but it has "
-                "the shape {shape}.",
-                n=len(plot.grid),
-                shape=given.shape,
-            )
+            f"A chance map must have a chance in 0..1 for each of {len(plot.grid)} plants, "
+            f"but it has the shape {given.shape}."
         )
     return given

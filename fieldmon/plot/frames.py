@@ -8,7 +8,6 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
 
@@ -56,10 +55,8 @@ def boundary_and_plants(frame: GeoDataFrame) -> tuple[MultiPolygon | None, NDArr
     """
     if frame.crs is None:
         raise SettingError(
-            worded(
-                "A GeoDataFrame must say its coordinate system, but its crs is None. Set it "
-                "first: gdf.set_crs(4326), for instance."
-            )
+            "A GeoDataFrame must say its coordinate system, but its crs is None. "
+            "Set it first: gdf.set_crs(4326), for instance."
         )
     shapes = frame.geometry[~(frame.geometry.isna() | frame.geometry.is_empty)].to_crs(_DEGREES)
     kinds = shapes.geom_type.str.removeprefix("Multi")
@@ -67,19 +64,13 @@ def boundary_and_plants(frame: GeoDataFrame) -> tuple[MultiPolygon | None, NDArr
     if not len(shapes) or len(areas) + len(points) < len(shapes):
         found = ", ".join(sorted(set(kinds))) or "nothing"
         raise PlotError(
-            worded(
-                "A plot must be an area, measured plants as points, or both, but the "
-                "GeoDataFrame holds {found}.",
-                found=found,
-            )
+            f"A plot must be an area, measured plants as points, or both, but the GeoDataFrame "
+            f"holds {found}."
         )
     if len(areas) > 1:
         raise PlotError(
-            worded(
-                "One area must be the plot, but the GeoDataFrame holds {n}. Choose a row, "
-                "gdf.iloc[[0]], or join its parts, gdf.dissolve().",
-                n=len(areas),
-            )
+            f"One area must be the plot, but the GeoDataFrame holds {len(areas)}. Choose a row, "
+            "gdf.iloc[[0]], or join its parts, gdf.dissolve()."
         )
     boundary = MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
     return boundary, shapely.get_coordinates(points.to_numpy())

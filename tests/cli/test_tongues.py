@@ -8,8 +8,14 @@ from fieldmon.errors import SettingError
 
 @pytest.mark.parametrize(
     ("asked", "kept", "code"),
-    [(None, "", "en"), (None, "he", "he"), ("es", "he", "es"), ("en", "he", "en"), (None, "xx", "en")],
-)  # fmt: skip
+    [
+        (None, "", "en"),
+        (None, "he", "he"),
+        ("es", "he", "es"),
+        ("en", "he", "en"),
+        (None, "of a later fieldmon", "en"),
+    ],
+)
 def test_what_is_asked_for_counts_then_the_season_s_then_english(asked, kept, code):
     tongue, _ = spoken(asked, kept)
     assert tongue.code == code

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import FINDS, PROVED, share_above, told
 from fieldmon.planning.routes.binned import proposals
@@ -374,19 +374,9 @@ def _checked(reward: ArrayLike, n: int, seconds: float) -> Float:
     values = np.ascontiguousarray(reward, np.float64)
     if values.shape != (n,) or not (np.isfinite(values).all() and (values >= 0).all()):
         raise SettingError(
-            worded(
-                "Rewards must be {n} numbers of 0 or more, one a plant, but they are {size} "
-                "with a least value of {how}.",
-                n=n,
-                size=values.size,
-                how=values.min() if values.size else "none",
-            )
+            f"Rewards must be {n} numbers of 0 or more, one a plant, but they are "
+            f"{values.size} with a least value of {values.min() if values.size else 'none'}."
         )
     if not seconds > 0:
-        raise SettingError(
-            worded(
-                "The time for a route must be above 0 s, but it is {seconds}.",
-                seconds=seconds,
-            )
-        )
+        raise SettingError(f"The time for a route must be above 0 s, but it is {seconds}.")
     return values

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import loop, part
-from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.planning.routes.passes import Passes
 
@@ -146,20 +145,11 @@ def best_walk(reward: ArrayLike, budget: int) -> Walk:
     values = np.ascontiguousarray(reward, np.float64)
     if values.ndim != 2 or 0 in values.shape or not (values >= 0).all():
         raise SettingError(
-            worded(
-                "Rewards must be a matrix of numbers of 0 or more, one line a row, but they "
-                "are {shape} with a least value of {how}.",
-                shape=values.shape,
-                how=values.min() if values.size else "none",
-            )
+            "Rewards must be a matrix of numbers of 0 or more, one line a row, but they are "
+            f"{values.shape} with a least value of {values.min() if values.size else 'none'}."
         )
     if budget < 0:
-        raise SettingError(
-            worded(
-                "A budget must be 0 steps or more, but it is {budget}.",
-                budget=budget,
-            )
-        )
+        raise SettingError(f"A budget must be 0 steps or more, but it is {budget}.")
     # more steps than that bring nothing
     return _Search(values).best(min(budget, full_budget(*values.shape)) // 2)
 

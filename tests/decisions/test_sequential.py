@@ -275,7 +275,7 @@ def bout_by_bout(counts, plan):
 
     Theirs takes each bout by itself and multiplies the odds; `BayesPlan` takes all counts together.
     """
-    above = plan.chance_above(1.0, counts)
+    above = plan.chance_above(1.0, np.arange(counts.max() + 1))[counts]
     chance = 1.0 / (1.0 + np.exp(-np.cumsum(np.log(above) - np.log1p(-above), axis=1)))
     ended = np.argmax((chance < 1.0 - plan.sure) | (chance > plan.sure), axis=1)
     return chance[np.arange(len(chance)), ended], ended + 1

@@ -5,6 +5,7 @@ Nothing heavy is imported here: the server answers before any of it is loaded.
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 from functools import cache
@@ -49,6 +50,9 @@ class Preload(threading.Thread):
             self.ready.set()
         self.shown.wait(_LATER_S)
         _load_simulation()
+        # what is loaded stays: a click now and then would wait while all of it is looked through
+        gc.collect()
+        gc.freeze()
 
 
 def _load_outline() -> None:

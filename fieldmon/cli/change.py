@@ -21,6 +21,7 @@ from fieldmon.cli.options import (
 from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
+from fieldmon.cli.tongues import Language, checked_language
 from fieldmon.errors import SettingError
 from fieldmon.samplers import kind_of
 from fieldmon.samplers.registry import SAMPLERS
@@ -59,6 +60,7 @@ class ChangeOptions:
         str | None,
         typer.Option(help="First day of harvest, YYYY-MM-DD, which treatments wait for; or none."),
     ] = None
+    language: Language = None
     who: Annotated[str, typer.Option(help="Who chooses so.")] = ""
     living: PestOptions = field(default_factory=PestOptions)
 
@@ -87,6 +89,8 @@ class ChangeOptions:
         if self.harvest is not None:
             none = self.harvest.casefold() == "none"
             new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))
+        if self.language is not None:
+            new = replace(new, language=checked_language(self.language))
         return self._of_pest(new, plot)
 
     def _must_spread(self, settings: MonitoringSettings) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
@@ -207,14 +207,16 @@ def plan_from(
     plot: Plot, chance: NDArray[np.float64], plans: PlanSettings, wishes: Wishes | None = None
 ) -> DayPlan:  # fmt: skip
     """Plan a first day from a chance map ``(n,)``, and from what people wish for besides."""
+    # as a season believes: it goes the same way on its first day
+    believed = TracedPairs.of(plot.grid, chance)
     scene = Scene(
         aisles=plot.aisles,
         robot=plans.robot,
         chance=chance,
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
-        # as a season believes: it goes the same way on its first day
-        pair_chance=pair_chances(chance, plot.grid),
+        pair_chance=believed.pair_chance,
+        traces=believed.traces,
     )
     return plan_in(scene, plans.sampler, wishes)
 

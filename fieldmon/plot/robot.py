@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 THESIS_VIEWPOINTS = ((20.0, 0.50), (25.0, 0.60), (30.0, 0.69), (35.0, 0.77), (40.0, 0.84))
@@ -36,11 +37,20 @@ class Viewpoints:
         rising = all(low[0] < high[0] and low[1] <= high[1] for low, high in pairwise(ladder))
         if not (self.steps and rising and self.steps[0][0] > 0 and self.steps[0][1] >= 0):
             raise SettingError(
-                "Viewpoints must be pairs of seconds and chance, both rising, from above 0 s, "
-                f"but they are {self.steps} and {self.longer} for longer."
+                worded(
+                    "Viewpoints must be pairs of seconds and chance, both rising, from above 0 s, "
+                    "but they are {steps} and {longer} for longer.",
+                    steps=self.steps,
+                    longer=self.longer,
+                )
             )
         if self.longer > 1:
-            raise SettingError(f"A chance must be in 0..1, but 'longer' is {self.longer}.")
+            raise SettingError(
+                worded(
+                    "A chance must be in 0..1, but 'longer' is {longer}.",
+                    longer=self.longer,
+                )
+            )
 
     def detection(self, seconds: float) -> float:
         """Return the chance that `seconds` of looking find what is on an infested plant."""
@@ -130,7 +140,9 @@ class Robot:
             if (size_m := getattr(self, name)) is not None:
                 _must(name, size_m, "0.05 to 10 metres", 0.05 <= size_m <= 10)
         if self.length_m is not None and self.width_m is None:
-            raise SettingError("A robot whose length is known must have a width too. Give both.")
+            raise SettingError(
+                worded("A robot whose length is known must have a width too. Give both.")
+            )
 
     @property
     def day_s(self) -> float:
@@ -177,7 +189,13 @@ class Robot:
         if self.on_foot:
             raise SettingError("A scout has times of its own: leave a robot's out.")
         if name not in ROBOT_TIMES:
-            raise SettingError(f"Times must be {' or '.join(ROBOT_TIMES)}, but they are {name!r}.")
+            raise SettingError(
+                worded(
+                    "Times must be {names}, but they are {name!r}.",
+                    names=" or ".join(ROBOT_TIMES),
+                    name=name,
+                )
+            )
         return replace(self, **ROBOT_TIMES[name]._asdict())
 
     def with_hours(self, hours: float) -> Robot:
@@ -214,4 +232,11 @@ def rover() -> Robot:
 
 def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check
     if not (holds and math.isfinite(value)):
-        raise SettingError(f"The robot's {name} must be {rule}, but it is {value}.")
+        raise SettingError(
+            worded(
+                "The robot's {name} must be {rule}, but it is {value}.",
+                name=name,
+                rule=rule,
+                value=value,
+            )
+        )

@@ -204,7 +204,7 @@ def _grown(grid: PlantGrid, world: World, rng: np.random.Generator) -> NDArray[n
             if len(members) >= size:
                 break
             sender = members[int(rng.integers(len(members)))]
-            reached = int(world.reached(grid, rng)[sender])
+            reached = int(world.reached(grid, rng, np.array([sender]))[0])
             if reached >= 0 and reached not in members and not infested[reached]:
                 members.append(reached)
         infested[members] = True

@@ -13,6 +13,7 @@ from fieldmon.cli.options import (
     Hours,
     Look,
     Robots,
+    RobotTimesName,
     SeasonFile,
     Speed,
     WorkerOptions,
@@ -42,6 +43,7 @@ class ChangeOptions:
     hours: Hours = None
     look: Look = None
     speed: Speed = None
+    robot_times: RobotTimesName = None
     robots: Robots = None
     start: Annotated[str | None, typer.Option(help="Local time the work starts, HH:MM.")] = None
     spread: Annotated[
@@ -66,11 +68,9 @@ class ChangeOptions:
         """Return a season's settings as they are to be."""
         from dataclasses import replace  # noqa: PLC0415
 
-        worker = WorkerOptions(self.hours, self.look, self.speed)
-        robot = worker.given()
-        new = replace(settings, robot=replace(settings.robot, **robot))  # type: ignore[arg-type]
-        team = [replace(one, robot=replace(one.robot, **robot)) for one in settings.team]  # type: ignore[arg-type]
-        new = replace(new, team=tuple(team))
+        worker = WorkerOptions(self.hours, self.look, self.speed, robot_times=self.robot_times)
+        team = tuple(replace(one, robot=worker.said_of(one.robot)) for one in settings.team)
+        new = replace(settings, robot=worker.said_of(settings.robot), team=team)
         if self.robots is not None:
             new = self._of_several(new)
         if self.sampler is not None:

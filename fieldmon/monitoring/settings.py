@@ -18,7 +18,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ
-from fieldmon.plot.robot import Robot, Viewpoints
+from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
 
 if TYPE_CHECKING:
@@ -244,10 +244,14 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
         ) from error
 
 
+# what a robot was charged while seasons did not yet keep all of its times
+_TIMES_OF_OLD = ROBOT_TIMES["thesis"]._asdict()
+
+
 def _robot(plain: dict[str, Any]) -> Robot:
     steps = tuple((float(s), float(p)) for s, p in plain["viewpoints"]["steps"])
     viewpoints = Viewpoints(steps, plain["viewpoints"]["longer"])
-    return Robot(**{**plain, "viewpoints": viewpoints})
+    return Robot(**{**_TIMES_OF_OLD, **plain, "viewpoints": viewpoints})
 
 
 def _member(plain: dict[str, Any]) -> TeamMember:

@@ -73,17 +73,21 @@ class RobotTimes(NamedTuple):
     stop_s: float
 
 
-#: those of the thesis, and those of days driven in a physical simulation (docs/drive): of a robot
-#: with two driven wheels whose mast looks to both sides, so that it need not turn in an aisle
-ROBOT_TIMES = {"thesis": RobotTimes(25.0, 23.0, 0.0), "measured": RobotTimes(9.0, 0.0, 1.13)}
+#: those of days driven in a physical simulation (docs/drive), of a robot with two driven wheels
+#: whose mast looks to both sides, so that it need not turn in an aisle; and those of the thesis
+ROBOT_TIMES = {"measured": RobotTimes(9.0, 0.0, 1.13), "thesis": RobotTimes(25.0, 23.0, 0.0)}
+USUAL_TIMES = "measured"
+#: our choice
+SCOUT_TIMES = RobotTimes(3.0, 2.0, 5.0)
 
 
 @dataclass(frozen=True)
 class Robot:
     """Speed, turning, looking and working time of whoever inspects.
 
-    The defaults are the thesis's robot (2.5 km/h, 40 s a plant, 12 h a day; turns as in its
-    chapter 4). A scout on foot is a robot with other numbers, see :func:`scout`.
+    The defaults are the thesis's robot (2.5 km/h, 40 s a plant, 12 h a day), but for its row
+    changes, turns and stops: those are what simulated drives took, and the thesis's are
+    ``with_times("thesis")``. A scout on foot is a robot with other numbers, see :func:`scout`.
 
     Parameters
     ----------
@@ -113,9 +117,9 @@ class Robot:
     """
 
     speed_m_s: float = 2.5 / 3.6
-    row_change_s: float = 25.0
-    turn_180_s: float = 23.0
-    stop_s: float = 0.0
+    row_change_s: float = ROBOT_TIMES[USUAL_TIMES].row_change_s
+    turn_180_s: float = ROBOT_TIMES[USUAL_TIMES].turn_180_s
+    stop_s: float = ROBOT_TIMES[USUAL_TIMES].stop_s
     look_s: float = 40.0
     hours: float = 12.0
     viewpoints: Viewpoints = Viewpoints()
@@ -168,15 +172,22 @@ class Robot:
         own = RobotTimes(self.row_change_s, self.turn_180_s, self.stop_s)
         return next((name for name, times in ROBOT_TIMES.items() if times == own), None)
 
+    @property
+    def on_foot(self) -> bool:
+        """Return whether it is charged what a scout on foot is, see :func:`scout`."""
+        return (self.row_change_s, self.turn_180_s, self.stop_s) == SCOUT_TIMES
+
     def with_times(self, name: str) -> Robot:
-        """Return the same robot charged the times of ``"thesis"`` or ``"measured"``.
+        """Return the same robot charged the times of ``"measured"`` or ``"thesis"``.
 
         Examples
         --------
         >>> import fieldmon as fm
-        >>> fm.Robot().with_times("measured").row_change_s
-        9.0
+        >>> fm.Robot().row_change_s, fm.Robot().with_times("thesis").row_change_s
+        (9.0, 25.0)
         """
+        if self.on_foot:
+            raise SettingError("A scout has times of its own: leave a robot's out.")
         if name not in ROBOT_TIMES:
             raise SettingError(
                 worded(
@@ -201,13 +212,11 @@ def scout() -> Robot:
     >>> fm.scout().with_hours(2).day_s
     7200.0
     """
-    return Robot(
-        speed_m_s=4.0 / 3.6, row_change_s=3.0, turn_180_s=2.0, stop_s=5.0, look_s=30.0, hours=4.0
-    )
+    return Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0)
 
 
 def rover() -> Robot:
-    """Return a small robot with two driven wheels, its times those of simulated drives.
+    """Return a small robot with two driven wheels: the usual one, with its size.
 
     It is the robot of `fieldmon drive --robot mujoco`; docs/drive tells how its times were found.
     Its mast looks to both sides, and it drives as well backwards: it need not turn in an aisle.
@@ -218,7 +227,7 @@ def rover() -> Robot:
     >>> fm.rover().width_m
     0.58
     """
-    return Robot(width_m=0.58, length_m=0.8).with_times("measured")
+    return Robot(width_m=0.58, length_m=0.8)
 
 
 def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check

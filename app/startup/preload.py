@@ -36,7 +36,7 @@ class Preload(threading.Thread):
         self._loaded.wait()
 
     def run(self) -> None:
-        """Load what draws an outline, then what plans, then what simulates."""
+        """Load what draws an outline, then what plans, then what prints and simulates."""
         try:
             _load_outline()
             self._asked.wait(_LATER_S)
@@ -48,6 +48,7 @@ class Preload(threading.Thread):
             self._loaded.set()
             self.ready.set()
         self.shown.wait(_LATER_S)
+        _load_paper()
         _load_simulation()
 
 
@@ -66,6 +67,12 @@ def _load_planning() -> None:
     from . import compiled_loops  # noqa: PLC0415
 
     compiled_loops.load_planning()
+
+
+def _load_paper() -> None:
+    from fieldmon.reports import pdf  # noqa: PLC0415
+
+    pdf.load()
 
 
 def _load_simulation() -> None:

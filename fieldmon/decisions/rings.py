@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
 from scipy.sparse import csr_array, vstack
 
 from fieldmon.compute.jit import part, routine
@@ -78,6 +77,8 @@ def _relaxed(grid: PlantGrid, gain: Floats, ring: int) -> tuple[NDArray[np.intp]
     still pay as large a part of the cheapest ring that holds it, somewhere near: without that the
     program would pay for a little of many rings at once, and the bound be three times as far off.
     """
+    from scipy.optimize import linprog  # noqa: PLC0415 - what only this needs loads longest
+
     worth = np.flatnonzero(gain > 0.0)
     # only rings that hold a plant worth it can be worth it
     centres = np.unique(np.concatenate([around(grid, i, ring) for i in worth.tolist()]))

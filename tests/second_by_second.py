@@ -8,8 +8,7 @@ import numpy as np
 def in_aisles(routes, starts_s, step_s=2.0):
     """Return in which aisle each is at every step of the day, -1 for none, ``(m, t)``.
 
-    By where it stands: between two lane ends, at the height of their lane. At the gate, which may
-    lie on a lane's line, all stand at once: they are in no aisle yet.
+    By where it stands: between two lane ends, at the height of their lane.
     """
     until = max((route.end_s + at for route, at in zip(routes, starts_s, strict=True)), default=0.0)
     clock = np.arange(0.0, until, step_s)
@@ -24,12 +23,16 @@ def in_aisles(routes, starts_s, step_s=2.0):
             for moment in (at_s, *leaves):
                 times.append(moment + begins)
                 places.append(place)
-        x, y = (np.interp(clock, times, np.array(places)[:, k]) for k in range(2))
-        there = (clock >= begins) & (clock <= begins + route.end_s)
-        there &= np.hypot(x - places[0][0], y - places[0][1]) > 0.1
+        x = np.interp(clock, times, np.array(places)[:, 0])
+        leg = np.clip(np.searchsorted(times, clock, "right"), 1, len(times) - 1)
+        ends_y = np.array(places)[:, 1][np.stack((leg - 1, leg))]
+        # all begin at the gate, which may lie between two ends of a lane
+        there = (clock > begins) & (clock <= begins + route.end_s)
         for row in range(grid.n_rows):
             low, high = grid.lane_x_m[row]
-            inside = (np.abs(y - grid.lane_y_m[row]) < 0.01) & (x > low + 0.1) & (x < high - 0.1)
+            # a way to a lane's end from a gate close beside the lane is not a way in it
+            along = (np.abs(ends_y - grid.lane_y_m[row]) < 0.01).all(axis=0)
+            inside = along & (x > low + 0.1) & (x < high - 0.1)
             found[m, there & inside] = grid.corridor[row]
     return found
 

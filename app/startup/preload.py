@@ -37,7 +37,7 @@ class Preload(threading.Thread):
         self._loaded.wait()
 
     def run(self) -> None:
-        """Load what draws an outline, then what plans, then what simulates."""
+        """Load what draws an outline, then what plans, then what prints and simulates."""
         try:
             _load_outline()
             self._asked.wait(_LATER_S)
@@ -49,6 +49,7 @@ class Preload(threading.Thread):
             self._loaded.set()
             self.ready.set()
         self.shown.wait(_LATER_S)
+        _load_paper()
         _load_simulation()
         # what is loaded stays: a click now and then would wait while all of it is looked through
         gc.collect()
@@ -70,6 +71,12 @@ def _load_planning() -> None:
     from . import compiled_loops  # noqa: PLC0415
 
     compiled_loops.load_planning()
+
+
+def _load_paper() -> None:
+    from fieldmon.reports import pdf  # noqa: PLC0415
+
+    pdf.load()
 
 
 def _load_simulation() -> None:

@@ -5,6 +5,7 @@ Nothing heavy is imported here: the server answers before any of it is loaded.
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 from functools import cache
@@ -50,6 +51,9 @@ class Preload(threading.Thread):
         self.shown.wait(_LATER_S)
         _load_paper()
         _load_simulation()
+        # what is loaded stays: a click now and then would wait while all of it is looked through
+        gc.collect()
+        gc.freeze()
 
 
 def _load_outline() -> None:

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.optimize import linprog
 from scipy.sparse import csr_array, vstack
 from scipy.sparse.csgraph import connected_components
 
@@ -427,6 +426,8 @@ def _rings(grid: PlantGrid, gain: Floats, ring: int) -> tuple[NDArray[np.intp], 
     worth = np.flatnonzero(gain > 0.0)
     if not worth.size:
         return worth, 0.0
+    from scipy.optimize import linprog  # noqa: PLC0415 - what only this needs loads longest
+
     centres = np.unique(np.concatenate([_around(grid, i, ring) for i in worth.tolist()]))
     rings = [_around(grid, i, ring) for i in centres.tolist()]
     plants, of_plant = np.unique(np.concatenate(rings), return_inverse=True)

@@ -17,6 +17,7 @@ from fieldmon.cli.options import (
     MaybePlotFile,
     OneSampler,
     Outputs,
+    Passing,
     PlotFiles,
     Records,
     Robots,
@@ -40,14 +41,6 @@ if TYPE_CHECKING:
 Now = Annotated[
     str | None,
     typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
-]
-Passing = Annotated[
-    float | None,
-    typer.Option(
-        min=0.0,
-        help="With --robots: metres of headland that two need to pass each other; where it is "
-        "narrower nobody meets another head-on. They pass each other anywhere if not given.",
-    ),
 ]
 EveryPlot = Annotated[
     bool,

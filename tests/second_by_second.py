@@ -17,15 +17,21 @@ def clock_of(routes, starts_s, step_s):
     return np.arange(0.0, max(ends, default=0.0), step_s)
 
 
-def stands(route, begins, clock):
-    """Return where one stands ``(2, t)`` at every moment, and whether it is out then ``(t,)``."""
+def moments(route, begins):
+    """Return when ``(k,)`` one comes to and leaves each corner of its line, and where they are."""
     times, places = [], []
     for v, (at_s, place) in enumerate(zip(route.line_s, route.line_m, strict=True)):
         leaves = route.leave_s[route.line_stop == v]
         for moment in (at_s, *leaves):
             times.append(moment + begins)
             places.append(place)
-    xy = np.array([np.interp(clock, times, np.array(places)[:, k]) for k in range(2)])
+    return times, np.array(places)
+
+
+def stands(route, begins, clock):
+    """Return where one stands ``(2, t)`` at every moment, and whether it is out then ``(t,)``."""
+    times, places = moments(route, begins)
+    xy = np.array([np.interp(clock, times, places[:, k]) for k in range(2)])
     return xy, (clock >= begins) & (clock <= begins + route.end_s)
 
 
@@ -40,10 +46,17 @@ def in_aisles(routes, starts_s, step_s=2.0):
         if not len(route):
             continue
         grid = route.aisles.grid
-        (x, y), there = stands(route, begins, clock)
+        times, places = moments(route, begins)
+        x = np.interp(clock, times, places[:, 0])
+        leg = np.clip(np.searchsorted(times, clock, "right"), 1, len(times) - 1)
+        ends_y = places[:, 1][np.stack((leg - 1, leg))]
+        # all begin at the gate, which may lie between two ends of a lane
+        there = (clock > begins) & (clock <= begins + route.end_s)
         for row in range(grid.n_rows):
             low, high = grid.lane_x_m[row]
-            inside = (np.abs(y - grid.lane_y_m[row]) < 0.01) & (x > low + 0.1) & (x < high - 0.1)
+            # a way to a lane's end from a gate close beside the lane is not a way in it
+            along = (np.abs(ends_y - grid.lane_y_m[row]) < 0.01).all(axis=0)
+            inside = along & (x > low + 0.1) & (x < high - 0.1)
             found[m, there & inside] = grid.corridor[row]
     return found
 

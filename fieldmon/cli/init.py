@@ -30,6 +30,7 @@ from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.cli.tongues import Language, checked_language
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ class InitOptions:
     contact: Contact = 0.0
     least_gain: LeastGain = 0.5
     passing: Passing = None
+    language: Language = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     living: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
@@ -114,6 +116,7 @@ class InitOptions:
                 least_gain=self.least_gain,
                 passing_m=self.passing or 0.0,
             ),
+            language="" if self.language is None else checked_language(self.language),
         )
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
@@ -138,7 +138,7 @@ def plan_day(
         The day, as ``"2026-11-18"``, a date, or a datetime that says when work starts (else
         06:00); None: today, in the time zone in which the plot lies.
     robot
-        Who inspects; None: the thesis's robot, 12 h. `scout()` is a person on foot.
+        Who inspects; None: the usual `Robot`, 12 h. `scout()` is a person on foot.
     sampler
         Name of a sampler in `SAMPLERS`, or one of your own.
     risk
@@ -158,7 +158,7 @@ def plan_day(
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=2), sampler="naive")
     >>> len(day.route)
-    160
+    156
     """
     starts = _starts(on, plot)
     decides = sampler_of(sampler) if isinstance(sampler, str) else sampler
@@ -207,14 +207,16 @@ def plan_from(
     plot: Plot, chance: NDArray[np.float64], plans: PlanSettings, wishes: Wishes | None = None
 ) -> DayPlan:  # fmt: skip
     """Plan a first day from a chance map ``(n,)``, and from what people wish for besides."""
+    # as a season believes: it goes the same way on its first day
+    believed = TracedPairs.of(plot.grid, chance)
     scene = Scene(
         aisles=plot.aisles,
         robot=plans.robot,
         chance=chance,
         last_inspected=np.full(len(plot.grid), NEVER, np.int32),
         seconds_left=plans.robot.day_s,
-        # as a season believes: it goes the same way on its first day
-        pair_chance=pair_chances(chance, plot.grid),
+        pair_chance=believed.pair_chance,
+        traces=believed.traces,
     )
     return plan_in(scene, plans.sampler, wishes)
 

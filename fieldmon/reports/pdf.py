@@ -29,6 +29,7 @@ from fieldmon.reports.content import (
 from fieldmon.reports.drawing import Lettering
 from fieldmon.reports.fonts import FontSet
 from fieldmon.reports.pdf_painter import PT_MM, letter, paint
+from fieldmon.reports.tongue import ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,6 +50,13 @@ _LEAST_PICTURE_MM = 35.0
 _OTHER_END = {"start": "end", "middle": "middle", "end": "start"}
 
 
+def load() -> None:
+    """Load what writes a PDF, for who will print: most of what the first one takes."""
+    import fpdf  # noqa: F401, PLC0415 - half a second
+
+    FontSet.of(_own_words(ENGLISH))
+
+
 def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
     """Return a report as a PDF file.
 
@@ -65,7 +73,13 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         If there is no such paper.
     """
     if paper not in PAPERS:
-        raise SettingError(f"Paper must be one of {', '.join(PAPERS)}, but it is {paper!r}.")
+        raise SettingError(
+            worded(
+                "Paper must be one of {names}, but it is {paper!r}.",
+                names=", ".join(PAPERS),
+                paper=paper,
+            )
+        )
     from fpdf import FPDF  # noqa: PLC0415 - a second to import
 
     fonts = FontSet.of([*report.words(), *_own_words(report.tongue)])

@@ -40,6 +40,14 @@ function measure() {
   page.style.setProperty("--covers-bottom", `${bottom}px`);
 }
 
+// Streamlit's list of pages, on a phone, has a group in it that is no item, and whose items are then in no list.
+export function listed() {
+  for (const group of document.querySelectorAll("ul[data-testid=stSidebarNavItems] > div:not([role])")) {
+    group.setAttribute("role", "listitem");
+    for (const item of group.querySelectorAll("li")) item.setAttribute("role", "none");
+  }
+}
+
 // Set the panel's handle up; return what fits it to the page again, and what takes it away.
 export function keepShape(words) {
   const shape = shapeOf();

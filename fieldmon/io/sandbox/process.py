@@ -32,6 +32,12 @@ _OUT_OF_TIME = getattr(signal, "SIGXCPU", 0) or -1
 
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
+#: what a process that is to have all at hand loads before its first file
+_LOADED_AHEAD = (
+    "fieldmon.io.sandbox.tasks",
+    *(f"fieldmon.io.readers.{name}" for name in ("plots", "points_and_lines", "treated", "crews")),
+    *(f"fieldmon.io.formats.{name}" for name in ("gdal", "geoparquet")),
+)
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not
 # there at all, and a proxy that does not exist stands between the rest and the world.
 _SKIPPED = (
@@ -166,13 +172,15 @@ class ReadingProcess:
 
     def _why(self, late: bool) -> str:  # noqa: FBT001
         if late:
-            return (
-                f"A file must be read within {limits.READ_SECONDS:g} seconds of work, but this one "
-                "takes longer: it is too big or made to be slow. Cut it to the plots that matter."
+            return worded(
+                "A file must be read within {read_seconds:g} seconds of work, but this one "
+                "takes longer: it is too big or made to be slow. Cut it to the plots that "
+                "matter.",
+                read_seconds=limits.READ_SECONDS,
             )
-        return (
-            "The file made its reader crash and was given up: it is damaged, or made to do harm. "
-            "Export or download it again."
+        return worded(
+            "The file made its reader crash and was given up: it is damaged, or made to do "
+            "harm. Export or download it again."
         )
 
     @property
@@ -255,7 +263,7 @@ def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> An
 
 def warm() -> None:
     """Start a reading process now, so that the first file need not wait for it to load."""
-    _IDLE.give_back(_IDLE.borrow("fieldmon.io.sandbox.tasks"))
+    _IDLE.give_back(_IDLE.borrow(*_LOADED_AHEAD))
 
 
 def peaks_bytes() -> list[int]:

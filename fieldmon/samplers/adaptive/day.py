@@ -222,12 +222,9 @@ def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in more or fewer infested plants, once finds differ enough from those expected.
 
     Every plant's odds are multiplied; what neighbours have in common stays, as a correlation.
-    Before the first find nothing is believed: a plan takes every plant of the day for clean.
     """
     level = belief.level[0] / belief.level[1]
-    if belief.traces.kernel.size == 1 or belief.level[0] == LEVEL_FINDS:
-        return
-    if abs(level - belief.level[2]) < _NOTABLE * belief.level[2]:
+    if belief.traces.kernel.size == 1 or abs(level - belief.level[2]) < _NOTABLE * belief.level[2]:
         return
     chance, pair_chance, ratio = belief.chance, belief.pair_chance, level / belief.level[2]
     for i in range(chance.size):

@@ -104,10 +104,9 @@ class Scenario:
 
     @property
     def robot(self) -> Robot:
-        """Return who inspects, as it is."""
-        if self.flaw == "detection":
-            return Robot(detection=_POOR_DETECTION, hours=self.hours)
-        return Robot(hours=self.hours)
+        """Return who inspects, as it is: charged the thesis's times."""
+        detection = _POOR_DETECTION if self.flaw == "detection" else None
+        return Robot(detection=detection, hours=self.hours).with_times("thesis")
 
     @property
     def settings(self) -> SeasonSettings:
@@ -205,7 +204,7 @@ def _grown(grid: PlantGrid, world: World, rng: np.random.Generator) -> NDArray[n
             if len(members) >= size:
                 break
             sender = members[int(rng.integers(len(members)))]
-            reached = int(world.reached(grid, rng)[sender])
+            reached = int(world.reached(grid, rng, np.array([sender]))[0])
             if reached >= 0 and reached not in members and not infested[reached]:
                 members.append(reached)
         infested[members] = True

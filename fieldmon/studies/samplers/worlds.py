@@ -94,21 +94,28 @@ class World:
         """Return who is infested the next morning, ``(n,)``."""
         draws = np.random.default_rng(int(key))
         after = infested.copy()
-        reached = self.reached(grid, draws)
-        sends = infested & (draws.random(len(grid)) < self.rate) & (reached >= 0)
+        senders = np.flatnonzero(infested)
+        reached = self.reached(grid, draws, senders)
+        sends = (draws.random(len(grid)) < self.rate)[senders] & (reached >= 0)
         after[reached[sends]] = True
         return after | self._arrived(grid, draws)
 
-    def reached(self, grid: PlantGrid, draws: np.random.Generator) -> NDArray[np.intp]:
-        """Draw which plant an infestation sent by each would reach, ``(n,)``; -1: none."""
+    def reached(
+        self, grid: PlantGrid, draws: np.random.Generator, senders: NDArray[np.intp]
+    ) -> NDArray[np.intp]:
+        """Draw which plant an infestation sent by each of `senders` ``(k,)`` reaches; -1: none.
+
+        Draws are made for all plants: those of one do not hang on who else is infested.
+        """
         n, spacing = len(grid), np.array([grid.plant_spacing_m, grid.row_spacing_m])
+        jumps = self.jump(draws, n)[senders]
+        anywhere = (draws.random(n) < self.anywhere)[senders]
+        far = draws.integers(0, n, n)[senders]
         apart, landed = grid.tree.query(
-            grid.xy_m + self.jump(draws, n) * spacing,
+            grid.xy_m[senders] + jumps * spacing,
             distance_upper_bound=_REACHED * float(spacing.max()),
         )
-        landed = np.where(np.isfinite(apart), landed, -1)
-        anywhere, far = draws.random(n) < self.anywhere, draws.integers(0, n, n)
-        return np.where(anywhere, far, landed)
+        return np.where(anywhere, far, np.where(np.isfinite(apart), landed, -1))
 
     def _arrived(self, grid: PlantGrid, draws: np.random.Generator) -> NDArray[np.bool_]:
         n = len(grid)

@@ -91,9 +91,10 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
         season_app.run()
         assert not season_app.exception
         record_clean(twin, on, 30)
-        assert season().morning(on).tolist() == twin.morning(on).tolist()
-        assert season().evening(on).tolist() == twin.evening(on).tolist()
-        rest = [one.plan(on, keep=False).route.plant.tolist() for one in (season(), twin)]
+        kept = season()
+        assert kept.morning(on).tolist() == twin.morning(on).tolist()
+        assert kept.evening(on).tolist() == twin.evening(on).tolist()
+        rest = [one.plan(on, keep=False).route.plant.tolist() for one in (kept, twin)]
         assert rest[0] == rest[1]
     go(season_app, "today")
     assert "30 plants inspected" in texts_of(season_app)

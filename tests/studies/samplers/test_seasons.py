@@ -7,7 +7,6 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread
-from fieldmon.plot.robot import Robot
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
 from fieldmon.studies.samplers.contenders import CLAIRVOYANT, CONTENDERS, NAMES, NO_TRAVEL, SOME
@@ -68,7 +67,8 @@ def test_who_pays_for_no_driving_inspects_as_many_plants_as_looks_fit_into_a_day
     bound = next(each for each in CONTENDERS if each.name == NO_TRAVEL)
     streams = RandomStreams(1)
     day = next(season(Scenario("C"), bound, Scenario("C").draw_start(streams), streams))
-    most = int(Robot().day_s / Robot().visit_s)
+    robot = Scenario("C").robot
+    most = int(robot.day_s / robot.visit_s)
     assert most - 1 <= len(day.work) <= most
 
 

@@ -9,12 +9,13 @@ from fieldmon.studies.samplers.worlds import WORLDS, World, near_edge
 
 GRID = rectangle(31, 31)
 N, MIDDLE = 961, 480
+ONE = np.array([MIDDLE])
 KEYS = [RandomStreams(7).key("spread", night) for night in range(300)]
 
 
 def jumps(world):
     """Return where infestations from the middle land, in plants along and across."""
-    reached = [WORLDS[world].reached(GRID, np.random.default_rng(s))[MIDDLE] for s in range(400)]
+    reached = [WORLDS[world].reached(GRID, np.random.default_rng(s), ONE)[0] for s in range(400)]
     landed = np.array([plant for plant in reached if plant >= 0])
     return landed % 31 - 15, landed // 31 - 15
 

@@ -149,7 +149,7 @@ def _plan_one(options: PlanOptions) -> None:
         )
     if options.bound:
         today = with_bound(today)
-    typer.echo(day_in_words(today.route))
+    typer.echo(f"{day_in_words(today.route)}\nPlanned by {options.sampler.value}.")
     tell_assumed(assumed_by((), settings.prior, robot, known.plot.grid))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)

@@ -38,7 +38,7 @@ _TOLD_APART = 2
 _BONUS = 1e4
 
 
-class Part(NamedTuple):
+class HungPart(NamedTuple):
     """A part that hangs on a ladder: best drives in it, back to its place, and ending in it.
 
     It is so many metres away from that place, and known by a number.
@@ -50,7 +50,7 @@ class Part(NamedTuple):
     number: int
 
     def __repr__(self) -> str:
-        return f"<Part of {len(self.back.reward)} plants>"
+        return f"<HungPart of {len(self.back.reward)} plants>"
 
     def stops(self, price: float, *, ends: bool) -> Int:
         """Return the plants of the best drive in it at a price, in order."""
@@ -63,7 +63,7 @@ class Part(NamedTuple):
 class HungLadder(Priced):
     """Best drives on a ladder on which parts hang, at any price."""
 
-    def __init__(self, ladder: Ladder, reward: Float, robot: Robot, parts: dict[int, Part]) -> None:
+    def __init__(self, ladder: Ladder, reward: Float, robot: Robot, parts: dict[int, HungPart]) -> None:
         super().__init__(ladder, reward, robot)
         self.robot, self.parts = robot, parts
         self._bonus = _BONUS * float(reward.sum())
@@ -75,7 +75,7 @@ class HungLadder(Priced):
         n = sum(1 for _ in self._all_parts())
         return f"price of time on a ladder on which other parts of the plot hang ({n})"
 
-    def _all_parts(self) -> Iterator[Part]:
+    def _all_parts(self) -> Iterator[HungPart]:
         for part in self.parts.values():
             yield part
             yield from part.back._all_parts()  # noqa: SLF001 - of its kind
@@ -115,7 +115,7 @@ class HungLadder(Priced):
                 ends = part.ends.best(price)
                 self._offer((k, END_LEFT if left else END_RIGHT), part, ends, way)
 
-    def _offer(self, at: tuple[int, int], part: Part, drawn: Drawn, less: float) -> None:
+    def _offer(self, at: tuple[int, int], part: HungPart, drawn: Drawn, less: float) -> None:
         """Put in what a part is worth, if it may be visited and that is worth it, or must be."""
         must, worth = self._must.get(part.number), drawn.worth - less
         if must or (must is None and worth > 0.0):
@@ -134,7 +134,7 @@ def hung(ladders: Ladders, block: Int, reward: Float, robot: Robot) -> HungLadde
     """
     order, onto = _tree(ladders.rungs, block)
     members = {b: np.flatnonzero(block == b) for b in order}
-    made: dict[int, dict[int, Part]] = {b: {} for b in order}
+    made: dict[int, dict[int, HungPart]] = {b: {} for b in order}
     open_ = np.ones(len(block), np.bool_)
     for b in order[:0:-1]:
         inside = members[b]
@@ -148,7 +148,7 @@ def hung(ladders: Ladders, block: Int, reward: Float, robot: Robot) -> HungLadde
         ends = None if robot.returns else HungLadder(ladder, reward, robot, parts)
         open_ = np.append(open_, True)
         members[onto[b]] = np.append(members[onto[b]], place)
-        made[onto[b]][place] = Part(back, ends, away_m, place)
+        made[onto[b]][place] = HungPart(back, ends, away_m, place)
     inside = members[order[0]]
     gate = ladders.rungs.apart_m[:, 0, inside, -1], float(ladders.aisles.gate_m[1])
     ladder = ladders.among(inside, gate, hanging=True)
@@ -212,7 +212,7 @@ def _and_place(rungs: Rungs, outside: Int, left_m: Float) -> Rungs:
     )
 
 
-def _at(ladder: Ladder, parts: dict[int, Part]) -> dict[int, Part]:
+def _at(ladder: Ladder, parts: dict[int, HungPart]) -> dict[int, HungPart]:
     """Return parts, known by their rungs, by the elements of a ladder."""
     element = {int(rung): k for k, rung in enumerate(ladder.rung.tolist()) if rung >= 0}
     return {element[rung]: part for rung, part in parts.items()}

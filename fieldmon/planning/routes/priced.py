@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.planning.routes.hung import Part
+    from fieldmon.planning.routes.hung import HungPart
     from fieldmon.planning.routes.relaxation import Ladder
     from fieldmon.plot.robot import Robot
 
@@ -125,7 +125,7 @@ class Priced:
         self.tables: Tables = tables(returns=robot.returns)
         self.reward = np.ascontiguousarray(reward[ladder.plant])
         self.of_all = reward
-        self.parts: Mapping[int, Part] = {}
+        self.parts: Mapping[int, HungPart] = {}
         self._gate_passes = np.array(GATE_CLOSED if robot.returns else GATE_OPEN)
         e, s = len(ladder.across_m), len(self.tables.passes)
         ways = e, N_WAYS

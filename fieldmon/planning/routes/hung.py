@@ -63,7 +63,9 @@ class HungPart(NamedTuple):
 class HungLadder(Priced):
     """Best drives on a ladder on which parts hang, at any price."""
 
-    def __init__(self, ladder: Ladder, reward: Float, robot: Robot, parts: dict[int, HungPart]) -> None:
+    def __init__(
+        self, ladder: Ladder, reward: Float, robot: Robot, parts: dict[int, HungPart]
+    ) -> None:
         super().__init__(ladder, reward, robot)
         self.robot, self.parts = robot, parts
         self._bonus = _BONUS * float(reward.sum())

@@ -15,6 +15,7 @@ from fieldmon.cli.options import (
     Feature,
     LeastGain,
     MaybePlotFile,
+    Passing,
     PlotFiles,
     Records,
     WorkDate,
@@ -66,6 +67,7 @@ class CompareOptions:
     ] = False
     contact: Contact = 30.0
     least_gain: LeastGain = 0.5
+    passing: Passing = None
     days: Annotated[int, typer.Option(help="Working days.")] = 25
     seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons of each.")] = 10
     infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
@@ -185,8 +187,9 @@ def _settings(
     from fieldmon.simulation.team_season import Team  # noqa: PLC0415
     from fieldmon.studies.teams.seasons import TeamSetting  # noqa: PLC0415
 
-    together = Teamwork(contact_s=60.0 * options.contact, least_gain=options.least_gain)
-    apart = Teamwork(together=False)
+    passing_m = options.passing or 0.0
+    together = Teamwork(True, 60.0 * options.contact, options.least_gain, passing_m)
+    apart = Teamwork(together=False, passing_m=passing_m)
     made = []
     for name in options.sampler or [SamplerName(USUAL_SAMPLER)]:
         reads = _reads_chance(name)

@@ -17,6 +17,7 @@ from fieldmon.cli.options import (
     LeastGain,
     MaybePlotFile,
     OneSampler,
+    Passing,
     PlotFiles,
     Records,
     Robots,
@@ -72,6 +73,7 @@ class InitOptions:
     robots: Robots = None
     contact: Contact = 0.0
     least_gain: LeastGain = 0.5
+    passing: Passing = None
     language: Language = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     living: PestOptions = field(default_factory=PestOptions)
@@ -109,7 +111,11 @@ class InitOptions:
             pest=None if living is None else living.pest,
             weather=None if living is None else living.weather,
             team=tuple(replace(one, robot=self.living.seen(one.robot)) for one in team),
-            teamwork=Teamwork(contact_s=60.0 * self.contact, least_gain=self.least_gain),
+            teamwork=Teamwork(
+                contact_s=60.0 * self.contact,
+                least_gain=self.least_gain,
+                passing_m=self.passing or 0.0,
+            ),
             language="" if self.language is None else checked_language(self.language),
         )
 

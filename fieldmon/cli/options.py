@@ -150,6 +150,14 @@ LeastGain = Annotated[
     float,
     typer.Option(min=0.0, help="Finds that must be gained for anyone to be sent elsewhere."),
 ]
+Passing = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0,
+        help="With --robots: metres of headland that two need to pass each other; where it is "
+        "narrower nobody meets another head-on. They pass each other anywhere if not given.",
+    ),
+]
 Width = Annotated[
     float | None,
     typer.Option(

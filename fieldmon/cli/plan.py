@@ -17,6 +17,7 @@ from fieldmon.cli.options import (
     MaybePlotFile,
     OneSampler,
     Outputs,
+    Passing,
     PlotFiles,
     Records,
     Robots,
@@ -40,14 +41,6 @@ if TYPE_CHECKING:
 Now = Annotated[
     str | None,
     typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
-]
-Passing = Annotated[
-    float | None,
-    typer.Option(
-        min=0.0,
-        help="With --robots: metres of headland that two need to pass each other; where it is "
-        "narrower nobody meets another head-on. They pass each other anywhere if not given.",
-    ),
 ]
 EveryPlot = Annotated[
     bool,
@@ -156,7 +149,7 @@ def _plan_one(options: PlanOptions) -> None:
         )
     if options.bound:
         today = with_bound(today)
-    typer.echo(day_in_words(today.route))
+    typer.echo(f"{day_in_words(today.route)}\nPlanned by {options.sampler.value}.")
     tell_assumed(assumed_by((), settings.prior, robot, known.plot.grid))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)

@@ -62,7 +62,7 @@ def _tell(planned: TeamPlan, begins: datetime) -> None:
     starts = [begins + timedelta(seconds=round(float(s))) for s in planned.starts_s]
     for member, day, start in zip(planned.members, planned.days, starts, strict=True):
         tell_member(member.name, start, day.route)
-    typer.echo(planned.sentence)
+    typer.echo(f"{planned.sentence}\nPlanned as best routes, which no find changes.")
 
 
 def _write(planned: TeamPlan, begins: datetime, plot: str, files: list[list[Path]]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
 
     Float = NDArray[np.float64]
 
@@ -40,13 +42,24 @@ class HeadOn(NamedTuple):
     place_m: tuple[float, float]
 
 
-class _Steps(NamedTuple):
-    """Straight steps of a line outside aisles: from, to ``(k, 2)``, and when ``(k,)``."""
+class Steps(NamedTuple):
+    """Straight steps of a line outside aisles.
+
+    Parameters
+    ----------
+    from_m, to_m
+        ``(k, 2)`` metres of the plot's frame.
+    since_s, until_s
+        ``(k,)`` seconds of the team's day.
+    """
 
     from_m: Float
     to_m: Float
     since_s: Float
     until_s: Float
+
+    def __repr__(self) -> str:
+        return f"<Steps: {len(self.since_s)}>"
 
 
 def head_on(routes: Sequence[Route], starts_s: Float, passing_m: float) -> list[HeadOn]:
@@ -61,35 +74,73 @@ def head_on(routes: Sequence[Route], starts_s: Float, passing_m: float) -> list[
         there: from the nearest row to the plot's edge. They meet where their lines come
         nearer to each other than half of `passing_m`.
     """
-    steps = [_outside(route, float(at)) for route, at in zip(routes, starts_s, strict=True)]
+    headlands = [headlands_of(route.aisles.grid) for route in routes]
+    steps = [
+        own.steps(route.line_m, (route.line_s + at, _leaves_s(route) + at))
+        for own, route, at in zip(headlands, routes, starts_s, strict=True)
+    ]
     found = []
     for a, b in combinations(range(len(routes)), 2):
-        when = _nearest(steps[a], steps[b], passing_m / 2)
-        narrow = _width_m(routes[a], when[:, 1:]) < passing_m if len(when) else ()
-        found += [HeadOn((a, b), float(t), (float(x), float(y))) for t, x, y in when[narrow]]
+        when = headlands[a].meet(steps[a], steps[b], passing_m)
+        found += [HeadOn((a, b), float(t), (float(x), float(y))) for t, x, y in when]
     return sorted(found, key=lambda met: met.at_s)
 
 
-def _outside(route: Route, start_s: float) -> _Steps:
-    """Return the steps of a route that lie in no aisle."""
-    line, grid = route.line_m, route.aisles.grid
-    if len(line) < 2:
-        return _Steps(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), np.empty(0))
+def _leaves_s(route: Route) -> Float:
+    """Return when each vertex of a route's line is left."""
     leave_s = route.line_s.copy()
     np.maximum.at(leave_s, route.line_stop, route.leave_s)
-    from_m, to_m = line[:-1], line[1:]
-    middle = (from_m + to_m) / 2
-    on_lane = np.abs(middle[:, 1, None] - grid.lane_y_m) <= _ON_LANE_M
-    low_m, high_m = grid.lane_x_m[:, 0], grid.lane_x_m[:, 1]
-    on_lane &= (low_m < middle[:, 0, None]) & (middle[:, 0, None] < high_m)
-    along = np.abs(to_m[:, 1] - from_m[:, 1]) <= _ON_LANE_M
-    moves = np.hypot(*(to_m - from_m).T) > _STILL_M
-    keep = moves & ~(along & on_lane.any(axis=1))
-    since_s, until_s = leave_s[:-1] + start_s, route.line_s[1:] + start_s
-    return _Steps(from_m[keep], to_m[keep], since_s[keep], until_s[keep])
+    return leave_s
 
 
-def _nearest(one: _Steps, other: _Steps, within_m: float) -> Float:
+@lru_cache(maxsize=8)
+def headlands_of(grid: PlantGrid) -> Headlands:
+    """Return the headlands of a plot; what measures them is kept for its next day."""
+    return Headlands(grid)
+
+
+class Headlands:
+    """What lies outside the aisles of a plot, and how wide it is at a place."""
+
+    def __init__(self, grid: PlantGrid) -> None:
+        self._lane_m, self._end_m = grid.lane_y_m, grid.lane_x_m
+        self._rows = shapely.STRtree(row_lines(grid))
+        self._edge = shapely.boundary(grid.drivable_m)
+
+    def __repr__(self) -> str:
+        return f"<Headlands of {len(self._lane_m)} rows>"
+
+    def steps(self, line_m: Float, times_s: tuple[Float, Float]) -> Steps:
+        """Return the steps of a line ``(m, 2)`` that lie in no aisle.
+
+        `times_s` are the seconds ``(m,)`` at which it comes to each vertex and leaves it.
+        """
+        from_m, to_m = line_m[:-1], line_m[1:]
+        middle = (from_m + to_m) / 2
+        on_lane = np.abs(middle[:, 1, None] - self._lane_m) <= _ON_LANE_M
+        on_lane &= (self._end_m[:, 0] < middle[:, 0, None]) & (
+            middle[:, 0, None] < self._end_m[:, 1]
+        )
+        along = np.abs(to_m[:, 1] - from_m[:, 1]) <= _ON_LANE_M
+        moves = np.hypot(*(to_m - from_m).T) > _STILL_M
+        keep = moves & ~(along & on_lane.any(axis=1))
+        arrive_s, leave_s = times_s
+        return Steps(from_m[keep], to_m[keep], leave_s[:-1][keep], arrive_s[1:][keep])
+
+    def meet(self, one: Steps, other: Steps, passing_m: float) -> Float:
+        """Return when and where ``(k, 3)`` two meet head-on with less room than they need."""
+        when = _nearest(one, other, passing_m / 2)
+        return when[self._width_m(when[:, 1:]) < passing_m] if len(when) else when
+
+    def _width_m(self, places: Float) -> Float:
+        """Return how wide it is at places ``(k, 2)``: from the nearest row to the plot's edge."""
+        points = shapely.points(places)
+        near = self._rows.query_nearest(points, return_distance=True, all_matches=False)[1]
+        edge = shapely.distance(points, self._edge)
+        return np.asarray(near, np.float64) + np.asarray(edge, np.float64)
+
+
+def _nearest(one: Steps, other: Steps, within_m: float) -> Float:
     """Return when and where ``(k, 3)`` two come nearer than that while driving to each other."""
     i, j = np.nonzero(
         (one.since_s[:, None] < other.until_s) & (other.since_s < one.until_s[:, None])
@@ -112,13 +163,3 @@ def _nearest(one: _Steps, other: _Steps, within_m: float) -> Float:
     place = here + speed[0][i] * later[:, None]
     when: Float = np.column_stack([begin + later, place])[near]
     return when
-
-
-def _width_m(route: Route, places: Float) -> Float:
-    """Return how wide the headland is at places ``(k, 2)``: from the nearest row to the edge."""
-    grid = route.aisles.grid
-    points = shapely.points(places)
-    rows = shapely.STRtree(row_lines(grid))
-    near = rows.query_nearest(points, return_distance=True, all_matches=False)[1]
-    edge = shapely.distance(points, shapely.boundary(grid.drivable_m))
-    return np.asarray(near, np.float64) + np.asarray(edge, np.float64)

@@ -62,14 +62,18 @@ class Teamwork:
     least_gain
         Finds that must be expected beyond those of going on as before, for aisles to be given out
         anew during a day: nobody is sent back and forth for less.
+    passing_m
+        Metres of headland that two need to pass each other: where it is narrower nobody meets
+        another head-on, but waits in its aisle. 0: they pass each other anywhere.
     """
 
     together: bool = True
     contact_s: float = 0.0
     least_gain: float = 0.5
+    passing_m: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("contact_s", "least_gain"):
+        for name in ("contact_s", "least_gain", "passing_m"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise SettingError(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from fieldmon.planning.headlands import Steps, headlands_of
 from fieldmon.planning.sections import (
     aisle_heights,
     aisle_worth,
@@ -68,9 +69,10 @@ def team_day(
 ) -> tuple[Workday, ...]:
     """Return the rest of a day of each of a team, given what inspections would find.
 
-    Each has aisles of its own, in which its sampler decides. No two are in one aisle at once:
-    who comes second waits in the headland, or at the gate. Who has begun to drive to a plant
-    inspects it, whatever is heard on the way.
+    Each has aisles of its own, in which its sampler decides. No two are in one aisle at once, and
+    none meet head-on in a headland that is narrower than `Teamwork.passing_m`: who comes second
+    waits at the end of its own aisle, or at the gate. Who has begun to drive to a plant inspects
+    it, whatever is heard on the way.
 
     Parameters
     ----------
@@ -145,6 +147,8 @@ class _Worker:
     through: tuple[int, ...] = ()
     leg: Leg | None = None
     out_s: float = 0.0
+    free_s: float = 0.0
+    driven: Steps | None = None
     end_s: float = 0.0
     wait_home_s: float = 0.0
 
@@ -167,6 +171,12 @@ class _Worker:
         plan, plant = self.plan, self.target()
         assert plan is not None  # noqa: S101 - it has a target
         return self.until_s - arrive_s - float(plan.stop_s[self.next]) - self.home_s(plant)
+
+    def share_out(self) -> float:
+        """Return how much of the way to its next plant, or home, is driven in its own aisle."""
+        leg = self.leg
+        assert leg is not None  # noqa: S101 - set on leaving
+        return leg.out_m / leg.length_m if leg.length_m > 0 else 0.0
 
     def target(self) -> int:
         """Return the plant it goes to next, -1 for home."""
@@ -217,7 +227,7 @@ class _Day:
         while self.events or self.waiting:
             if not self.events:
                 # somebody stays there for the night
-                self._give_up(self.waiting[0], self.waiting[0].out_s)
+                self._go_at_last(self.waiting[0])
                 continue
             now_s, _, version, k, event = heappop(self.events)
             worker = self.workers[k]
@@ -251,9 +261,8 @@ class _Day:
             return
         worker.claims = aisle
         worker.leg = worker.legs.leg(worker.at, target)
-        leg_s = worker.seconds(worker.at, target)
-        share = worker.leg.out_m / worker.leg.length_m if worker.leg.length_m > 0 else 0.0
-        self._at(now_s + share * leg_s, worker, self._out)
+        way_s = worker.share_out() * worker.seconds(worker.at, target)
+        self._at(now_s + way_s, worker, self._out)
 
     def _pass_by(self, worker: _Worker) -> None:
         """Leave out the next aisles if somebody stays in them for the night."""
@@ -264,29 +273,44 @@ class _Day:
             worker.next += 1
 
     def _out(self, worker: _Worker, now_s: float) -> None:
-        """Leave an aisle, or the gate."""
-        self._release(worker, (worker.holds,), now_s)
-        worker.holds, worker.out_s = _NOWHERE, now_s
+        """Leave an aisle, or the gate; wait at its end if the way is not free."""
+        worker.out_s = worker.free_s = now_s
         if self._enter(worker, now_s):
+            self._try_again(now_s)
             return
         self.waiting.append(worker)
+        if self._wait_for_each_other(worker):
+            # one of them steps out into the headland, and lets the other in
+            self._release((worker.holds,), worker, now_s)
+            worker.holds = _NOWHERE
         if worker.target() >= 0:
             last_s = now_s + worker.spare_s(now_s + self._onward_s(worker))
             self._at(max(last_s, now_s), worker, self._give_up)
 
     def _give_up(self, worker: _Worker, now_s: float) -> None:
-        """End a day, as the aisle waited for comes free too late, or not today."""
-        if worker not in self.waiting:
+        """Make no more stops, as the aisle waited for comes free too late, or not today."""
+        if worker not in self.waiting or worker.target() < 0:
             return
-        self.waiting.remove(worker)
+        leg, spent_s = worker.leg, worker.post.starts_s
         self._homeward(worker)
-        worker.over = True
-        if not worker.scene.robot.returns or worker.leg is None:
-            worker.end_s = worker.done[-1].leave_s if worker.done else worker.post.starts_s
+        if worker.done:
+            spent_s = worker.done[-1].leave_s
+        if not worker.scene.robot.returns or worker.at < 0 or leg is None:
+            self.waiting.remove(worker)
+            worker.over, worker.end_s = True, spent_s
             return
-        home_m = float(worker.scene.aisles.travel.between_m[worker.leg.end, -1])
-        worker.wait_home_s = now_s - worker.out_s
-        worker.end_s = now_s + home_m / worker.scene.clock.speed_m_s
+        worker.leg = worker.legs.leg(worker.at, GATE)
+        worker.out_s = spent_s + worker.share_out() * worker.seconds(worker.at, GATE)
+        # it may have to drive back to the other end of its aisle
+        back_m = leg.out_m + worker.leg.out_m if leg.end != worker.leg.end else 0.0
+        worker.free_s = max(now_s + back_m / worker.scene.clock.speed_m_s, worker.out_s)
+        self._at(worker.free_s, worker, self._passed, always=True)
+
+    def _go_at_last(self, worker: _Worker) -> None:
+        """End a day on a way home that will not come free."""
+        self.waiting.remove(worker)
+        worker.over, worker.wait_home_s = True, worker.free_s - worker.out_s
+        worker.end_s = worker.free_s + self._onward_s(worker)
 
     def _homeward(self, worker: _Worker) -> int:
         """Let a worker make no more stops; return where it goes."""
@@ -297,41 +321,95 @@ class _Day:
 
     def _onward_s(self, worker: _Worker) -> float:
         """Return the seconds from the end of an aisle to the next plant, or home."""
-        leg = worker.leg
-        assert leg is not None  # noqa: S101 - set on leaving
-        share = 1.0 - leg.out_m / leg.length_m if leg.length_m > 0 else 0.0
-        return share * worker.seconds(worker.at, worker.target())
+        return (1.0 - worker.share_out()) * worker.seconds(worker.at, worker.target())
+
+    def _needed(self, worker: _Worker) -> list[int]:
+        """Return the aisles that a worker drives through next, and the one where it goes."""
+        assert worker.leg is not None  # noqa: S101 - set on leaving
+        return [*worker.leg.through, *([worker.claims] if worker.target() >= 0 else [])]
 
     def _enter(self, worker: _Worker, now_s: float) -> bool:
         """Drive on to the next aisle or home, if all that is on the way is free."""
-        leg, target = worker.leg, worker.target()
-        assert leg is not None  # noqa: S101 - set on leaving
-        needed = [*leg.through, *([worker.claims] if target >= 0 else [])]
-        if any(self.holder[aisle] not in (_NOBODY, worker.k) for aisle in needed):
+        needed, target = self._needed(worker), worker.target()
+        if now_s < worker.free_s or (set(self.holder[needed].tolist()) - {_NOBODY, worker.k}):
             return False
+        driven = self._driven(worker, now_s)
+        if driven is not None and self._meets_head_on(worker, driven):
+            return False
+        assert worker.leg is not None  # noqa: S101 - set on leaving
+        left, worker.driven = worker.holds, driven
         self.holder[needed] = worker.k
+        self._free((left,) if left not in needed else (), worker)
         arrive_s = now_s + self._onward_s(worker)
-        worker.through = leg.through
-        if worker.through:
+        worker.through = worker.leg.through
+        if worker.through or driven is not None:
             self._at(arrive_s, worker, self._passed, always=True)
         wait_s = now_s - worker.out_s
+        worker.holds = worker.claims
         if target < 0:
             worker.over, worker.end_s, worker.wait_home_s = True, arrive_s, wait_s
         else:
-            worker.holds = worker.claims
             self._visit(worker, arrive_s, wait_s)
         return True
 
     def _passed(self, worker: _Worker, now_s: float) -> None:
         """Give free what was driven through."""
         through, worker.through = worker.through, ()
-        self._release(worker, tuple(a for a in through if a != worker.holds), now_s)
+        self._release(tuple(a for a in through if a != worker.holds), worker, now_s)
 
-    def _release(self, worker: _Worker, aisles: tuple[int, ...], now_s: float) -> None:
+    def _release(self, aisles: tuple[int, ...], worker: _Worker, now_s: float) -> None:
+        self._free(aisles, worker)
+        self._try_again(now_s)
+
+    def _free(self, aisles: tuple[int, ...], worker: _Worker) -> None:
         freed = [aisle for aisle in aisles if aisle >= 0 and self.holder[aisle] == worker.k]
-        if freed:
-            self.holder[freed] = _NOBODY
-            self.waiting = [each for each in self.waiting if not self._enter(each, now_s)]
+        self.holder[freed] = _NOBODY
+
+    def _try_again(self, now_s: float) -> None:
+        """Let those who wait drive on, as long as one of them can."""
+        while (free := next((w for w in self.waiting if self._enter(w, now_s)), None)) is not None:
+            self.waiting.remove(free)
+
+    def _wait_for_each_other(self, worker: _Worker) -> bool:
+        """Tell whether a worker keeps the aisle that those keep waiting for whom it waits."""
+        seen: set[int] = set()
+        ahead = [worker]
+        while ahead:
+            one = ahead.pop()
+            holders = set(self.holder[self._needed(one)].tolist()) - {_NOBODY, one.k} - seen
+            if worker.k in holders:
+                return True
+            seen |= holders
+            ahead += [self.workers[k] for k in holders if self.workers[k] in self.waiting]
+        return False
+
+    # -- headlands
+
+    def _driven(self, worker: _Worker, now_s: float) -> Steps | None:
+        """Return the steps in headlands from an aisle's end on; None where all can pass."""
+        if not self.teamwork.passing_m:
+            return None
+        assert worker.leg is not None  # noqa: S101 - set on leaving
+        places = np.array([worker.at, worker.target()], np.int64)
+        line_m = worker.scene.aisles.line(places)[0]
+        way_m = np.append(0.0, np.cumsum(np.hypot(*np.diff(line_m, axis=0).T)))
+        out_m = worker.leg.out_m
+        ahead = way_m > out_m
+        here = [np.interp(out_m, way_m, line_m[:, k]) for k in range(2)]
+        left_m = np.append(0.0, way_m[ahead] - out_m)
+        times_s = now_s + left_m * (self._onward_s(worker) / max(left_m[-1], _ROUNDING_S))
+        line_m = np.vstack([here, line_m[ahead]])
+        return headlands_of(self.grid).steps(line_m, (times_s, times_s))
+
+    def _meets_head_on(self, worker: _Worker, driven: Steps) -> bool:
+        """Tell whether somebody comes the other way where the headland does not hold both."""
+        headlands = headlands_of(self.grid)
+        others = [one.driven for one in self.workers if one is not worker]
+        return any(
+            len(headlands.meet(driven, other, self.teamwork.passing_m))
+            for other in others
+            if other is not None
+        )
 
     def _visit(self, worker: _Worker, arrive_s: float, wait_s: float) -> None:
         """Make the stops in the aisle that a worker is in."""

@@ -4,8 +4,10 @@ import os
 import signal
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import timedelta
+from threading import Barrier
 
 import numpy as np
 import pytest
@@ -145,6 +147,32 @@ def test_a_season_whose_team_was_tampered_with_is_refused(season):
     parts = as_json(season.settings)
     with pytest.raises(FileProblem, match="settings must be as fieldmon wrote them"):
         from_json({**parts, "team": '{"members": [{"name": "x"}]}'})
+
+
+def test_what_two_found_recorded_at_once_is_as_if_recorded_one_after_the_other(season, tmp_path):
+    files = [done(season, who, 4, found=[k]) for k, who in enumerate(("robot-1", "robot-2"))]
+    in_turn = []
+    for order in (files, files[::-1]):
+        other = tmp_path / f"{order[0].who[0]}_first.gpkg"
+        other.write_bytes(season.path.read_bytes())
+        for file in order:
+            Season(other).record(file)
+        in_turn.append(Season(other).evening(BEGINS))
+    begin = Barrier(2)
+
+    def record(file):
+        begin.wait()
+        Season(season.path).record(file)
+
+    with ThreadPoolExecutor(2) as both:
+        list(both.map(record, files))
+    with season.store.reading() as db:
+        rows = db.execute("SELECT who, plant FROM inspections").fetchall()
+    known = [(who, int(p)) for one in files for who, p in zip(one.who, one.plant, strict=True)]
+    assert sorted(map(tuple, rows)) == sorted(known)
+    # the second one's plants are learnt from after the first one's, whoever that was
+    once = Season(season.path).evening(BEGINS)
+    assert any(once == pytest.approx(turn, rel=1e-9) for turn in in_turn)
 
 
 def test_a_team_that_was_killed_at_work_goes_on_from_a_whole_file(season):

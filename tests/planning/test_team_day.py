@@ -21,7 +21,7 @@ from fieldmon.plot.travel import GATE, Aisles, driven_s
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER, Scene
 from tests.crooked import crooked_fields
-from tests.second_by_second import nobody_together
+from tests.second_by_second import nobody_head_on, nobody_together
 
 EVEN = Aisles.of(rectangle(16, 16))
 AT_ONCE, SECTIONS = Teamwork(), Teamwork(together=False)
@@ -52,12 +52,16 @@ class Day:
         team = [Posted(self.scene(), start_s, finds) for start_s in self.starts_s]
         return team_day(team, sampler(name), teamwork, self.learn)
 
-    def check(self, works):
-        """No plant twice, nobody together in an aisle, hours kept, every second accounted for."""
+    def check(self, works, passing_m=0.0):
+        """No plant twice, nobody together in an aisle, hours kept, every second accounted for.
+
+        And nobody head-on where a headland is narrower than what two need.
+        """
         stops = np.concatenate([work.plant for work in works])
         assert len(np.unique(stops)) == len(stops)
         routes = [route_of(self.scene(), work) for work in works]
         assert nobody_together(routes, self.starts_s)
+        assert not passing_m or nobody_head_on(routes, self.starts_s, passing_m)
         for work in works:
             if not len(work):
                 continue
@@ -83,16 +87,19 @@ def test_a_team_shares_a_plot_and_nobody_meets(name, teamwork):
 @settings(max_examples=15, deadline=None)
 @given(
     crooked_fields(max_radius_m=60.0), st.integers(2, 4), st.booleans(), st.floats(0.1, 1.5),
-    st.sampled_from(["adaptive", "naive"]), st.floats(0.0, 1.0),
+    st.sampled_from(["adaptive", "naive"]),
+    st.builds(
+        Teamwork, least_gain=st.floats(0.0, 1.0), passing_m=st.sampled_from([0.0, 6.0, 40.0])
+    ),
 )  # fmt: skip
-def test_on_crooked_plots_nobody_meets_either(field, n, returns, hours, name, gain):
+def test_on_crooked_plots_nobody_meets_either(field, n, returns, hours, name, teamwork):
     try:
         plot = Plot.of(field)
     except PlotError:
         return
     robot = Robot(hours=hours, returns=returns, detection=1.0)
     day = Day(plot.aisles, n, robot, infested=0.2)
-    day.check(day.work(Teamwork(least_gain=gain), name))
+    day.check(day.work(teamwork, name), teamwork.passing_m)
 
 
 @pytest.mark.parametrize("name", ["adaptive", "naive", "random"])
@@ -171,6 +178,26 @@ def test_who_passes_through_an_aisle_waits_until_it_is_free():
     works = day.work(SECTIONS, "naive")
     day.check(works)
     assert sum(work.wait_s.sum() for work in works) > 60.0
+
+
+def test_in_narrow_headlands_nobody_meets_head_on():
+    """Without the setting they do: the headland of 4 m is too narrow for 20 m."""
+    day = Day(n=4, infested=0.1)
+    careless = [route_of(day.scene(), work) for work in day.work()]
+    assert not nobody_head_on(careless, day.starts_s, 20.0)
+    careful = day.work(Teamwork(passing_m=20.0))
+    day.check(careful, 20.0)
+    assert sum(work.wait_s.sum() for work in careful) > 0.0
+    # where there is room they go as if nothing was said
+    for one, other in zip(day.work(), day.work(Teamwork(passing_m=1.0)), strict=True):
+        assert (one.arrive_s == other.arrive_s).all()
+
+
+@pytest.mark.parametrize("name", sorted(set(SAMPLERS) - {"adaptive-looks"}))
+@pytest.mark.parametrize("returns", [True, False])
+def test_whoever_decides_nobody_meets_head_on(name, returns):
+    day = Day(n=4, robot=Robot(hours=0.7, detection=1.0, returns=returns), infested=0.1)
+    day.check(day.work(Teamwork(passing_m=30.0), name), 30.0)
 
 
 def test_days_of_a_team_are_one_in_order_of_the_clock():

@@ -11,16 +11,19 @@ from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.planning.members import TeamMember, Teamwork, team_of
+from fieldmon.planning.route import route_of
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
 from fieldmon.simulation.team_season import ONE, Team, simulated_team_days
+from tests.second_by_second import nobody_head_on, nobody_together
 
 GRID = rectangle(20, 20)
 PLOT = Plot(Field("even", GRID.frame.geometry_lonlat(GRID.drivable_m)), Aisles.of(GRID))
@@ -73,6 +76,18 @@ def test_the_figures_of_every_day_add_up(name, teamwork):
         assert day.ever_infested == found + day.left
         assert day.worked_s == sum(work.end_s for work in day.each) <= 3 * ROBOT.day_s + 1e-6
         assert day.infested[day.work.plant[day.work.found]].all()
+
+
+@pytest.mark.parametrize("name", ["adaptive", "dynamic", "snake"])
+def test_all_season_nobody_meets_and_the_clock_goes_on(name):
+    """Seen second by second, by an oracle that knows nothing of who waits for whom."""
+    never = np.full(len(GRID), NEVER, np.int32)
+    for day in season(name, 3, Teamwork(contact_s=600.0, passing_m=20.0)):
+        scene = Scene(PLOT.aisles, ROBOT, np.zeros(len(GRID)), never, seconds_left=ROBOT.day_s)
+        routes = [route_of(scene, work) for work in day.each]
+        assert nobody_together(routes, np.zeros(3))
+        assert nobody_head_on(routes, np.zeros(3), 20.0)
+        assert (np.diff(day.work.arrive_s + day.work.stop_s) >= 0).all()
 
 
 def test_a_team_meets_the_insects_that_one_alone_does():

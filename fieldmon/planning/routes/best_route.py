@@ -13,6 +13,7 @@ from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import FINDS, PROVED, share_above, told
 from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.blocks import Blocks, blockings
+from fieldmon.planning.routes.hung import hung
 from fieldmon.planning.routes.improve import Tour, fit, ruin
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
@@ -268,20 +269,24 @@ def _bounds(posed: _Posed, within_s: float = np.inf) -> Iterator[PriceBound]:
 
 
 def _relaxations(posed: _Posed) -> Iterator[Priced | Blocks]:
-    """Yield what lies below the plot: a ladder, one with aisles hanging on it, several ladders."""
+    """Yield what lies below the plot: a ladder, one with aisles hanging on it, several ladders.
+
+    Those of several parts stand beside each other, or hang on each other.
+    """
     ladders = Ladders(posed.aisles)
     yield Priced(ladders.whole(hanging=False), posed.reward, posed.robot)
-    hung = ladders.whole(hanging=True)
-    if hung.hangs.any():
-        yield Priced(hung, posed.reward, posed.robot)
+    hanging = ladders.whole(hanging=True)
+    if hanging.hangs.any():
+        yield Priced(hanging, posed.reward, posed.robot)
     for block in blockings(ladders.rungs):
         yield Blocks(ladders, block, posed.reward, posed.robot)
+        yield hung(ladders, block, posed.reward, posed.robot)
 
 
 def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf) -> PriceBound:
     """Return the least bound of all prices of time, by bisection of what they fill."""
     began = monotonic()
-    reward, costs = below.reward, below.costs
+    reward, costs = below.of_all, below.costs
     stop_s = max(costs.stop_s, 1e-9)
     high = float(reward.max()) / stop_s
     low = high * _LEAST_PRICE

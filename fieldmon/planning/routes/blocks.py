@@ -67,7 +67,7 @@ class Blocks:
 
     def __init__(self, ladders: Ladders, block: Int, reward: Float, robot: Robot) -> None:
         rungs = ladders.rungs
-        self.reward, self.robot, self.costs = reward, robot, Costs.of(robot)
+        self.of_all, self.robot, self.costs = reward, robot, Costs.of(robot)
         n, nearest = int(block.max()) + 1, _way_out(rungs, block)
         members = [np.flatnonzero(block == k) for k in range(n)]
         self.tours = _tours(_apart_m(rungs, block, nearest))

@@ -33,10 +33,11 @@ from fieldmon.planning.routes.frontier import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
+    from fieldmon.planning.routes.hung import HungPart
     from fieldmon.planning.routes.relaxation import Ladder
     from fieldmon.plot.robot import Robot
 
@@ -123,6 +124,8 @@ class Priced:
         self.costs = Costs.of(robot)
         self.tables: Tables = tables(returns=robot.returns)
         self.reward = np.ascontiguousarray(reward[ladder.plant])
+        self.of_all = reward
+        self.parts: Mapping[int, HungPart] = {}
         self._gate_passes = np.array(GATE_CLOSED if robot.returns else GATE_OPEN)
         e, s = len(ladder.across_m), len(self.tables.passes)
         ways = e, N_WAYS
@@ -150,7 +153,7 @@ class Priced:
         """Return the best drive at a price of reward a second."""
         room, ladder, tables = self._room, self.ladder, self.tables
         _value(ladder, self.reward, self.costs, (price, False), room)
-        self._value_gate(price)
+        self._value_rest(price)
         state = _sweep(ladder, tables, price * self.costs.metre_s, room)
         way, passes = (
             np.zeros(len(ladder.across_m), np.int64),
@@ -169,11 +172,12 @@ class Priced:
     def ways(self, price: float) -> Offered:
         """Return what each way of driving each element comes to, if driven just so."""
         _value(self.ladder, self.reward, self.costs, (price, True), self._room)
-        self._value_gate(price)
+        self._value_rest(price)
         room = self._room
         return Offered(room.worth.copy(), room.reward.copy(), room.cut.copy())
 
-    def _value_gate(self, price: float) -> None:
+    def _value_rest(self, price: float) -> None:
+        """Value what is no aisle: the gate."""
         gate, metre = self.ladder.gate, price * self.costs.metre_s
         self._room.worth[gate] = _NEVER
         self._room.reward[gate] = 0.0
@@ -198,7 +202,7 @@ class Priced:
         low, high = _stretches(0, gate + 1), _stretches(gate, end)
         worth, reward = np.empty((2, len(low) - 1, len(high) - 1))
         _value(self.ladder, self.reward, self.costs, (price, False), self._room)
-        self._value_gate(price)
+        self._value_rest(price)
         metre = price * self.costs.metre_s
         _sweep_kinds(self.ladder, self.tables, metre, self._room, (low, high, worth, reward))
         return worth, reward

@@ -10,6 +10,7 @@ around holes and between parts, a cross link is put in.
 
 from __future__ import annotations
 
+from copy import copy
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -57,6 +58,8 @@ class Ladder(NamedTuple):
     hangs
         ``(e,)`` whether an element joins both headlands (0), or both its ends are one place of
         the left (1) or of the right headland (2).
+    rung
+        ``(e,)`` number of the rung that an element is, -1 of cross links and the gate.
     """
 
     up_m: Float
@@ -69,6 +72,7 @@ class Ladder(NamedTuple):
     upper: NDArray[np.bool_]
     cross_links: int
     hangs: Int
+    rung: Int
 
 
 class Rungs(NamedTuple):
@@ -76,13 +80,16 @@ class Rungs(NamedTuple):
 
     ``low``, ``high`` ``(k,)``: x of the rung's ends; ``up`` ``(k,)`` its y. ``apart_m``
     ``(2, 2, k + 1, k + 1)``: from the left (0) or right (1) end of an aisle to the left or right
-    end of another; the last is the gate, whose two ends are one.
+    end of another; the last is the gate, whose two ends are one. ``part`` ``(k,)``: 0 of an aisle;
+    of a part of the plot that is one place of this ladder (`fieldmon.planning.routes.hung`), 1 on
+    its left headland, 2 on its right.
     """
 
     low: Float
     high: Float
     up: Float
     apart_m: Float
+    part: Int
 
 
 def ladder_below(aisles: Aisles) -> Ladder:
@@ -95,6 +102,12 @@ class Ladders:
 
     def __init__(self, aisles: Aisles) -> None:
         self.aisles, self.rungs = aisles, rungs_of(aisles)
+
+    def of(self, rungs: Rungs) -> Ladders:
+        """Return ladders of other rungs, as where parts of the plot are one place."""
+        other = copy(self)
+        other.rungs = rungs
+        return other
 
     def whole(self, *, hanging: bool) -> Ladder:
         """Return a ladder of all aisles with the plot's gate; short ones beside others may hang."""
@@ -115,7 +128,8 @@ class Ladders:
         hangs = np.zeros(len(up), np.int64)
         if hanging:
             hangs = _hanging(rungs, members, 0.6 * self.aisles.grid.row_spacing_m)
-        hangs = np.append(hangs, 0)[order]
+        own = rungs.part[members]
+        hangs = np.append(np.where(own > 0, own, hangs), 0)[order]
         apart_m = _apart(rungs, members, gate[0])[:, :, order][:, :, :, order]
         at = int(np.flatnonzero(order == len(up))[0])
         across_m = np.append(rungs.high[members] - low, np.inf)[order]
@@ -215,7 +229,7 @@ def rungs_of(aisles: Aisles) -> Rungs:
     first[crossed] = last[crossed] = middle[crossed]
     up = np.zeros(n_aisles)
     up[travel.corridor] = aisles.grid.lane_y_m
-    return Rungs(first, last, up, np.maximum(apart_m, 0.0))
+    return Rungs(first, last, up, np.maximum(apart_m, 0.0), np.zeros(n_aisles, np.int64))
 
 
 def _some_short(short: Float, corridor: NDArray[np.int32], n_aisles: int) -> NDArray[np.bool_]:
@@ -358,4 +372,5 @@ def _assembled(
         travel.side[travel.row[plant]] > 0,
         len(links),
         np.insert(hangs, after, 0),
+        np.insert(placed, after, -1),
     )

@@ -79,6 +79,8 @@ class _Chosen:
         """Return the plants of an aisle that is entered and left by one end."""
         if k < 0 or self.drawn.way[k] not in (_FROM_LEFT, _FROM_RIGHT)[side]:
             return np.empty(0, np.int64)
+        if k in self.priced.parts:
+            return self._of_part(k, ends=False)
         place = self._plants(k, side)
         if self.priced.ladder.hangs[k]:
             # both ends are one place: what is reached from either
@@ -90,6 +92,13 @@ class _Chosen:
             place = np.concatenate([place[upper], place[~upper][::-1]])
         return self.priced.ladder.plant[place]
 
+    def _of_part(self, k: int, *, ends: bool) -> Int:
+        """Return the plants of a part that hangs on the ladder."""
+        if (k, 0) in self.done:
+            return np.empty(0, np.int64)
+        self.done.add((k, 0))
+        return self.priced.parts[k].stops(float(self.price[k]), ends=ends)
+
     def through(self, k: int, *, up: bool) -> Int:
         """Return the plants of an aisle that is driven from end to end."""
         if self.drawn.way[k] not in _THROUGH:
@@ -98,6 +107,8 @@ class _Chosen:
 
     def end(self, k: int) -> Int:
         """Return the plants of an aisle in which the day ends."""
+        if k in self.priced.parts:
+            return self._of_part(k, ends=True)
         from_left = self.drawn.way[k] in (END_LEFT, END_LEFT_AND)
         place = self._plants(k, 0 if from_left else 1)
         if self.priced.ladder.hangs[k]:

@@ -102,10 +102,11 @@ class TeamSetting(NamedTuple):
         if self.team.robots == 1:
             return self.sampler
         work = self.team.teamwork
+        room = f", {work.passing_m:g} m to pass" if work.passing_m else ""
         if not work.together:
-            return f"{self.sampler}, sections"
+            return f"{self.sampler}, sections{room}"
         contact = f"contact every {work.contact_s / 60:g} min" if work.contact_s else "at once"
-        return f"{self.sampler}, together, {contact}"
+        return f"{self.sampler}, together, {contact}{room}"
 
 
 @dataclass(frozen=True)

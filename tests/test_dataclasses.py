@@ -28,8 +28,7 @@ def test_what_was_made_stays_as_it_was_made():
 def test_what_holds_arrays_is_equal_to_itself_only():
     """Arrays compare entry by entry: `==` of two holders would have no answer."""
     for node, told in dataclasses_there_are():
-        fields = [
-            ast.unparse(one.annotation) for one in node.body if isinstance(one, ast.AnnAssign)
-        ]
-        if any(ARRAYS.search(one) for one in fields if "ClassVar" not in one):
+        told_of = [ast.unparse(one.annotation) for one in node.body if type(one) is ast.AnnAssign]
+        held = [one for one in told_of if not one.startswith(("Callable", "float |", "ClassVar"))]
+        if any(ARRAYS.search(one) for one in held):
             assert told.get("eq", True) is False, node.name

@@ -19,7 +19,7 @@ from fieldmon.samplers.adaptive.arrays import (
     OwnRow,
     RowTours,
 )
-from fieldmon.samplers.adaptive.day import LEVEL_FINDS, drive_day
+from fieldmon.samplers.adaptive.day import LEVEL_FINDS, drive_day, trust_in_differences
 from fieldmon.samplers.adaptive.tours import measure_ways
 from fieldmon.samplers.base import InspectionTimes, Sampler, Scene, Stops
 
@@ -89,6 +89,7 @@ class Adaptive(Sampler):
         n, n_rows = len(scene.chance), scene.grid.n_rows
         traces = Traces.none(n) if scene.traces is None else scene.traces.own()
         lean = 0.5 if scene.traces is None else leaning(traces.evidence)
+        trust = 1.0 if scene.traces is None else trust_in_differences(scene.chance.mean())
         belief = BeliefArrays(
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
@@ -98,7 +99,7 @@ class Adaptive(Sampler):
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
             ClusterEstimate.none(n, traces.evidence, lean),
-            np.array([1.0, chance_apart(traces.evidence), lean]),
+            np.array([1.0, chance_apart(traces.evidence), lean, trust]),
             np.array([LEVEL_FINDS, LEVEL_FINDS, 1.0]),
             traces,
             Raised.of(n),

@@ -23,11 +23,16 @@ def in_aisles(routes, starts_s, step_s=2.0):
             for moment in (at_s, *leaves):
                 times.append(moment + begins)
                 places.append(place)
-        x, y = (np.interp(clock, times, np.array(places)[:, k]) for k in range(2))
-        there = (clock >= begins) & (clock <= begins + route.end_s)
+        x = np.interp(clock, times, np.array(places)[:, 0])
+        leg = np.clip(np.searchsorted(times, clock, "right"), 1, len(times) - 1)
+        ends_y = np.array(places)[:, 1][np.stack((leg - 1, leg))]
+        # all begin at the gate, which may lie between two ends of a lane
+        there = (clock > begins) & (clock <= begins + route.end_s)
         for row in range(grid.n_rows):
             low, high = grid.lane_x_m[row]
-            inside = (np.abs(y - grid.lane_y_m[row]) < 0.01) & (x > low + 0.1) & (x < high - 0.1)
+            # a way to a lane's end from a gate close beside the lane is not a way in it
+            along = (np.abs(ends_y - grid.lane_y_m[row]) < 0.01).all(axis=0)
+            inside = along & (x > low + 0.1) & (x < high - 0.1)
             found[m, there & inside] = grid.corridor[row]
     return found
 

@@ -9,7 +9,7 @@ import streamlit as st
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 
 from ..state import chosen_day, living, notices, plot_source, seasons_folder, work_day
-from ..words import texts
+from ..words import language, texts
 from . import acting
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def begin(choices: Choices) -> str:
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
         pest=living.pest(), weather=living.met(choices) if living.pest() else None,
+        language=language.current(),
     )  # fmt: skip
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]

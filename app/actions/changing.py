@@ -53,7 +53,7 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
     """Show the boxes; return the settings that they say."""
     robot = settings.robot
     key = f"{name} {robot.hours} {robot.look_s} {settings.sampler} {robot.speed_m_s}"
-    was = SCOUT if is_on_foot(robot) else ROBOT
+    was = SCOUT if robot.on_foot else ROBOT
     who = st.segmented_control(texts.WHO, list(WHO), default=was, required=True,
                                format_func=who_name, key=f"who {key}",
                                label_visibility="collapsed")  # fmt: skip
@@ -75,11 +75,6 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
     st.caption(sampler_does(sampler))
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
     return replace(settings, robot=robot, sampler=sampler)
-
-
-def is_on_foot(robot: Robot) -> bool:
-    """Return whether it is a scout on foot, however long the day and the look at a plant."""
-    return replace(scout(), hours=robot.hours, look_s=robot.look_s) == robot
 
 
 def _offer_undo(season: Season) -> None:

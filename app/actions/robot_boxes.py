@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.plot.robot import ROBOT_TIMES
+from fieldmon.plot.robot import ROBOT_TIMES, USUAL_TIMES
 
 from ..state import widget_memory
 from ..state.chosen_units import units
@@ -32,7 +32,7 @@ def of_files(robot: Robot) -> Robot:
         st.selectbox, texts.ROBOT_TIMES_LABEL, list(ROBOT_TIMES), key="robot_times",
         default=robot.times, filter_mode=None, format_func=lambda name: _times_name(robot, name),
     )  # fmt: skip
-    return _with_width(robot.with_times(times or "thesis"), shown)
+    return _with_width(robot.with_times(times or USUAL_TIMES), shown)
 
 
 def of_season(robot: Robot, key: str) -> Robot:

@@ -36,7 +36,7 @@ def _words(one: Assumed, units: UnitsInLanguage) -> str:
         value = in_words(in_unit(units.shown(one.value), "g", units.length))
     elif one.setting == "speed_m_s":
         value = number(3.6 * one.value, ".3g")
-    elif one.setting == "row_change_s":
+    elif one.setting in {"row_change_s", "stop_s"}:
         value = number(one.value, "g")
     else:
         value = number(100 * one.value, "g")

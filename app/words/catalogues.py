@@ -17,6 +17,7 @@ from babel.messages.pofile import read_po, write_po
 
 import fieldmon
 from fieldmon.compute.units import IN_UNIT
+from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.reports import words as report_words
 from fieldmon.samplers import of_equal_times
 
@@ -71,10 +72,12 @@ def of_library() -> list[TextEntry]:
     for path in sorted(Path(fieldmon.__file__).parent.rglob("*.py")):
         if "_app" in path.parts:
             continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        named = _constants(tree)
+        for node in ast.walk(tree):
             entry = None
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
-                entry = _worded(node.func.id, node.args)
+                entry = _worded(node.func.id, node.args, named)
             elif (many := _of_many(node)) is not None:
                 entry = TextEntry(LIBRARY, many)
             if entry is not None:
@@ -85,7 +88,7 @@ def of_library() -> list[TextEntry]:
 def _of_reports() -> Iterator[TextEntry]:
     """Yield what reports write without wording it: headings, units, names of samplers."""
     titles = [kind.title for kind in of_equal_times().values()]
-    for value in (*report_words.TEXTS.values(), *IN_UNIT.values(), *titles):
+    for value in (*report_words.TEXTS.values(), *IN_UNIT.values(), *titles, *RESULT_NAMES.values()):
         for entry in _within(LIBRARY, value):
             if entry.words not in _SAME_ON_PAPER and _has_letters(entry.words):
                 yield TextEntry(LIBRARY, entry.words)
@@ -108,8 +111,24 @@ def _of_many(node: ast.AST) -> str | None:
     return said if isinstance(said, str) and said else None
 
 
-def _worded(function: str, arguments: list[ast.expr]) -> TextEntry | None:
-    said = [_value(one) for one in arguments if isinstance(one, ast.Constant | ast.Attribute)]
+def _constants(tree: ast.Module) -> dict[str, str]:
+    """Return the texts that a module names."""
+    return {
+        one.targets[0].id: one.value.value
+        for one in tree.body
+        if isinstance(one, ast.Assign)
+        and isinstance(one.targets[0], ast.Name)
+        and isinstance(one.value, ast.Constant)
+        and isinstance(one.value.value, str)
+    }
+
+
+def _worded(function: str, arguments: list[ast.expr], named: dict[str, str]) -> TextEntry | None:
+    said = [
+        named.get(one.id) if isinstance(one, ast.Name) else _value(one)
+        for one in arguments
+        if isinstance(one, ast.Constant | ast.Attribute | ast.Name)
+    ]
     if function in _WORDING and said and isinstance(said[0], str) and _has_letters(said[0]):
         return TextEntry(LIBRARY, said[0])
     if function == "counted" and said and isinstance(said[-1], str):

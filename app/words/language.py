@@ -247,6 +247,8 @@ def marked_as_english(sentence: str) -> str:
 
 def _said(sentence: object, language: str) -> str | None:
     """Return a sentence in a language; None if there are no words for it."""
+    if isinstance(sentence, BaseException) and sentence.args:
+        sentence = sentence.args[0]
     if not isinstance(sentence, Worded):
         return None
     found = _catalogue(language)
@@ -336,7 +338,7 @@ def tongue(language: str) -> Tongue:
     found = _catalogue(language)
 
     def say(sentence: str) -> str:
-        return _said(sentence, language) or str(sentence)
+        return _said(sentence, language) or _said_again(str(sentence), language) or str(sentence)
 
     letters = "".join(sorted({*"".join(found.words()), *ENGLISH_TONGUE.letters}))
     return Tongue(language, say, language in RIGHT_TO_LEFT, letters)

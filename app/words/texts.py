@@ -77,8 +77,8 @@ ROBOT_WIDTH_HELP = (
 )
 ROBOT_TIMES_LABEL = "Times charged"
 ROBOT_TIMES_NAMES = {
-    "thesis": "The thesis's: {row} s a row change, {turn} s a turn",
     "measured": "Measured in simulated drives: {row} s a row change, {stop} s a stop",
+    "thesis": "The thesis's: {row} s a row change, {turn} s a turn",
     "own": "As set by command: {row} s a row change, {turn} s a turn, {stop} s a stop",
 }
 SAMPLER = "Who chooses the plants"
@@ -99,7 +99,8 @@ ASSUMED_WHAT = {
     "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
-    "row_change_s": "a row change takes {value} s more",
+    "row_change_s": "a row change takes {value} s more, as in simulated drives",
+    "stop_s": "a stop takes {value} s more, as in simulated drives",
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
 }

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.beside import app_package
 from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import SettingError
 
@@ -50,7 +51,7 @@ def open_app(  # noqa: PLR0913, PLR0917 - the command's options
 
     from fieldmon.io.sandbox.process import own_path  # noqa: PLC0415
 
-    server = _server()
+    server = f"{app_package()[0]}.startup.serve"
     others = _others(lan, address, reached_at)
     if lan:
         address = _HERE
@@ -134,12 +135,3 @@ def _run(command: list[str], env: dict[str, str]) -> int:
             server.kill()
             code = server.wait()
     return code if code >= 0 else 128 - code
-
-
-def _server() -> str:
-    """Return the module that serves the app: in fieldmon as installed, beside it in its tree."""
-    fieldmon = Path(__file__).resolve().parents[1]
-    for package, folder in (("fieldmon._app", fieldmon / "_app"), ("app", fieldmon.parent / "app")):
-        if (folder / "startup" / "serve.py").is_file():
-            return f"{package}.startup.serve"
-    raise SettingError("The app must be installed beside fieldmon, but it was not found.")

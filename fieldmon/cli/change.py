@@ -13,6 +13,7 @@ from fieldmon.cli.options import (
     Hours,
     Look,
     Robots,
+    RobotTimesName,
     SeasonFile,
     Speed,
     WorkerOptions,
@@ -20,6 +21,7 @@ from fieldmon.cli.options import (
 from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
+from fieldmon.cli.tongues import Language, checked_language
 from fieldmon.errors import SettingError
 from fieldmon.samplers import kind_of
 from fieldmon.samplers.registry import SAMPLERS
@@ -41,6 +43,7 @@ class ChangeOptions:
     hours: Hours = None
     look: Look = None
     speed: Speed = None
+    robot_times: RobotTimesName = None
     robots: Robots = None
     start: Annotated[str | None, typer.Option(help="Local time the work starts, HH:MM.")] = None
     spread: Annotated[
@@ -57,6 +60,7 @@ class ChangeOptions:
         str | None,
         typer.Option(help="First day of harvest, YYYY-MM-DD, which treatments wait for; or none."),
     ] = None
+    language: Language = None
     who: Annotated[str, typer.Option(help="Who chooses so.")] = ""
     living: PestOptions = field(default_factory=PestOptions)
 
@@ -64,11 +68,9 @@ class ChangeOptions:
         """Return a season's settings as they are to be."""
         from dataclasses import replace  # noqa: PLC0415
 
-        worker = WorkerOptions(self.hours, self.look, self.speed)
-        robot = worker.given()
-        new = replace(settings, robot=replace(settings.robot, **robot))  # type: ignore[arg-type]
-        team = [replace(one, robot=replace(one.robot, **robot)) for one in settings.team]  # type: ignore[arg-type]
-        new = replace(new, team=tuple(team))
+        worker = WorkerOptions(self.hours, self.look, self.speed, robot_times=self.robot_times)
+        team = tuple(replace(one, robot=worker.said_of(one.robot)) for one in settings.team)
+        new = replace(settings, robot=worker.said_of(settings.robot), team=team)
         if self.robots is not None:
             new = self._of_several(new)
         if self.sampler is not None:
@@ -87,6 +89,8 @@ class ChangeOptions:
         if self.harvest is not None:
             none = self.harvest.casefold() == "none"
             new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))
+        if self.language is not None:
+            new = replace(new, language=checked_language(self.language))
         return self._of_pest(new, plot)
 
     def _must_spread(self, settings: MonitoringSettings) -> None:

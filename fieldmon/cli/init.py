@@ -29,6 +29,7 @@ from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.cli.tongues import Language, checked_language
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -71,6 +72,7 @@ class InitOptions:
     robots: Robots = None
     contact: Contact = 0.0
     least_gain: LeastGain = 0.5
+    language: Language = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     living: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
@@ -108,6 +110,7 @@ class InitOptions:
             weather=None if living is None else living.weather,
             team=tuple(replace(one, robot=self.living.seen(one.robot)) for one in team),
             teamwork=Teamwork(contact_s=60.0 * self.contact, least_gain=self.least_gain),
+            language="" if self.language is None else checked_language(self.language),
         )
 
 

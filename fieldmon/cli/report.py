@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.times import day
+from fieldmon.cli.tongues import Language, spoken
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from fieldmon.compute.units import Units
     from fieldmon.monitoring import Season
     from fieldmon.reports.content import Report
 
@@ -46,19 +48,22 @@ ForCertifier = Annotated[
 OnPaper = Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")]
 
 
-def report(
+def report(  # noqa: PLR0913, PLR0917 - the command's options
     seasons: Seasons,
     output: Output = Path("report.pdf"),
     on: OneDay = None,
     until: Until = None,
     paper: OnPaper = Paper.a4,
     certification: ForCertifier = False,  # noqa: FBT002 - a flag
+    language: Language = None,
 ) -> None:
     """Write a season on four pages, or one of its days on one; nothing of it is changed.
 
-    With --certification it is the record of one season or several for a certifier.
+    With --certification it is the record of one season or several for a certifier. It is written
+    in the season's language, or in the one of --language, with dates and areas as usual there.
 
     Example: fieldmon report season.gpkg -o report.pdf
+    Example: fieldmon report season.gpkg -o report.pdf --language he
     """
     if on is not None and until is not None:
         raise SettingError(
@@ -77,26 +82,26 @@ def report(
 
     checked_ending(output)
     kept = [Season(path) for path in seasons]
-    made = _certified(kept, until) if certification else _made(kept[0], on, until)
-    typer.echo(f"Report written to {write_report(made, output, paper.value)}")
+    tongue, units = spoken(language, kept[0].settings.language)
+    made = _certified(kept, until, units) if certification else _made(kept[0], on, until, units)
+    to = write_report(made.said_in(tongue), output, paper.value)
+    typer.echo(f"Report written to {to}")
 
 
-def _certified(seasons: list[Season], until: str | None) -> Report:
+def _certified(seasons: list[Season], until: str | None, units: Units) -> Report:
     """Return the record of seasons for a certifier."""
-    from fieldmon.compute.units import Units  # noqa: PLC0415
     from fieldmon.reports.certification import certification_report  # noqa: PLC0415
 
-    return certification_report(seasons, Units(), day(until, "--until"))
+    return certification_report(seasons, units, day(until, "--until"))
 
 
-def _made(season: Season, on: str | None, until: str | None) -> Report:
+def _made(season: Season, on: str | None, until: str | None, units: Units) -> Report:
     """Return the report of a day, or of the season."""
-    from fieldmon.compute.units import Units  # noqa: PLC0415
     from fieldmon.reports.day import DayFacts, day_report  # noqa: PLC0415
     from fieldmon.reports.season import season_report  # noqa: PLC0415
 
     asked = day(on)
     if asked is not None:
-        return day_report(DayFacts.of_season(season, asked), Units())
+        return day_report(DayFacts.of_season(season, asked), units)
     told = day(until, "--until")
-    return season_report(season, season.last_date() if told is None else told, Units())
+    return season_report(season, season.last_date() if told is None else told, units)

@@ -97,7 +97,7 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
     from fieldmon.studies.thesis.chapter5.report import maps_html  # noqa: PLC0415
     from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
-    rules = MapRules(Robot(), CALIBRATED.spread)
+    rules = MapRules(Robot().with_times("thesis"), CALIBRATED.spread)
     maps = read_plant_maps(folder)
     with counting("Inspecting") as count:
         table = run_maps(maps, rules, options.seeds, options.seed, count)

@@ -277,9 +277,14 @@ def _number(said: Mapping[str, str], role: str) -> float | None:
     if could_be_thousands(cell):
         bare = cell.replace(",", ".")
         raise SettingError(
-            f"{role} is {cell}: is that {float(bare.replace('.', '')):g} or "
-            f"{float(bare.partition('.')[0] + '.' + bare.partition('.')[2].replace('.', '')):g}? "
-            "Write it without the mark, or with other decimals."
+            worded(
+                "{role} is {cell}: is that {bare:g} or {other:g}? Write it without the mark, "
+                "or with other decimals.",
+                role=role,
+                cell=cell,
+                bare=float(bare.replace(".", "")),
+                other=float(bare.partition(".")[0] + "." + bare.partition(".")[2].replace(".", "")),
+            )
         )
     value = number(cell, "," if "," in cell and "." not in cell else ".")
     if math.isnan(value):

@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import loop
+from fieldmon.compute.wording import worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
@@ -55,14 +56,21 @@ class MapPlan:
     def __post_init__(self) -> None:
         if not 0.0 < self.low < self.high < 1.0:
             raise SettingError(
-                "The shares of a plan must rise from above 0 to below 1, but they are "
-                f"{self.low:g} and {self.high:g}."
+                worded(
+                    "The shares of a plan must rise from above 0 to below 1, but they are {low:g} "
+                    "and {high:g}.",
+                    low=self.low,
+                    high=self.high,
+                )
             )
         for chance in (self.treats_wrongly, self.leaves_wrongly):
             if not 0.0 < chance < 0.5:
                 raise SettingError(
-                    "The chance that a plan is wrong must lie between 0 and 0.5, but it is "
-                    f"{chance:g}."
+                    worded(
+                        "The chance that a plan is wrong must lie between 0 and 0.5, but it is "
+                        "{chance:g}.",
+                        chance=chance,
+                    )
                 )
 
     @classmethod

@@ -128,7 +128,9 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
     _check(level, sure)
     asked = np.ones(len(grid), bool) if plants is None else plants
     if not asked.any():
-        raise SettingError("A verdict must be about a plant or more, but the area holds none.")
+        raise SettingError(
+            worded("A verdict must be about a plant or more, but the area holds none.")
+        )
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
     weights = csc_array(asked[:, None] / np.count_nonzero(asked))
     shares = _drawn(grid, (chance, pairs), weights, (key, doubt))
@@ -209,13 +211,19 @@ def zone_verdicts(
 def _check(level: float, sure: float) -> None:
     if not 0.0 < level < 1.0:
         raise SettingError(
-            f"The share of plants from which treating pays must lie between 0 and 1, but it is "
-            f"{level:g}."
+            worded(
+                "The share of plants from which treating pays must lie between 0 and 1, but it "
+                "is {level:g}.",
+                level=level,
+            )
         )
     if not 0.5 < sure < 1.0:
         raise SettingError(
-            f"A verdict must be asked to be right with a chance between 0.5 and 1, but it is "
-            f"{sure:g}."
+            worded(
+                "A verdict must be asked to be right with a chance between 0.5 and 1, but it "
+                "is {sure:g}.",
+                sure=sure,
+            )
         )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.special import betaincc, gammaincc
 
 from fieldmon.compute.arrays import read_only
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -81,7 +82,12 @@ def _check_threshold(threshold: float, *, is_share: bool) -> None:
 
 def _check_clustering(k: float) -> None:
     if not 0.0 < k < np.inf:
-        raise SettingError(f"The clustering k of counts must be a number above 0, but it is {k:g}.")
+        raise SettingError(
+            worded(
+                "The clustering k of counts must be a number above 0, but it is {k:g}.",
+                k=k,
+            )
+        )
 
 
 @dataclass(frozen=True)
@@ -132,8 +138,12 @@ class WaldPlan:
         for name, chance in (("treats", self.treats_wrongly), ("leaves", self.leaves_wrongly)):
             if not 0.0 < chance < 0.5:
                 raise SettingError(
-                    f"The chance that a plan {name} wrongly must lie between 0 and 0.5, but it is "
-                    f"{chance:g}."
+                    worded(
+                        "The chance that a plan {name} wrongly must lie between 0 and 0.5, but it "
+                        "is {chance:g}.",
+                        name=name,
+                        chance=chance,
+                    )
                 )
         if self.counts == "negative binomial":
             _check_clustering(self.k)
@@ -260,7 +270,12 @@ class IwaoPlan:
     def __post_init__(self) -> None:
         _check_threshold(self.threshold, is_share=self.law is None)
         if not self.z > 0.0:
-            raise SettingError(f"A plan's z must be above 0, but it is {self.z:g}.")
+            raise SettingError(
+                worded(
+                    "A plan's z must be above 0, but it is {z:g}.",
+                    z=self.z,
+                )
+            )
 
     @property
     def most_per_look(self) -> float:
@@ -318,7 +333,10 @@ class BayesPlan:
         _check_threshold(self.threshold, is_share=self.counts == "presence")
         if not 0.5 < self.sure < 1.0:
             raise SettingError(
-                f"A plan must stop at a chance between 0.5 and 1, but it is {self.sure:g}."
+                worded(
+                    "A plan must stop at a chance between 0.5 and 1, but it is {sure:g}.",
+                    sure=self.sure,
+                )
             )
         if self.counts == "negative binomial":
             _check_clustering(self.k)
@@ -406,8 +424,11 @@ def least_more(plan: Plan, looks: int, total: float) -> int:
             return int(np.argmax(clear))
         ahead *= 4
     raise SettingError(
-        f"A verdict must be possible within {_MOST_AHEAD} looks, but these levels are too near "
-        "each other. Set them further apart."
+        worded(
+            "A verdict must be possible within {looks} looks, but these levels are too "
+            "near each other. Set them further apart.",
+            looks=_MOST_AHEAD,
+        )
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
 from fieldmon.io.packaged import packaged_table
@@ -59,15 +60,22 @@ class Threshold:
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
             raise SettingError(
-                f"A threshold must count one of {', '.join(MEASURES)}, but {self.name!r} counts "
-                f"{self.measure!r}."
+                worded(
+                    "A threshold must count one of {names}, but {name!r} counts {measure!r}.",
+                    names=", ".join(MEASURES),
+                    name=self.name,
+                    measure=self.measure,
+                )
             )
         most = float("inf") if self.measure == "mean per leaf" else 1.0
         if not 0.0 < self.level < most:
             raise SettingError(
-                f"The threshold {self.name!r} must be above 0"
-                + (" and below 1 (100 %)" if most == 1.0 else "")
-                + f", but it is {self.level:g}."
+                worded(
+                    "The threshold {name!r} must be above 0{below}, but it is {level:g}.",
+                    name=self.name,
+                    below=worded(" and below 1 (100 %)") if most == 1.0 else "",
+                    level=self.level,
+                )
             )
 
     @property
@@ -77,12 +85,17 @@ class Threshold:
 
     def sentence(self) -> str:
         """Return it in words, with its source."""
-        level = (
-            f"{100 * self.level:g} % of the {self.measure.rpartition(' ')[2]} infested"
-            if self.is_share
-            else f"{self.level:g} a leaf"
+        if not self.is_share:
+            level = worded("{level:g} a leaf", level=self.level)
+        elif self.measure == "share of plants":
+            level = worded("{level:g} % of the plants infested", level=100 * self.level)
+        else:
+            level = worded("{level:g} % of the leaves infested", level=100 * self.level)
+        return worded(
+            "Treat from {level} on ({source}).",
+            level=level,
+            source=self.source,
         )
-        return f"Treat from {level} on ({self.source})."
 
 
 @lru_cache(maxsize=1)
@@ -104,13 +117,23 @@ def read_thresholds(source: Path | Upload) -> tuple[Threshold, ...]:
         data = source.data if isinstance(source, Upload) else source.read_bytes()
         lines = data.decode("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise FileProblem(f"{name}: thresholds must be text in UTF-8 ({error}).") from error
+        raise FileProblem(
+            worded(
+                "{name}: thresholds must be text in UTF-8 ({error}).",
+                name=name,
+                error=error,
+            )
+        ) from error
     table = csv.DictReader(line for line in lines if not line.startswith("#"))
     missing = [name for name in _COLUMNS if name not in (table.fieldnames or ())]
     if missing:
         raise FileProblem(
-            f"{name}: thresholds need the columns {', '.join(_COLUMNS)}, but there is no "
-            f"{' and no '.join(missing)}."
+            worded(
+                "{name}: thresholds need the columns {names}, but there is no {names_2}.",
+                name=name,
+                names=", ".join(_COLUMNS),
+                names_2=" and no ".join(missing),
+            )
         )
     return tuple(_read(name, number, row) for number, row in enumerate(table, 1))
 
@@ -148,8 +171,12 @@ def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Thresho
         else:
             return Threshold(said, "share of plants", share)
     raise SettingError(
-        f"A threshold must be a share of the plants, as 5%, or one of {', '.join(options)}; "
-        f"but it is {said!r}."
+        worded(
+            "A threshold must be a share of the plants, as 5%, or one of {names}; but it "
+            "is {said!r}.",
+            names=", ".join(options),
+            said=said,
+        )
     )
 
 
@@ -158,10 +185,22 @@ def _read(name: str, number: int, row: Mapping[str, str]) -> Threshold:
         return _of_row(row)
     except ValueError as error:
         raise FileProblem(
-            f"{name}, threshold {number}: the level must be a number, but it is {row['level']!r}."
+            worded(
+                "{name}, threshold {number}: the level must be a number, but it is {level!r}.",
+                name=name,
+                number=number,
+                level=row["level"],
+            )
         ) from error
     except SettingError as error:
-        raise FileProblem(f"{name}, threshold {number}: {error}") from error
+        raise FileProblem(
+            worded(
+                "{name}, threshold {number}: {error}",
+                name=name,
+                number=number,
+                error=error,
+            )
+        ) from error
 
 
 def _of_row(row: Mapping[str, str]) -> Threshold:

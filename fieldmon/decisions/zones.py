@@ -70,7 +70,11 @@ class Sprayer:
         for name, value in vars(self).items():
             if not 0 <= value < np.inf:
                 raise SettingError(
-                    f"A sprayer's {name.replace('_', ' ')} must be 0 or more, but it is {value:g}."
+                    worded(
+                        "A sprayer's {name} must be 0 or more, but it is {value:g}.",
+                        name=name.replace("_", " "),
+                        value=value,
+                    )
                 )
 
     @classmethod
@@ -91,8 +95,12 @@ class Sprayer:
         """
         if not (boom_m > 0.0 and sections >= 1):
             raise SettingError(
-                "A boom must have a width above 0 and a section or more, but it has "
-                f"{boom_m:g} m and {sections}."
+                worded(
+                    "A boom must have a width above 0 and a section or more, but it has {boom_m:g} "
+                    "m and {sections}.",
+                    boom_m=boom_m,
+                    sections=sections,
+                )
             )
         rows = max(1, int(boom_m / sections / row_spacing_m + 1e-9))
         return cls(rows, least_on_m, least_on_m)
@@ -134,18 +142,28 @@ class TreatmentCosts:
     def __post_init__(self) -> None:
         if not 0.0 <= self.reserve < 1.0:
             raise SettingError(
-                "The share that is never sprayed must be 0 or more and below 1, but it is "
-                f"{self.reserve:g}."
+                worded(
+                    "The share that is never sprayed must be 0 or more and below 1, but it is "
+                    "{reserve:g}.",
+                    reserve=self.reserve,
+                )
             )
         for name, value in vars(self).items():
             if not 0.0 <= value < np.inf:
                 raise SettingError(
-                    f"The cost {name.replace('_', ' ')!r} must be 0 or more, but it is {value:g}."
+                    worded(
+                        "The cost {name!r} must be 0 or more, but it is {value:g}.",
+                        name=name.replace("_", " "),
+                        value=value,
+                    )
                 )
         if not 0.0 < self.works <= 1.0:
             raise SettingError(
-                "The chance that a treatment works must be above 0 and at most 1, but it is "
-                f"{self.works:g}."
+                worded(
+                    "The chance that a treatment works must be above 0 and at most 1, but it is "
+                    "{works:g}.",
+                    works=self.works,
+                )
             )
 
     @property

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.drive.bag_layouts import foxglove_layout, rviz_layout
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
@@ -59,7 +60,12 @@ def write_bag(recording: Recording, begins: datetime, to: Path) -> tuple[Path, P
         If the library that writes bags is not installed, or the name does not end in .mcap.
     """
     if to.suffix.lower() != ".mcap":
-        raise SettingError(f"The name of a bag must end in .mcap, but it is {to.name!r}.")
+        raise SettingError(
+            worded(
+                "The name of a bag must end in .mcap, but it is {name!r}.",
+                name=to.name,
+            )
+        )
     writer, store = _rosbags()
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         inner = Path(folder) / "bag"
@@ -258,7 +264,9 @@ def read_bag(path: Path, topics: tuple[str, ...]) -> Iterator[tuple[str, float, 
     except FieldmonError:
         raise
     except Exception as error:  # a damaged bag fails in many ways
-        raise FileProblem("The bag cannot be read: is it whole, and an .mcap of ROS 2?") from error
+        raise FileProblem(
+            worded("The bag cannot be read: is it whole, and an .mcap of ROS 2?")
+        ) from error
 
 
 def _rosbags() -> tuple[Any, Any]:
@@ -269,8 +277,10 @@ def _rosbags() -> tuple[Any, Any]:
         from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
     except ImportError as error:
         raise SettingError(
-            "Bags need the library rosbags, which is not installed. "
-            'Install it with: pip install "fieldmon[robot]"'
+            worded(
+                "Bags need the library rosbags, which is not installed. Install it with: pip "
+                'install "fieldmon[robot]"'
+            )
         ) from error
 
     def opened(folder: Path) -> Any:  # noqa: ANN401

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.drive.account import STOP_COLUMNS
 from fieldmon.drive.bag import colour_says, east_north_yaw, read_bag
 from fieldmon.drive.day import place_m, way_m
@@ -138,8 +138,11 @@ def trace_of_stops(table: bytes, aisles: Aisles, robot: Robot) -> Trace:
     lines = list(csv.DictReader(table.decode("ascii", "replace").splitlines()))
     if not lines or ",".join(lines[0]) != STOP_COLUMNS:
         raise FileProblem(
-            "A table of stops must begin with the columns that `fieldmon drive` writes "
-            f"({STOP_COLUMNS}) and have a line a stop. Take the file that ends in .stops.csv."
+            worded(
+                "A table of stops must begin with the columns that `fieldmon drive` writes "
+                "({columns}) and have a line a stop. Take the file that ends in .stops.csv.",
+                columns=STOP_COLUMNS,
+            )
         )
     recording, at, since_s = Recording(aisles, robot), GATE, 0.0
     for number, line in enumerate(lines, 2):
@@ -158,14 +161,25 @@ def _stop_of(line: dict[str, str], number: int, aisles: Aisles) -> tuple[int, fl
         names = int(line["row"]), int(line["number"])
         found = {"": None, "0": False, "1": True}[line["found"]]
     except (KeyError, TypeError, ValueError) as error:
-        raise FileProblem(f"Line {number} of the table of stops cannot be read.") from error
+        raise FileProblem(
+            worded(
+                "Line {number} of the table of stops cannot be read.",
+                number=number,
+            )
+        ) from error
     if 0 <= plant < len(aisles.grid):
         label = row_label(aisles.grid, np.array([plant]))
         if (int(label.line[0]), int(label.number[0])) == names and np.isfinite(done_s):
             return plant, done_s, found
     raise FileProblem(
-        f"Plant {plant} of line {number} is not row {names[0]}, plant {names[1]} of this plot. "
-        "Open the plot or season that was driven."
+        worded(
+            "Plant {plant} of line {number} is not row {names}, plant {names_2} of this "
+            "plot. Open the plot or season that was driven.",
+            plant=plant,
+            number=number,
+            names=names[0],
+            names_2=names[1],
+        )
     )
 
 
@@ -194,7 +208,9 @@ def trace_of_bag(bag: bytes, aisles: Aisles, robot: Robot) -> Trace:
             elif topic == "/finds":
                 recording.stops.append(_find_of(message.markers[0], at_s, aisles))
     if not len(recording.track.poses) or not recording.stops:
-        raise FileProblem("The bag holds no way or no finds. Take one of `fieldmon drive --bag`.")
+        raise FileProblem(
+            worded("The bag holds no way or no finds. Take one of `fieldmon drive --bag`.")
+        )
     return trace_of(recording)
 
 
@@ -204,8 +220,11 @@ def _find_of(marker: object, at_s: float, aisles: Aisles) -> Noted:
     far = not 0 <= plant < len(aisles.grid)
     if far or np.hypot(*(aisles.grid.xy_m[plant] - here)) > _SAME_PLANT_M:
         raise FileProblem(
-            f"Plant {plant} of the bag stands elsewhere on this plot. "
-            "Open the plot or season that was driven."
+            worded(
+                "Plant {plant} of the bag stands elsewhere on this plot. Open the plot or "
+                "season that was driven.",
+                plant=plant,
+            )
         )
     found = colour_says(marker.colors[0])  # type: ignore[attr-defined]
     return Noted(at_s, plant, found, place_m(aisles, plant)[None])

@@ -91,16 +91,13 @@ class Colonies:
         key, turn
             Name the table of coins: one a plant, so that with the same insects it is the same.
         """
-        landed = self._landed(spell)
-        landed[self.protected_days > 0.0] = 0.0
-        after = self.older(spell).settled(landed, key, turn)
-        return after.outlived(spell.days, key, turn)
+        reached = self._reached(spell, key, turn) & (self.protected_days <= 0.0)
+        older = self.older(spell)
+        return older.entered(reached).outlived(spell.days, key, turn)
 
     def settled(self, landed: Floats, key: np.uint64, turn: int = 0) -> Colonies:
         """Return the colonies after so much has landed on each plant ``(n,)``."""
-        infested = settle(self.infested, landed, key, turn)
-        new = infested & ~self.infested
-        return self._begun(new, infested)
+        return self.entered(settle(self.infested, landed, key, turn))
 
     def without(self, plants: NDArray[np.integer]) -> Colonies:
         """Return the colonies after those on some plants were destroyed."""
@@ -143,29 +140,29 @@ class Colonies:
             protected_days=np.maximum(self.protected_days - spell.days, 0.0),
         )
 
-    def _landed(self, spell: Spell) -> Floats:
-        """Return what lands on each plant in some hours, ``(n,)``."""
-        entry = _entering(self.grid, self.pest.entry) * spell.days
-        if spell.sends <= 0.0 or not self.mobile.any():
-            return entry
-        sent = np.where(self.mobile, spell.sends, 0.0)
-        movement = self.pest.movement
-        by: Landings
-        if movement.kernel == "adjacent":
-            # so much goes to each of them
-            degree = np.diff(self.grid.adjacent.start)
-            sent, by = sent * degree, ToAdjacent(self.grid.adjacent)
-        else:
-            by = dispersal_of(self.grid, kernel_of(movement), spell.wind_m_s)
-        return by.landed(sent) + entry
+    def _reached(self, spell: Spell, key: np.uint64, turn: int) -> NDArray[np.bool_]:
+        """Return on which plants something lands in some hours, from the plot or from outside."""
+        reached, entry = np.zeros(len(self.grid), np.bool_), self.pest.entry
+        if spell.sends > 0.0 and (senders := np.flatnonzero(self.mobile)).size:
+            reached = self._landings(spell).reached(senders, spell.sends, key, turn)
+        if max(entry.edge_per_day, entry.anywhere_per_day) > 0.0:
+            reached |= settle(self.infested, _entering(self.grid, entry) * spell.days, key, turn)
+        return reached
 
-    def _begun(self, new: NDArray[np.bool_], infested: NDArray[np.bool_]) -> Colonies:
-        """Return the same with new colonies, in their first stage."""
+    def _landings(self, spell: Spell) -> Landings:
+        movement = self.pest.movement
+        if movement.kernel == "adjacent":
+            return ToAdjacent(self.grid.adjacent)
+        return dispersal_of(self.grid, kernel_of(movement), spell.wind_m_s)
+
+    def entered(self, reached: NDArray[np.bool_]) -> Colonies:
+        """Return the same with new colonies, in their first stage, on clean plants of those."""
+        new = reached & ~self.infested
         if not new.any():
-            return replace(self, infested=infested)
+            return self
         return replace(
             self,
-            infested=infested,
+            infested=self.infested | new,
             stage=np.where(new, 0, self.stage).astype(np.int8),
             progress=np.where(new, 0.0, self.progress),
             age_days=np.where(new, 0.0, self.age_days),

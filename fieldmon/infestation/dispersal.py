@@ -1,4 +1,4 @@
-"""What lands on each plant of what all plants send out, by a kernel of distance."""
+"""Where what plants send out lands, by a kernel of distance: on average, or drawn jump by jump."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from scipy import fft
 
-from fieldmon.compute.jit import loop
-from fieldmon.compute.random_streams import coin
+from fieldmon.compute.jit import loop, routine
+from fieldmon.compute.random_streams import coin, coin_bits
+from fieldmon.infestation.belief import lesser
 from fieldmon.infestation.cells import Cells
 
 if TYPE_CHECKING:
@@ -20,19 +21,26 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import Csr, PlantGrid
 
     Floats = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+    Plants = NDArray[np.intp]
 
 # seconds a cell of a sending plant's kernel, and a row of it; and of the transforms a cell and
 # doubling, and at least (measured, see docs/benchmarks: only which way is quicker hangs on it)
 _CELL_S, _ROW_S, _FFT_S, _FFTS_S = 0.22e-9, 5e-9, 0.5e-9, 7e-5
 # kernels of a plot that are kept: winds change
 _KEPT = 64
+# where jumps go has coins of its own, a table for each plant that sends; a jump asks for several
+_JUMPS = np.uint64(0xA0761D6478BD642F)
+_WHICH, _FAR, _ANY = 2**32, 2**33, 2**34
+# of so many jumps on average exp(-mean) is still a number; more are drawn by parts
+_AT_ONCE = 30.0
 
 
 class Landings(Protocol):
-    """Who can say what lands where."""
+    """Who can draw where what plants send lands."""
 
-    def landed(self, sent: Floats) -> Floats:
-        """Return what lands on each plant ``(n,)`` of what each sends ``(n,)``."""
+    def reached(self, senders: Plants, sends: float, key: np.uint64, turn: int = 0) -> Mask:
+        """Return the plants ``(n,)`` on which something lands, see `Dispersal.reached`."""
         ...
 
 
@@ -90,6 +98,28 @@ class Dispersal:
         landed: Floats = (1.0 - self.long_share) * near + anywhere
         return landed
 
+    def reached(self, senders: Plants, sends: float, key: np.uint64, turn: int = 0) -> Mask:
+        """Draw where what plants send lands; return the plants ``(n,)`` on which something does.
+
+        Each sends a number drawn by Poisson, and each jump goes to a cell drawn by the kernel. So a
+        plant is reached with 1 - exp(-landed), as `landed` and `settle` have it, and it takes as
+        long as there are senders and jumps. A sender's jumps are its own: with the same `key` and
+        `turn` two histories differ only where they differ, and with more `sends` it adds jumps.
+
+        Parameters
+        ----------
+        senders
+            ``(k,)`` numbers of the plants that send.
+        sends
+            How much each sends on average.
+        key, turn
+            Name the table of coins.
+        """
+        found = np.zeros(len(self.cells.of_plant), np.bool_)
+        where = self._at, self._of_cells, self._dealt
+        _reach(senders, (sends, self.long_share), (key, turn), where, found)
+        return found
+
     def by_sum(self, sent: Floats) -> Floats:
         """Return what lands by the kernel, added up plant by plant that sends."""
         table = np.zeros(tuple(self.cells.shape))
@@ -116,6 +146,34 @@ class Dispersal:
         return part
 
     @cached_property
+    def _at(self) -> NDArray[np.int32]:
+        """The cell of each plant, across and along, ``(n, 2)``."""
+        at = np.divmod(self.cells.of_plant, self.cells.shape[1])
+        return np.column_stack(at).astype(np.int32)
+
+    @cached_property
+    def _of_cells(self) -> tuple[NDArray[np.int32], NDArray[np.int32], tuple[int, int]]:
+        """The plants of each cell, small enough to stay near the processor."""
+        start, plant = self.cells.start.astype(np.int32), self.cells.plant.astype(np.int32)
+        return start, plant, (int(self.cells.shape[0]), int(self.cells.shape[1]))
+
+    @cached_property
+    def _dealt(self) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
+        """The kernel as a table from which a cell is drawn by one coin.
+
+        Walker's alias table (Vose 1991, IEEE Trans. Softw. Eng. 17:972): how much of each entry is
+        its own cell, and how far across and along that one is, and the one that has the rest.
+        """
+        across, along = self.shares.shape
+        own = self.shares.ravel() * self.shares.size
+        other = np.arange(own.size, dtype=np.int32)
+        _deal(own, other, np.empty(own.size, np.int32))
+        steps = np.divmod(np.arange(own.size, dtype=np.int32), along)
+        away = np.column_stack(steps).astype(np.int32) - np.array([across // 2, along // 2])
+        away = away.astype(np.int32)
+        return own, np.ascontiguousarray(away), np.ascontiguousarray(away[other])
+
+    @cached_property
     def _padded(self) -> tuple[int, int]:
         """Cells across and along with room for the kernel beside the plot."""
         radius = (np.array(self.shares.shape) - 1) // 2
@@ -138,17 +196,15 @@ class Dispersal:
 
 @dataclass(frozen=True, eq=False)
 class ToAdjacent:
-    """What each plant sends goes to the plants next to it, shared out evenly."""
+    """What each plant sends goes to the plants next to it."""
 
     adjacent: Csr
 
-    def landed(self, sent: Floats) -> Floats:
-        """Return what lands on each plant ``(n,)`` of what each sends ``(n,)``."""
-        start, plant = self.adjacent
-        degree = np.diff(start)
-        each = np.repeat(sent / np.maximum(degree, 1), degree)
-        landed: Floats = np.bincount(plant, each, len(sent)).astype(np.float64)
-        return landed
+    def reached(self, senders: Plants, sends: float, key: np.uint64, turn: int = 0) -> Mask:
+        """Return the plants reached, as `Dispersal.reached`; so much goes to each of them."""
+        found = np.zeros(len(self.adjacent.start) - 1, np.bool_)
+        _reach_beside(senders, float(-np.expm1(-sends)), (key, turn), self.adjacent, found)
+        return found
 
 
 @lru_cache(maxsize=4)
@@ -207,3 +263,103 @@ def _add(
             lands, kernel = table[row, first:end], shares[row - y + a, first - x + b :]
             for k in range(lands.size):
                 lands[k] += value * kernel[k]
+
+
+@loop
+def _reach(
+    senders: Plants,
+    sends: tuple[float, float],
+    coins: tuple[np.uint64, int],
+    where: tuple[
+        NDArray[np.int32],
+        tuple[NDArray[np.int32], NDArray[np.int32], tuple[int, int]],
+        tuple[Floats, NDArray[np.int32], NDArray[np.int32]],
+    ],
+    found: Mask,
+) -> None:
+    """Draw jumps and mark the plants that they reach; `sends` ends with the share of long ones."""
+    mean, long_share = sends
+    key, turn = coins
+    at, (start, plant, shape), (own, to, to_other) = where
+    (across, along), n = shape, found.size
+    none = np.exp(-lesser(mean, _AT_ONCE))
+    for i in senders:
+        drawn = coin(key, turn * n + i)
+        if drawn < none and mean <= _AT_ONCE:
+            continue
+        table = coin_bits(key ^ _JUMPS, turn * n + i)
+        for jump in range(_jumps(drawn, mean, none, table)):
+            if long_share > 0.0 and coin(table, jump + _FAR) < long_share:
+                found[int(coin(table, jump + _ANY) * n)] = True
+                continue
+            lands = coin(table, jump) * own.size
+            cell = int(lands)
+            step = to[cell] if lands - cell < own[cell] else to_other[cell]
+            y, x = at[i, 0] + step[0], at[i, 1] + step[1]
+            if 0 <= y < across and 0 <= x < along:
+                first = start[y * along + x]
+                here = start[y * along + x + 1] - first
+                if here > 1:
+                    first += int(coin(table, jump + _WHICH) * here)
+                if here > 0:
+                    found[plant[first]] = True
+
+
+@routine
+def _jumps(drawn: float, mean: float, none: float, table: np.uint64) -> int:
+    """Return a number drawn by Poisson: by one coin, of many jumps by one for each part."""
+    number, part = 0, 1
+    while True:
+        here = lesser(mean, _AT_ONCE)
+        chance = none if mean >= _AT_ONCE or part == 1 else np.exp(-here)
+        below, k = chance, 0
+        while drawn >= below and chance > 0.0:
+            k += 1
+            chance *= here / k
+            below += chance
+        number += k
+        mean -= _AT_ONCE
+        if mean <= 0.0:
+            return number
+        drawn = coin(table, part + 2 * _ANY)
+        part += 1
+
+
+@loop
+def _reach_beside(
+    senders: Plants, chance: float, coins: tuple[np.uint64, int], adjacent: Csr, found: Mask
+) -> None:
+    key, turn = coins
+    start, plant = adjacent
+    for i in senders:
+        table = coin_bits(key ^ _JUMPS, turn * found.size + i)
+        for e in range(start[i], start[i + 1]):
+            if coin(table, e - start[i]) < chance:
+                found[plant[e]] = True
+
+
+@loop
+def _deal(own: Floats, other: NDArray[np.int32], work: NDArray[np.int32]) -> None:
+    """Make an alias table in place of shares whose mean is 1; `work` is room for as many."""
+    small, large = 0, own.size
+    for k in range(own.size):
+        if own[k] < 1.0:
+            work[small] = k
+            small += 1
+        else:
+            large -= 1
+            work[large] = k
+    while small > 0 and large < own.size:
+        small -= 1
+        poor, rich = work[small], work[large]
+        other[poor] = rich
+        own[rich] -= 1.0 - own[poor]
+        if own[rich] < 1.0:
+            large += 1
+            work[small] = rich
+            small += 1
+    # what is left over is 1 but for rounding
+    for k in range(small):
+        own[work[k]] = 1.0
+    for k in range(large, own.size):
+        own[work[k]] = 1.0

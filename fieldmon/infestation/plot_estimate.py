@@ -13,6 +13,7 @@ from scipy.special import gammaincinv, ndtri
 
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.random_streams import coin
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
 
@@ -86,7 +87,12 @@ def estimate_plot(
         How far the expected number may be off beyond that, as a share (`Belief.doubt`).
     """
     if not 0.0 < sure < 1.0:
-        raise SettingError(f"'sure' must be a chance between 0 and 1, but it is {sure}.")
+        raise SettingError(
+            worded(
+                "'sure' must be a chance between 0 and 1, but it is {sure}.",
+                sure=sure,
+            )
+        )
     if pair_chance is None:
         pair_chance = pair_chances(chance, grid)
     table = _table(chance, pair_chance, grid.adjacent)

@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 from scipy.special import expit, logit
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import MOST_CHANCE
 from fieldmon.infestation.nearby_plants import SearchRows, distance_m
@@ -100,17 +101,37 @@ class PriorSettings:
         for name in (each.name for each in fields(self)):
             value = getattr(self, name)
             if name in above_0 and not 0.0 < value < np.inf:
-                raise SettingError(f"The prior's {name} must be above 0, but it is {value}.")
+                raise SettingError(
+                    worded(
+                        "The prior's {name} must be above 0, but it is {value}.",
+                        name=name,
+                        value=value,
+                    )
+                )
             if name in from_0 and not 0.0 <= value < np.inf:
-                raise SettingError(f"The prior's {name} must be 0 or more, but it is {value}.")
+                raise SettingError(
+                    worded(
+                        "The prior's {name} must be 0 or more, but it is {value}.",
+                        name=name,
+                        value=value,
+                    )
+                )
             if name not in above_0 | from_0 and not 0.0 <= value <= 1.0:
                 raise SettingError(
-                    f"The prior's {name} must be a chance in 0..1, but it is {value}."
+                    worded(
+                        "The prior's {name} must be a chance in 0..1, but it is {value}.",
+                        name=name,
+                        value=value,
+                    )
                 )
         if self.beside_many < self.beside_one:
             raise SettingError(
-                "Many pests must not say less than one: the prior's beside_many must be at least "
-                f"beside_one ({self.beside_one}), but it is {self.beside_many}."
+                worded(
+                    "Many pests must not say less than one: the prior's beside_many must be at "
+                    "least beside_one ({beside_one}), but it is {beside_many}.",
+                    beside_one=self.beside_one,
+                    beside_many=self.beside_many,
+                )
             )
 
 
@@ -170,10 +191,14 @@ def scaled(chance: Floats, expected_share: float) -> Floats:
     wanted = expected_share * len(chance) - certain
     if not (0.0 < wanted < np.count_nonzero(free)):
         raise SettingError(
-            "The expected share of infested plants must lie strictly between "
-            f"{certain / max(len(chance), 1):.6g} and "
-            f"{(certain + np.count_nonzero(free)) / max(len(chance), 1):.6g} here "
-            f"(plants at chance 0 or 1 stay there), but it is {expected_share}."
+            worded(
+                "The expected share of infested plants must lie strictly between {certain:.6g} "
+                "and {certain_2:.6g} here (plants at chance 0 or 1 stay there), but it is "
+                "{expected_share}.",
+                certain=certain / max(len(chance), 1),
+                certain_2=(certain + np.count_nonzero(free)) / max(len(chance), 1),
+                expected_share=expected_share,
+            )
         )
     odds = logit(chance[free])
     share = wanted / len(odds)
@@ -206,13 +231,21 @@ def start_infested(
 def _checked_risk(grid: PlantGrid, risk: Floats) -> Floats:
     if len(risk) != len(grid):
         raise ObservationError(
-            f"A risk map must have one entry a plant ({len(grid)}), but it has {len(risk)}."
+            worded(
+                "A risk map must have one entry a plant ({n}), but it has {n_2}.",
+                n=len(grid),
+                n_2=len(risk),
+            )
         )
     known = risk[~np.isnan(risk)]
     if known.size and (known.min() < 0.0 or known.max() > 1.0):
         raise ObservationError(
-            "A risk map must hold chances in 0..1 (NaN where it says nothing), but it runs from "
-            f"{known.min():.6g} to {known.max():.6g}. Scale the raster to chances first."
+            worded(
+                "A risk map must hold chances in 0..1 (NaN where it says nothing), but it runs "
+                "from {least:.6g} to {most:.6g}. Scale the raster to chances first.",
+                least=known.min(),
+                most=known.max(),
+            )
         )
     return np.where(np.isnan(risk), 0.0, risk)
 

@@ -133,7 +133,14 @@ def _with_contour(
             if not many and (not field.blocks or isinstance(problem, FileProblem)):
                 raise
             several = "{n} plots or blocks have no contour, and straight rows are laid"
-            said = doubtful(f"{problem} Straight rows are laid.", part.name, many=several)
+            said = doubtful(
+                worded(
+                    "{problem} Straight rows are laid.",
+                    problem=problem,
+                ),
+                part.name,
+                many=several,
+            )
             messages.append(said)
             continue
         rows += read.value.geoms
@@ -209,7 +216,9 @@ def _with_blocks(fields: Fields, sources: PlotSources, hearing: Hearing) -> Fiel
     """Return plots with their blocks, as drawn, cut or guessed."""
     file, plot = sources.blocks, sources.plot
     if file is not None and sources.guess_blocks:
-        raise SettingError("Blocks are drawn or guessed: give a file of blocks, or let them be.")
+        raise SettingError(
+            worded("Blocks are drawn or guessed: give a file of blocks, or let them be.")
+        )
     if file is not None:
 
         def read() -> Imported[Fields]:
@@ -349,7 +358,10 @@ def guess_each(fields: Fields) -> Imported[Fields]:
     for field in fields:
         if blocks := blocks_from_outline(field):
             field = replace(field, blocks=blocks)  # noqa: PLW2901 - the same plot, in blocks
-            said = f"{len(blocks)} blocks were guessed from the outline: look at the rows."
+            said = worded(
+                "{n} blocks were guessed from the outline: look at the rows.",
+                n=len(blocks),
+            )
             messages.append(guessed(said, field.name if len(fields) > 1 else None))
         found.append(field)
     if not messages:

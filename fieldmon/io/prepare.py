@@ -337,12 +337,12 @@ def _along_rows(request: PlotRequest, hearing: _Hearing) -> Laid:
     """Return the plot of rows that were drawn, whose boundary nobody drew."""
     sources = request.sources
     if (file := sources.rows) is None or sources.contours is not None:
-        raise SettingError("Rows along contours need the plot on which they run.")
+        raise SettingError(worded("Rows along contours need the plot on which they run."))
     rows = hearing.read("rows", file, partial(read_rows, file, sources.rows_options))
     name = Path(source_name(file)).stem
     planting = Planting(**request.planting.given())  # type: ignore[arg-type]
     plot = Plot.along(name, rows, planting, sources.gate)
-    said = "No boundary was given: the plot is where rows, aisles and headlands reach."
+    said = worded("No boundary was given: the plot is where rows, aisles and headlands reach.")
     hearing.say("rows", file, (guessed(said),))
     if "plant_spacing_m" in request.planting.given():
         return Laid(plot)

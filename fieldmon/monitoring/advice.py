@@ -63,8 +63,11 @@ class AdviceSettings:
     def __post_init__(self) -> None:
         if not 0.0 < self.rate_l_ha < 100_000.0:
             raise SettingError(
-                "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it is "
-                f"{self.rate_l_ha:g}."
+                worded(
+                    "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "
+                    "is {rate_l_ha:g}.",
+                    rate_l_ha=self.rate_l_ha,
+                )
             )
 
     def assumed(self) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.wording import worded
 from fieldmon.decisions.labels import checked_waits
 from fieldmon.errors import SettingError
 
@@ -90,13 +91,20 @@ class Application:
         checked_waits(self.waiting_days, self.reentry_hours)
         if self.water_l_ha is not None and not 0.0 < self.water_l_ha < 1e6:
             raise SettingError(
-                f"Water must be above 0 litres a hectare, but it is {self.water_l_ha:g}."
+                worded(
+                    "Water must be above 0 litres a hectare, but it is {water_l_ha:g}.",
+                    water_l_ha=self.water_l_ha,
+                )
             )
         for name, value in vars(self).items():
             if isinstance(value, str) and len(value) > _MOST_LETTERS:
                 raise SettingError(
-                    f"What is said as {name.replace('_', ' ')} may have {_MOST_LETTERS} letters, "
-                    f"but it has {len(value)}."
+                    worded(
+                        "What is said as {name} may have {most} letters, but it has {n}.",
+                        name=name.replace("_", " "),
+                        most=_MOST_LETTERS,
+                        n=len(value),
+                    )
                 )
 
     def by_label(self, label: ProductLabel | None) -> Application:

@@ -81,8 +81,11 @@ def must_count(db: sqlite3.Connection, batch: int) -> None:
     row = db.execute("SELECT kind, undone FROM batches WHERE fid = ?", (batch,)).fetchone()
     if row is None or row[0] != "findings" or row[1]:
         raise SettingError(
-            f"A batch to add findings to must still count, but batch {batch} does not. "
-            "See what was recorded with: fieldmon status --batches"
+            worded(
+                "A batch to add findings to must still count, but batch {batch} does not. See "
+                "what was recorded with: fieldmon status --batches",
+                batch=batch,
+            )
         )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
@@ -125,7 +126,10 @@ class Treatment:
     def __post_init__(self) -> None:
         if not 0.0 <= self.efficacy <= 1.0:
             raise SettingError(
-                f"The efficacy of a treatment must be a chance in 0..1, but it is {self.efficacy}."
+                worded(
+                    "The efficacy of a treatment must be a chance in 0..1, but it is {efficacy}.",
+                    efficacy=self.efficacy,
+                )
             )
 
 
@@ -170,7 +174,7 @@ class History:
 
     def __post_init__(self) -> None:
         if (np.diff(self.days) < 0).any():
-            raise ObservationError("Inspections must be in the order of their days.")
+            raise ObservationError(worded("Inspections must be in the order of their days."))
 
     @cached_property
     def days(self) -> NDArray[np.int32]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import phone_tables, schema
 from fieldmon.monitoring.geopackage import touch
@@ -86,9 +87,12 @@ def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
         wanted = f"SELECT {names} FROM {table.name} ORDER BY fid"  # noqa: S608 - names of ours
         if db.execute(wanted).fetchall() != other.execute(wanted).fetchall():
             raise FileProblem(
-                f"Two copies of one season can be merged, but these differ in the layer "
-                f"{table.name}: they are seasons of their own, or another program changed one of "
-                "them. Record what was found in the one into the other with: fieldmon record"
+                worded(
+                    "Two copies of one season can be merged, but these differ in the layer {name}: "
+                    "they are seasons of their own, or another program changed one of them. Record "
+                    "what was found in the one into the other with: fieldmon record",
+                    name=table.name,
+                )
             )
 
 

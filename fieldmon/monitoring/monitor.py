@@ -76,7 +76,7 @@ class Monitor:
     sampler
         Name of a sampler, or one of your own (see `fieldmon.samplers.base.Sampler`).
     robot
-        Who inspects; None: the thesis's robot.
+        Who inspects; None: the usual `Robot`.
     chance
         ``(n,)`` chance of infestation on the first morning; None: what is believed of a plot
         without records.
@@ -100,7 +100,7 @@ class Monitor:
     ...     while (stop := day.ask()) is not None:
     ...         day.tell(found=stop.plant % 20 == 0)
     >>> len(day.plants), int(day.found.sum())
-    (74, 4)
+    (72, 4)
     >>> monitor.night()
     >>> monitor.chance.shape == (len(plot.grid),)
     True

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import Worded, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.monitoring import batches, inspection_lots, inspection_table
@@ -23,7 +24,11 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid, RowLabel
 
 _MOST_NAMED = 5
-_DONE = {"update": "was changed", "delete": "was deleted", "insert": "was added"}
+_DONE = {
+    "update": worded("was changed"),
+    "delete": worded("was deleted"),
+    "insert": worded("was added"),
+}
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 #: columns that say what was seen
 SEEN = ("plant", "date", "time", "result", "count", "who", "notes")
@@ -54,8 +59,18 @@ class OutsideChange:
 
     def __str__(self) -> str:
         """Return what was done to which row."""
+        return self.sentence()
+
+    def sentence(self) -> Worded:
+        """Return what was done to which row."""
         stood = f" ({self.was})" if self.was else ""
-        return f"row {self.row} of the layer {self.layer}{stood} {_DONE[self.what]}"
+        return worded(
+            "row {row} of the layer {layer}{stood} {done}",
+            row=self.row,
+            layer=self.layer,
+            stood=stood,
+            done=_DONE[self.what],
+        )
 
 
 def waiting(db: sqlite3.Connection) -> tuple[OutsideChange, ...]:
@@ -82,14 +97,25 @@ def refuse(db: sqlite3.Connection) -> None:
     found = waiting(db)
     if not found:
         return
-    named = "; ".join(map(str, found[:_MOST_NAMED])) + ("; ..." if len(found) > _MOST_NAMED else "")
+    more = ["..."] if len(found) > _MOST_NAMED else []
+    named = joined("; ", [*(change.sentence() for change in found[:_MOST_NAMED]), *more])
     if all(change.layer == INSPECTIONS.name for change in found):
-        remedy = "Take it as a correction with: fieldmon correct SEASON --who NAME; or go"
+        remedy = worded(
+            "Take it as a correction with: fieldmon correct SEASON --who NAME; or go back to a "
+            "copy from before."
+        )
     else:
-        remedy = "Only inspections can be corrected so: change the rest with fieldmon, and go"
+        remedy = worded(
+            "Only inspections can be corrected so: change the rest with fieldmon, and go back to a "
+            "copy from before."
+        )
     raise FileProblem(
-        f"What was recorded must be as fieldmon left it, but another program changed it: {named}. "
-        f"{remedy} back to a copy from before."
+        worded(
+            "What was recorded must be as fieldmon left it, but another program changed "
+            "it: {named}. {remedy}",
+            named=named,
+            remedy=remedy,
+        )
     )
 
 
@@ -144,8 +170,13 @@ def take_row(
         (made,) = inspection_table.rows(_inspection(row), *plot, settings, (batch, ""))
     except (FieldmonError, ValueError, TypeError, KeyError) as error:
         raise FileProblem(
-            f"A changed inspection must say plant, date and result as the others do, but {change} "
-            f"and does not ({error}). Mend it with the program that changed it; nothing was taken."
+            worded(
+                "A changed inspection must say plant, date and result as the others do, but "
+                "{change} and does not ({error}). Mend it with the program that changed it; "
+                "nothing was taken.",
+                change=change.sentence(),
+                error=error,
+            )
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
     del values["undone"]
@@ -155,8 +186,12 @@ def take_row(
     ).fetchone()
     if twice is not None:
         raise FileProblem(
-            f"No inspection may stand there twice, but {change} and says what row {twice[0]} says. "
-            "Delete one of them with the program that changed it; nothing was taken."
+            worded(
+                "No inspection may stand there twice, but {change} and says what row {twice} "
+                "says. Delete one of them with the program that changed it; nothing was taken.",
+                change=change.sentence(),
+                twice=twice[0],
+            )
         )
     names = ", ".join(f"{name} = ?" for name in values)
     db.execute(

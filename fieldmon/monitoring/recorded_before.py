@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 
@@ -52,8 +52,15 @@ class Contradictions:
     def sentences(self, label: RowLabel) -> list[str]:
         """Return one sentence for each; `label` names all plants of the plot."""
         return [
-            f"Row {label.line[plant]}, plant {label.number[plant]} on {date}: recorded as "
-            f"{RESULT_NAMES[was]}, now {RESULT_NAMES[now]}."
+            worded(
+                "Row {line}, plant {number} on {date}: recorded as {result_names}, now "
+                "{result_names_2}.",
+                line=label.line[plant],
+                number=label.number[plant],
+                date=date,
+                result_names=worded(RESULT_NAMES[was]),
+                result_names_2=worded(RESULT_NAMES[now]),
+            )
             for plant, date, was, now in zip(
                 self.plant.tolist(),
                 self.date.astype(str).tolist(),
@@ -67,7 +74,7 @@ class Contradictions:
         """Raise `ContradictionError` if there are any, with the first few by name."""
         if not len(self):
             return
-        named = " ".join(self.sentences(label)[:_MOST_NAMED])
+        named = joined(" ", self.sentences(label)[:_MOST_NAMED])
         more = " ..." if len(self) > _MOST_NAMED else ""
         raise ContradictionError(
             worded(

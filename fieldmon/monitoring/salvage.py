@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.monitoring import schema, season_log
 from fieldmon.monitoring.geopackage import insert
@@ -50,7 +51,12 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
     """
     source = Path(damaged)
     if not source.is_file():
-        raise FileProblem(f"{damaged} must be a file, but there is none. Check the name.")
+        raise FileProblem(
+            worded(
+                "{damaged} must be a file, but there is none. Check the name.",
+                damaged=damaged,
+            )
+        )
     tables = [table for table in schema.CAUSES if table is not schema.META]
     saved: dict[str, tuple[tuple[str, ...], list[tuple[object, ...]]]] = {}
     lost = []
@@ -65,8 +71,11 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
                     lost.append(table.name)
     if not any(found for _, found in saved.values()):
         raise FileProblem(
-            f"Something must be readable in {damaged}, but nothing is. Was it a season of "
-            "fieldmon? Take the last copy you have of it."
+            worded(
+                "Something must be readable in {damaged}, but nothing is. Was it a season of "
+                "fieldmon? Take the last copy you have of it.",
+                damaged=damaged,
+            )
         )
     with Store.new(to) as new:
         new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
@@ -98,9 +107,14 @@ def _padded_copy(source: Path, folder: Path) -> Path:
         shutil.copyfile(source, copy)
     except OSError as error:
         raise FileProblem(
-            f"{source} must be readable to the disk's own means, but it is not "
-            f"({error.strerror}), or there is no room for a copy of it in {folder.parent}. "
-            "Take the last copy you have of it."
+            worded(
+                "{source} must be readable to the disk's own means, but it is not "
+                "({strerror}), or there is no room for a copy of it in {parent}. Take the last "
+                "copy you have of it.",
+                source=source,
+                strerror=error.strerror,
+                parent=folder.parent,
+            )
         ) from error
     with copy.open("rb") as file:
         head = file.read(32)

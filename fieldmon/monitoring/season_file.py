@@ -568,7 +568,9 @@ class Season:
         """
         said = Application(product) if application is None else application
         if area is not None and plants is not None:
-            raise SettingError("A treatment is of an area or of plants, but both were given.")
+            raise SettingError(
+                worded("A treatment is of an area or of plants, but both were given.")
+            )
         place = self._treated(area) if plants is None else self._treated_one_by_one(plants)
         if not place.plants.any():
             raise SettingError(
@@ -610,8 +612,12 @@ class Season:
         grid = self.plot.grid
         if plants.shape != (len(grid),):
             raise SettingError(
-                f"Whether it was treated must be said of each of the {len(grid)} plants, but it is "
-                f"of {plants.size}."
+                worded(
+                    "Whether it was treated must be said of each of the {n} plants, but it is of "
+                    "{size}.",
+                    n=len(grid),
+                    size=plants.size,
+                )
             )
         outline = outline_of(grid, np.asarray(plants, bool))
         area_ha = float(grid.frame.geometry_m(outline).area) / 1e4
@@ -704,7 +710,11 @@ class Season:
             return (
                 *season_log.differing(db),
                 *(
-                    f"Row {row} of the layer {layer} is not what was recorded."
+                    worded(
+                        "Row {row} of the layer {layer} is not what was recorded.",
+                        row=row,
+                        layer=layer,
+                    )
                     for layer, rows in wrong.items()
                     for row in rows
                 ),
@@ -969,8 +979,11 @@ class Season:
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
             since = 0 if whole else contents.mornings.last_until(kept[-1][0])
             return tuple(
-                f"The chance map of {on} comes out differently from the one used then: it was "
-                "made by another version of fieldmon, or the file was changed by other hands."
+                worded(
+                    "The chance map of {on} comes out differently from the one used then: it was "
+                    "made by another version of fieldmon, or the file was changed by other hands.",
+                    on=on,
+                )
                 for day, on, then in kept
                 if day >= since and derived_layers.map_digest(contents.morning(day).chance) != then
             )

@@ -18,7 +18,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ
-from fieldmon.plot.robot import Robot, Viewpoints
+from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
 
 if TYPE_CHECKING:
@@ -63,6 +63,8 @@ class MonitoringSettings:
         What the pest met and is forecast to meet; None: it is as the pest's figures hold.
     harvest
         The first day of harvest, which treatments have to wait for; None: not known.
+    language
+        Code of the language of its reports, as ``"he"``; empty: English.
     """
 
     begins: date
@@ -78,6 +80,7 @@ class MonitoringSettings:
     pest: Pest | None = None
     weather: Weather | None = None
     harvest: date | None = None
+    language: str = ""
 
     def __post_init__(self) -> None:
         if self.harvest is not None and self.harvest < self.begins:
@@ -130,8 +133,11 @@ class MonitoringSettings:
             if one.name.casefold() == who.casefold():
                 return one
         raise SettingError(
-            f"One of the team must be named ({', '.join(one.name for one in self.team)}), but it "
-            f"is {who!r}."
+            worded(
+                "One of the team must be named ({names}), but it is {who!r}.",
+                names=", ".join(one.name for one in self.team),
+                who=who,
+            )
         )
 
     def day(self, on: date) -> int:
@@ -190,6 +196,8 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
     }
     if settings.harvest is not None:
         plain["season"]["harvest"] = settings.harvest.isoformat()
+    if settings.language:
+        plain["season"]["language"] = settings.language
     members = [asdict(member) for member in settings.team]
     together = {"teamwork": asdict(settings.teamwork)} if members else {}
     plain["team"] = {"members": members, **together}
@@ -223,6 +231,7 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
             pest=pest_of_json(plain.get("pest")),
             weather=kept_weather(parts.get("weather", "null")),
             harvest=date.fromisoformat(season["harvest"]) if "harvest" in season else None,
+            language=str(season.get("language", "")),
         )
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(
@@ -235,10 +244,14 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
         ) from error
 
 
+# what a robot was charged while seasons did not yet keep all of its times
+_TIMES_OF_OLD = ROBOT_TIMES["thesis"]._asdict()
+
+
 def _robot(plain: dict[str, Any]) -> Robot:
     steps = tuple((float(s), float(p)) for s, p in plain["viewpoints"]["steps"])
     viewpoints = Viewpoints(steps, plain["viewpoints"]["longer"])
-    return Robot(**{**plain, "viewpoints": viewpoints})
+    return Robot(**{**_TIMES_OF_OLD, **plain, "viewpoints": viewpoints})
 
 
 def _member(plain: dict[str, Any]) -> TeamMember:

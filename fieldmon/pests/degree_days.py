@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -49,8 +50,12 @@ class Thresholds:
     def __post_init__(self) -> None:
         if self.upper_c is not None and self.upper_c <= self.lower_c:
             raise SettingError(
-                f"An upper threshold must be above the lower one ({self.lower_c:g} °C), but it is "
-                f"{self.upper_c:g} °C."
+                worded(
+                    "An upper threshold must be above the lower one ({lower_c:g} °C), but it is "
+                    "{upper_c:g} °C.",
+                    lower_c=self.lower_c,
+                    upper_c=self.upper_c,
+                )
             )
 
 
@@ -89,14 +94,22 @@ def degree_days(
     low, high = np.atleast_1d(np.asarray(low_c, float)), np.atleast_1d(np.asarray(high_c, float))
     if method not in get_args(DegreeDayMethod):
         raise SettingError(
-            f"Degree-days must be counted by one of {', '.join(get_args(DegreeDayMethod))}, but "
-            f"the method is {method!r}."
+            worded(
+                "Degree-days must be counted by one of {names}, but the method is {method!r}.",
+                names=", ".join(get_args(DegreeDayMethod)),
+                method=method,
+            )
         )
     if (wrong := np.flatnonzero(high < low)).size:
         day = int(wrong[0])
         raise SettingError(
-            f"A day's high must not be below its low, but of day {day + 1} they are "
-            f"{high[day]:g} and {low[day]:g} °C."
+            worded(
+                "A day's high must not be below its low, but of day {day} they are {high:g} "
+                "and {low:g} °C.",
+                day=day + 1,
+                high=high[day],
+                low=low[day],
+            )
         )
     if method.endswith("average"):
         return _averages(low, high, thresholds, clipped=method.startswith("clipped"))

@@ -11,6 +11,7 @@ from zoneinfo import ZoneInfo
 import numpy as np
 
 from fieldmon.compute.arrays import read_only
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -76,12 +77,22 @@ class Weather:
             if isinstance(value, np.ndarray):
                 if len(value) != len(self.at):
                     raise SettingError(
-                        f"Weather must have one {each.name} for each of its {len(self.at)} times, "
-                        f"but it has {len(value)}."
+                        worded(
+                            "Weather must have one {name} for each of its {n} times, but it has "
+                            "{n_2}.",
+                            name=each.name,
+                            n=len(self.at),
+                            n_2=len(value),
+                        )
                     )
                 object.__setattr__(self, each.name, read_only(value.copy()))
         if self.step_s not in (HOUR_S, DAY_S):
-            raise SettingError(f"Weather must be by hours or days, but a step is {self.step_s} s.")
+            raise SettingError(
+                worded(
+                    "Weather must be by hours or days, but a step is {step_s} s.",
+                    step_s=self.step_s,
+                )
+            )
 
     def __len__(self) -> int:
         return len(self.at)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
-from fieldmon.plot.robot import Robot, scout
+from fieldmon.plot.robot import USUAL_TIMES, Robot, scout
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -28,7 +28,8 @@ def assumed_by(
     >>> from fieldmon.plot.robot import Robot
     >>> for each in assumed_by((), PriorSettings(background_chance=0.03), Robot(speed_m_s=0.5)):
     ...     print(each)
-    guessed: time added for a row change 25 s
+    guessed: time added for a row change, as in simulated drives: 9 s
+    guessed: time added for a stop, as in simulated drives: 1.13 s
     guessed: chance to find what is there 84 %
     """
     made = [*planting]
@@ -37,8 +38,10 @@ def assumed_by(
     usual = (Robot(), scout())
     if robot.speed_m_s in {one.speed_m_s for one in usual}:
         made.append(Assumed("speed_m_s", robot.speed_m_s))
-    if robot.times == "thesis" and (grid is None or grid.in_rows):
-        made.append(Assumed("row_change_s", robot.row_change_s))
+    if robot.times == USUAL_TIMES:
+        if grid is None or grid.in_rows:
+            made.append(Assumed("row_change_s", robot.row_change_s))
+        made.append(Assumed("stop_s", robot.stop_s))
     if robot.detection is None and robot.viewpoints == Robot().viewpoints:
         made.append(Assumed("detects", robot.detects))
     if robot.width_m is not None and (grid is None or grid.half_canopy_m is None):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.digest import digest
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.planning.day_bound import with_bound
@@ -101,8 +102,11 @@ def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
     today = first_day(plot, observations, orders.day, plans)
     if not len(today.route):
         raise SettingError(
-            f"The working day must be long enough to reach a plant and come back, but "
-            f"{robot.hours:g} h are not. Give more hours."
+            worded(
+                "The working day must be long enough to reach a plant and come back, but "
+                "{hours:g} h are not. Give more hours.",
+                hours=robot.hours,
+            )
         )
     return with_bound(today) if orders.bound else today
 
@@ -110,7 +114,12 @@ def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
 def _robot(task: Task) -> Robot:
     who = (task.who or "robot").casefold()
     if who not in {"robot", "scout"}:
-        raise SettingError(f"A plot must be worked by 'robot' or 'scout', but it is {task.who!r}.")
+        raise SettingError(
+            worded(
+                "A plot must be worked by 'robot' or 'scout', but it is {who!r}.",
+                who=task.who,
+            )
+        )
     base = scout() if task.orders.on_foot or who == "scout" else Robot()
     settings: dict[str, Any] = task.stated | task.orders.robot
     robot = replace(base, **settings)

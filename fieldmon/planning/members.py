@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.plot.robot import Robot
 
@@ -37,7 +38,11 @@ class TeamMember:
     def __post_init__(self) -> None:
         if not 0.0 <= self.starts_s < 24 * 3600.0:
             raise SettingError(
-                f"{self.name} must start within a day, but it is {self.starts_s} s after the first."
+                worded(
+                    "{name} must start within a day, but it is {starts_s} s after the first.",
+                    name=self.name,
+                    starts_s=self.starts_s,
+                )
             )
 
 
@@ -67,7 +72,13 @@ class Teamwork:
         for name in ("contact_s", "least_gain"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
-                raise SettingError(f"A team's {name} must be 0 or more, but it is {value}.")
+                raise SettingError(
+                    worded(
+                        "A team's {name} must be 0 or more, but it is {value}.",
+                        name=name,
+                        value=value,
+                    )
+                )
 
 
 def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
@@ -79,7 +90,12 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
     ['robot-1', 'robot-2', 'robot-3']
     """
     if n < 1:
-        raise SettingError(f"A team must have 1 member or more, but it has {n}.")
+        raise SettingError(
+            worded(
+                "A team must have 1 member or more, but it has {n}.",
+                n=n,
+            )
+        )
     return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
 
 
@@ -88,6 +104,8 @@ def must_differ(members: Sequence[TeamMember]) -> None:
     names = [member.name.casefold() for member in members]
     if not names or len(set(names)) < len(names):
         raise SettingError(
-            "A team must have members of different names, but they are "
-            f"{', '.join(member.name for member in members) or 'none'}."
+            worded(
+                "A team must have members of different names, but they are {names}.",
+                names=", ".join(member.name for member in members) or "none",
+            )
         )

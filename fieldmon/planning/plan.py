@@ -138,7 +138,7 @@ def plan_day(
         The day, as ``"2026-11-18"``, a date, or a datetime that says when work starts (else
         06:00); None: today, in the time zone in which the plot lies.
     robot
-        Who inspects; None: the thesis's robot, 12 h. `scout()` is a person on foot.
+        Who inspects; None: the usual `Robot`, 12 h. `scout()` is a person on foot.
     sampler
         Name of a sampler in `SAMPLERS`, or one of your own.
     risk
@@ -158,7 +158,7 @@ def plan_day(
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=2), sampler="naive")
     >>> len(day.route)
-    160
+    156
     """
     starts = _starts(on, plot)
     decides = sampler_of(sampler) if isinstance(sampler, str) else sampler

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -48,8 +49,12 @@ class PlotNeed:
     def __post_init__(self) -> None:
         if not (np.isfinite(self.expected) and self.expected >= 0 and self.most_s >= 0):
             raise SettingError(
-                "A plot must have 0 or more infested plants expected and take 0 s or more, but "
-                f"they are {self.expected} and {self.most_s}."
+                worded(
+                    "A plot must have 0 or more infested plants expected and take 0 s or more, but "
+                    "they are {expected} and {most_s}.",
+                    expected=self.expected,
+                    most_s=self.most_s,
+                )
             )
 
 
@@ -98,7 +103,12 @@ def share_day(
     [(1, 8.81), (0, 2.94)]
     """
     if move_s < 0:
-        raise SettingError(f"Going to the next plot must take 0 s or more, but it is {move_s}.")
+        raise SettingError(
+            worded(
+                "Going to the next plot must take 0 s or more, but it is {move_s}.",
+                move_s=move_s,
+            )
+        )
     wanted = np.array([max(need.expected, 1e-9) for need in needs])
     most_s = np.array([need.most_s for need in needs])
     day_s = np.array([member.robot.day_s for member in members])

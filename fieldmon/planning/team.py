@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import PROVED, told
 from fieldmon.planning.headlands import HeadOn, head_on
@@ -155,7 +155,12 @@ def plan_team(
     """
     must_differ(members)
     if not 0.0 <= passing_m < np.inf:
-        raise SettingError(f"Two must need 0 m or more to pass, but passing_m is {passing_m}.")
+        raise SettingError(
+            worded(
+                "Two must need 0 m or more to pass, but passing_m is {passing_m}.",
+                passing_m=passing_m,
+            )
+        )
     left = np.ones(len(chance)) if done is None else np.where(done, 0.0, 1.0)
     tasks = [
         _Task(
@@ -177,8 +182,10 @@ def plan_team(
     )
     if not _expected(timed.days):
         raise SettingError(
-            "The hours of some member must be long enough to reach a plant and come back, but "
-            "none are. Give more hours."
+            worded(
+                "The hours of some member must be long enough to reach a plant and come back, "
+                "but none are. Give more hours."
+            )
         )
     days = tuple(replace(day, scene=_seen(day.scene, chance, done)) for day in timed.days)
     days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)

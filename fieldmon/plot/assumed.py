@@ -11,7 +11,8 @@ _WORDS = {
     "detects": "chance to find what is there",
     "speed_m_s": "speed",
     "half_canopy_m": "reach of plants to each side",
-    "row_change_s": "time added for a row change",
+    "row_change_s": "time added for a row change, as in simulated drives:",
+    "stop_s": "time added for a stop, as in simulated drives:",
 }
 
 
@@ -25,7 +26,7 @@ class Assumed:
         Its name where it can be said: ``"row_spacing_m"`` of `PlantingChoices`,
         ``"half_canopy_m"`` of `Planting`,
         ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``,
-        ``"row_change_s"`` and ``"detects"`` of `Robot`.
+        ``"row_change_s"``, ``"stop_s"`` and ``"detects"`` of `Robot`.
     value
         What was taken: metres, metres a second, seconds, or a chance.
     """

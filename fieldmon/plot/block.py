@@ -57,9 +57,12 @@ class Block:
     def __post_init__(self) -> None:
         if self.area.is_empty or not self.area.is_valid:
             raise PlotError(
-                f"Block {self.name!r} must be a valid, non-empty area, but it is "
-                f"{'empty' if self.area.is_empty else shapely.is_valid_reason(self.area)}. "
-                "Draw it again."
+                worded(
+                    "Block {name!r} must be a valid, non-empty area, but it is {how}. Draw it "
+                    "again.",
+                    name=self.name,
+                    how="empty" if self.area.is_empty else shapely.is_valid_reason(self.area),
+                )
             )
 
     def __repr__(self) -> str:

@@ -94,8 +94,10 @@ class Planting:
     def __post_init__(self) -> None:
         if self.half_canopy_m is not None and not 0.0 <= self.half_canopy_m <= 10.0:
             raise SettingError(
-                "A planting's half_canopy_m must be 0 to 10 metres, "
-                f"but it is {self.half_canopy_m}."
+                worded(
+                    "A planting's half_canopy_m must be 0 to 10 metres, but it is {half_canopy_m}.",
+                    half_canopy_m=self.half_canopy_m,
+                )
             )
         for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
             if not 0.05 <= getattr(self, name) <= 1000.0:

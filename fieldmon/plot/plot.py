@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
@@ -134,8 +135,11 @@ class Plot:
         """
         if field.plants is None:
             raise PlotError(
-                f"Plants in no rows must be measured, but of plot {field.name!r} nobody gave their "
-                "positions. Give them, or let plants be laid in rows."
+                worded(
+                    "Plants in no rows must be measured, but of plot {name!r} nobody gave their "
+                    "positions. Give them, or let plants be laid in rows.",
+                    name=field.name,
+                )
             )
         check_apart(field.plants)
         return cls._with(field, trees_grid(field.plants, field))
@@ -164,8 +168,12 @@ class Plot:
         """
         if len(rows.geoms) < _LEAST_ROWS:
             raise PlotError(
-                f"Rows without a plot must be two or more, but {name!r} has {len(rows.geoms)}. "
-                "Give the plot's boundary: it tells how far the copies of one row reach."
+                worded(
+                    "Rows without a plot must be two or more, but {name!r} has {n}. Give the "
+                    "plot's boundary: it tells how far the copies of one row reach.",
+                    name=name,
+                    n=len(rows.geoms),
+                )
             )
         planting = planting or Planting()
         frame = frame_around(shapely.get_coordinates(rows))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 THESIS_VIEWPOINTS = ((20.0, 0.50), (25.0, 0.60), (30.0, 0.69), (35.0, 0.77), (40.0, 0.84))
@@ -36,11 +37,20 @@ class Viewpoints:
         rising = all(low[0] < high[0] and low[1] <= high[1] for low, high in pairwise(ladder))
         if not (self.steps and rising and self.steps[0][0] > 0 and self.steps[0][1] >= 0):
             raise SettingError(
-                "Viewpoints must be pairs of seconds and chance, both rising, from above 0 s, "
-                f"but they are {self.steps} and {self.longer} for longer."
+                worded(
+                    "Viewpoints must be pairs of seconds and chance, both rising, from above 0 s, "
+                    "but they are {steps} and {longer} for longer.",
+                    steps=self.steps,
+                    longer=self.longer,
+                )
             )
         if self.longer > 1:
-            raise SettingError(f"A chance must be in 0..1, but 'longer' is {self.longer}.")
+            raise SettingError(
+                worded(
+                    "A chance must be in 0..1, but 'longer' is {longer}.",
+                    longer=self.longer,
+                )
+            )
 
     def detection(self, seconds: float) -> float:
         """Return the chance that `seconds` of looking find what is on an infested plant."""
@@ -63,17 +73,21 @@ class RobotTimes(NamedTuple):
     stop_s: float
 
 
-#: those of the thesis, and those of days driven in a physical simulation (docs/drive): of a robot
-#: with two driven wheels whose mast looks to both sides, so that it need not turn in an aisle
-ROBOT_TIMES = {"thesis": RobotTimes(25.0, 23.0, 0.0), "measured": RobotTimes(9.0, 0.0, 1.13)}
+#: those of days driven in a physical simulation (docs/drive), of a robot with two driven wheels
+#: whose mast looks to both sides, so that it need not turn in an aisle; and those of the thesis
+ROBOT_TIMES = {"measured": RobotTimes(9.0, 0.0, 1.13), "thesis": RobotTimes(25.0, 23.0, 0.0)}
+USUAL_TIMES = "measured"
+#: our choice
+SCOUT_TIMES = RobotTimes(3.0, 2.0, 5.0)
 
 
 @dataclass(frozen=True)
 class Robot:
     """Speed, turning, looking and working time of whoever inspects.
 
-    The defaults are the thesis's robot (2.5 km/h, 40 s a plant, 12 h a day; turns as in its
-    chapter 4). A scout on foot is a robot with other numbers, see :func:`scout`.
+    The defaults are the thesis's robot (2.5 km/h, 40 s a plant, 12 h a day), but for its row
+    changes, turns and stops: those are what simulated drives took, and the thesis's are
+    ``with_times("thesis")``. A scout on foot is a robot with other numbers, see :func:`scout`.
 
     Parameters
     ----------
@@ -103,9 +117,9 @@ class Robot:
     """
 
     speed_m_s: float = 2.5 / 3.6
-    row_change_s: float = 25.0
-    turn_180_s: float = 23.0
-    stop_s: float = 0.0
+    row_change_s: float = ROBOT_TIMES[USUAL_TIMES].row_change_s
+    turn_180_s: float = ROBOT_TIMES[USUAL_TIMES].turn_180_s
+    stop_s: float = ROBOT_TIMES[USUAL_TIMES].stop_s
     look_s: float = 40.0
     hours: float = 12.0
     viewpoints: Viewpoints = Viewpoints()
@@ -126,7 +140,9 @@ class Robot:
             if (size_m := getattr(self, name)) is not None:
                 _must(name, size_m, "0.05 to 10 metres", 0.05 <= size_m <= 10)
         if self.length_m is not None and self.width_m is None:
-            raise SettingError("A robot whose length is known must have a width too. Give both.")
+            raise SettingError(
+                worded("A robot whose length is known must have a width too. Give both.")
+            )
 
     @property
     def day_s(self) -> float:
@@ -156,17 +172,30 @@ class Robot:
         own = RobotTimes(self.row_change_s, self.turn_180_s, self.stop_s)
         return next((name for name, times in ROBOT_TIMES.items() if times == own), None)
 
+    @property
+    def on_foot(self) -> bool:
+        """Return whether it is charged what a scout on foot is, see :func:`scout`."""
+        return (self.row_change_s, self.turn_180_s, self.stop_s) == SCOUT_TIMES
+
     def with_times(self, name: str) -> Robot:
-        """Return the same robot charged the times of ``"thesis"`` or ``"measured"``.
+        """Return the same robot charged the times of ``"measured"`` or ``"thesis"``.
 
         Examples
         --------
         >>> import fieldmon as fm
-        >>> fm.Robot().with_times("measured").row_change_s
-        9.0
+        >>> fm.Robot().row_change_s, fm.Robot().with_times("thesis").row_change_s
+        (9.0, 25.0)
         """
+        if self.on_foot:
+            raise SettingError("A scout has times of its own: leave a robot's out.")
         if name not in ROBOT_TIMES:
-            raise SettingError(f"Times must be {' or '.join(ROBOT_TIMES)}, but they are {name!r}.")
+            raise SettingError(
+                worded(
+                    "Times must be {names}, but they are {name!r}.",
+                    names=" or ".join(ROBOT_TIMES),
+                    name=name,
+                )
+            )
         return replace(self, **ROBOT_TIMES[name]._asdict())
 
     def with_hours(self, hours: float) -> Robot:
@@ -183,13 +212,11 @@ def scout() -> Robot:
     >>> fm.scout().with_hours(2).day_s
     7200.0
     """
-    return Robot(
-        speed_m_s=4.0 / 3.6, row_change_s=3.0, turn_180_s=2.0, stop_s=5.0, look_s=30.0, hours=4.0
-    )
+    return Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0)
 
 
 def rover() -> Robot:
-    """Return a small robot with two driven wheels, its times those of simulated drives.
+    """Return a small robot with two driven wheels: the usual one, with its size.
 
     It is the robot of `fieldmon drive --robot mujoco`; docs/drive tells how its times were found.
     Its mast looks to both sides, and it drives as well backwards: it need not turn in an aisle.
@@ -200,9 +227,16 @@ def rover() -> Robot:
     >>> fm.rover().width_m
     0.58
     """
-    return Robot(width_m=0.58, length_m=0.8).with_times("measured")
+    return Robot(width_m=0.58, length_m=0.8)
 
 
 def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check
     if not (holds and math.isfinite(value)):
-        raise SettingError(f"The robot's {name} must be {rule}, but it is {value}.")
+        raise SettingError(
+            worded(
+                "The robot's {name} must be {rule}, but it is {value}.",
+                name=name,
+                rule=rule,
+                value=value,
+            )
+        )

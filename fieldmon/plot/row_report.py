@@ -96,66 +96,100 @@ class RowReport:
     @property
     def doubts(self) -> tuple[str, ...]:
         """Return a sentence for each thing to be looked at before the rows are used."""
-        said = []
+        said: list[str] = []
         if not self.in_rows:
             said.append(
-                "No rows were found: the plants stand anyhow. The lines along which they would "
-                "be visited are none of theirs, and aisles between them may not be there. Give "
-                "the row bearing or name each plant's row; or say that they stand in no rows, and "
-                "they are visited by nearness."
+                worded(
+                    "No rows were found: the plants stand anyhow. The lines along which they would "
+                    "be visited are none of theirs, and aisles between them may not be there. Give "
+                    "the row bearing or name each plant's row; or say that they stand in no rows, "
+                    "and they are visited by nearness."
+                )
             )
         elif self.off_share >= _WORTH_A_WORD:
             said.append(
-                f"{self.off_share:.0%} of the plants stand more than a quarter of the row spacing "
-                "beside their row: look at the rows before you use them."
+                worded(
+                    "{off_share:.0%} of the plants stand more than a quarter of the row spacing "
+                    "beside their row: look at the rows before you use them.",
+                    off_share=self.off_share,
+                )
             )
         if self.misnamed_share is not None and self.misnamed_share >= _WORTH_A_WORD:
-            decided = "the names decided" if self.named else "rows were found instead"
+            decided = (
+                worded("the names decided") if self.named else worded("rows were found instead")
+            )
             said.append(
-                f"{self.misnamed_share:.0%} of the plants seem to stand in another row than the "
-                f"file names; {decided}. Look whether its rows are named rightly."
+                worded(
+                    "{misnamed_share:.0%} of the plants seem to stand in another row than the file "
+                    "names; {decided}. Look whether its rows are named rightly.",
+                    misnamed_share=self.misnamed_share,
+                    decided=decided,
+                )
             )
         if self.paired_share >= _PAIRED and not self.named and self.in_rows:
             said.append(
-                f"{self.paired_share:.0%} of the plants stand in close pairs, as in double rows or "
-                "where two are planted in one place: rows may be seen where there are none. Look "
-                "at them, name each plant's row, or leave one of each pair out."
+                worded(
+                    "{paired_share:.0%} of the plants stand in close pairs, as in double rows or "
+                    "where two are planted in one place: rows may be seen where there are none. "
+                    "Look at them, name each plant's row, or leave one of each pair out.",
+                    paired_share=self.paired_share,
+                )
             )
         said += self._double_rows()
         if self.of_trial:
             said.append(
-                "The blocks that the file names change within rows without a gap, as those of a "
-                "trial do; they were left aside. Part the plot by areas or lines if they are not."
+                worded(
+                    "The blocks that the file names change within rows without a gap, as those of "
+                    "a trial do; they were left aside. Part the plot by areas or lines if they are "
+                    "not."
+                )
             )
         if self.nearly_square_m is not None and self.in_rows:
             said.append(
-                f"Rows are {self.nearly_square_m[0]:.2f} m apart, and plants in them "
-                f"{self.nearly_square_m[1]:.2f} m, nearly as far: they may run, or bend, another "
-                "way. Look at them, and draw one row or name each plant's row if they do."
+                worded(
+                    "Rows are {nearly_square_m:.2f} m apart, and plants in them "
+                    "{nearly_square_m_2:.2f} m, nearly as far: they may run, or bend, another way. "
+                    "Look at them, and draw one row or name each plant's row if they do.",
+                    nearly_square_m=self.nearly_square_m[0],
+                    nearly_square_m_2=self.nearly_square_m[1],
+                )
             )
         if self.directions:
             taken, *others = map(str, self.directions)
             said.append(
-                f"The plants stand in rows in {len(self.directions)} directions: {taken}, but also "
-                f"{' and '.join(others)}. The first, with the longest rows, was taken. Give the "
-                "row bearing if it is another."
+                worded(
+                    "The plants stand in rows in {n} directions: {taken}, but also {names}. The "
+                    "first, with the longest rows, was taken. Give the row bearing if it is "
+                    "another.",
+                    n=len(self.directions),
+                    taken=taken,
+                    names=" and ".join(others),
+                )
             )
         return tuple(said)
 
     def _double_rows(self) -> list[str]:
         """Return what to say of double rows, taken as one row or as two."""
-        said = []
+        said: list[str] = []
         if self.zigzag_m and self.in_rows and not self.named:
             said.append(
-                f"{self.zigzag_share:.0%} of the plants stand off their row, {self.zigzag_m:.2f} m "
-                "to its left and right by turns, as in staggered double rows: each double row was "
-                "taken as one row. If one drives between its two lines, name each plant's row."
+                worded(
+                    "{zigzag_share:.0%} of the plants stand off their row, {zigzag_m:.2f} m to its "
+                    "left and right by turns, as in staggered double rows: each double row was "
+                    "taken as one row. If one drives between its two lines, name each plant's row.",
+                    zigzag_share=self.zigzag_share,
+                    zigzag_m=self.zigzag_m,
+                )
             )
         if self.gaps_m is not None and self.in_rows:
             said.append(
-                f"Rows are {self.gaps_m[0]:.2f} and {self.gaps_m[1]:.2f} m apart by turns, as in "
-                "double rows, and ways were laid in the narrow gaps as well. If nobody drives "
-                "there, name the two lines of each double row one row."
+                worded(
+                    "Rows are {gaps_m:.2f} and {gaps_m_2:.2f} m apart by turns, as in double rows, "
+                    "and ways were laid in the narrow gaps as well. If nobody drives there, name "
+                    "the two lines of each double row one row.",
+                    gaps_m=self.gaps_m[0],
+                    gaps_m_2=self.gaps_m[1],
+                )
             )
         return said
 
@@ -172,10 +206,17 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     straight = grid.aisles_m is None and "hardly" in found.how
     scattered = straight or typical_m > _NO_ROWS * grid.row_spacing_m
     n_rows = counted(int(grid.row_line.max()) + 1, "row")
-    blocks = f" of {counted(grid.n_blocks, 'block')}" if grid.n_blocks > 1 else ""
-    bend = ", as they bend" if grid.aisles_m is not None else ""
+    blocks = (
+        worded(
+            " of {n_blocks}",
+            n_blocks=counted(grid.n_blocks, "block"),
+        )
+        if grid.n_blocks > 1
+        else ""
+    )
+    bend = worded(", as they bend") if grid.aisles_m is not None else ""
     how = worded(
-        "{counted} in {n_rows}{blocks}{bend}, {typical_m:.2f} m beside",
+        "{counted} in {n_rows}{blocks}{bend}, {typical_m:.2f} m beside their lines",
         counted=counted(len(faces), "plant"),
         n_rows=n_rows,
         blocks=blocks,
@@ -183,7 +224,7 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         typical_m=typical_m,
     )
     return RowReport(
-        f"{how} their lines",
+        how,
         typical_m,
         float(np.mean(alone_m > _OFF * grid.row_spacing_m)),
         said.label is not None or not scattered,

@@ -99,7 +99,9 @@ def certification_report(
         If no season is given, or the day lies before one begins.
     """
     if not seasons:
-        raise SettingError("A certification report must be of a season or more, but none is given.")
+        raise SettingError(
+            worded("A certification report must be of a season or more, but none is given.")
+        )
     records = [_PlotRecord.of(season, until, units) for season in seasons]
     begins = min(one.season.settings.begins for one in records)
     on = max(one.on for one in records)

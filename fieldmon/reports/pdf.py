@@ -65,7 +65,13 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         If there is no such paper.
     """
     if paper not in PAPERS:
-        raise SettingError(f"Paper must be one of {', '.join(PAPERS)}, but it is {paper!r}.")
+        raise SettingError(
+            worded(
+                "Paper must be one of {names}, but it is {paper!r}.",
+                names=", ".join(PAPERS),
+                paper=paper,
+            )
+        )
     from fpdf import FPDF  # noqa: PLC0415 - a second to import
 
     fonts = FontSet.of([*report.words(), *_own_words(report.tongue)])

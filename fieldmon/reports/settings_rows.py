@@ -120,7 +120,7 @@ def _told(settings: WorkSettings, setting: str) -> str:
 
 def _of_work(settings: WorkSettings) -> Iterator[Row]:
     robot = settings.robot
-    usual = scout() if robot.turn_180_s == scout().turn_180_s else Robot()
+    usual = scout() if robot.on_foot else Robot()
     yield words.SAMPLER, Worded(kind_of(settings.sampler).title), _from(settings.sampler == USUAL)
     yield words.HOURS, figure(robot.hours, "g"), _from(robot.hours == usual.hours)
     yield words.LOOK, figure(robot.look_s, "g"), _from(robot.look_s == usual.look_s)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.reports.html import html_text
@@ -36,7 +37,10 @@ def checked_ending(path: Path) -> str:
     ending = path.suffix.lower()
     if ending not in {".pdf", ".html"}:
         raise SettingError(
-            f"A report's file must end in .pdf or .html, but it is {path.name!r}. "
-            "Name it report.pdf, for example."
+            worded(
+                "A report's file must end in .pdf or .html, but it is {name!r}. Name it "
+                "report.pdf, for example.",
+                name=path.name,
+            )
         )
     return ending

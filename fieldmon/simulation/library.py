@@ -74,7 +74,7 @@ def simulate(
     sampler
         Name of a sampler, or one of your own.
     robot
-        Who inspects; None: the thesis's robot.
+        Who inspects; None: the usual `Robot`.
     settings
         Days, and what insects do at night; None: 25 days, see `SeasonSettings`.
     seed

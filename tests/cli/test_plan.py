@@ -50,7 +50,7 @@ def test_what_the_options_say_is_done(run, tmp_path):
     line, first, *_ = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))["features"]
     assert line["properties"]["start"] == "2026-11-02T07:30:00"
     assert line["properties"]["seconds"] <= 7200
-    assert first["properties"]["inspect_s"] == 20
+    assert first["properties"]["inspect_s"] == 20 + 1.13  # stopping for it is charged too
     assert line["geometry"]["coordinates"][0] == pytest.approx([35.1529, 30.3525], abs=1e-7)
 
 

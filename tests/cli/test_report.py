@@ -86,3 +86,32 @@ def test_the_record_for_a_certifier_is_of_several_seasons_and_a_report_of_one(
     code, _, err, _ = run("report", season, "--certification", "--date", "2026-11-02")
     assert code == 2
     assert "is of seasons, not of --date" in " ".join(err.split())
+
+
+@pytest.mark.parametrize(
+    ("code", "says", "direction"),
+    [("he", "המצב", "rtl"), ("ar", "الحال الآن", "rtl"), ("es", "Cómo está", "ltr")],
+)
+def test_it_is_written_in_the_language_asked_for_with_its_dates(run, season, code, says, direction):
+    outcome, _, err, made = run("report", season, "-o", "s.html", "--language", code)
+    assert outcome == 0, err
+    page = next(iter(made)).read_text("utf-8")
+    assert f'dir="{direction}"' in page
+    assert says in page
+    assert "Where it stands" not in page
+    day = date.fromisoformat(BEGINS)
+    assert f"{day:%d.%m.%Y}" in page or f"{day:%d/%m/%Y}" in page
+    assert BEGINS not in page
+
+
+def test_a_season_keeps_the_language_of_its_reports(run, season):
+    for code in ("es", "he"):
+        assert run("change", season, "--language", code)[0] == 0
+    pages = {}
+    for name, words in (("kept.pdf", ()), ("asked.pdf", ("--language", "he"))):
+        assert run("report", season, "-o", name, *words)[0] == 0
+        pages[name] = texts((season.parent / name).read_bytes())
+    assert pages["kept.pdf"] == pages["asked.pdf"]
+    code, _, err, made = run("report", season, "--language", "tlh")
+    assert (code, made) == (2, set())
+    assert "A language must be one of en, he, ar, es, but it is 'tlh'." in err

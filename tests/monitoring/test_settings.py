@@ -1,5 +1,6 @@
 """Settings of a season: as values and as JSON, and the days that are of it."""
 
+import json
 from datetime import date, time
 
 import numpy as np
@@ -93,6 +94,14 @@ def test_a_season_begun_before_finds_were_traced_goes_on_as_it_did():
     assert parts != before
     assert MonitoringSettings(BEGINS).belief.traces
     assert not from_json(before).belief.traces
+
+
+def test_a_season_that_kept_no_time_of_a_stop_is_charged_as_it_was():
+    parts = as_json(MonitoringSettings(BEGINS))
+    thesis = Robot().with_times("thesis")
+    robot = json.loads(as_json(MonitoringSettings(BEGINS, robot=thesis))["robot"])
+    del robot["stop_s"]
+    assert from_json(parts | {"robot": json.dumps(robot)}).robot == thesis
 
 
 def test_a_pest_in_its_weather_is_laid_out_once_for_a_season():

@@ -9,6 +9,7 @@ from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.plot.assumed import Assumed
+from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot, scout
 from tests.monitoring.seasons import a_plot
 
@@ -24,6 +25,23 @@ def test_what_was_said_is_not_assumed():
     assert names(assumed_by((), PriorSettings(), scout())) == [
         "background_chance", "speed_m_s", "detects"
     ]  # fmt: skip
+
+
+def test_times_of_simulated_drives_are_said_and_the_thesis_s_are_chosen():
+    said = [str(one) for one in assumed_by((), PriorSettings(), Robot(detection=0.7))]
+    assert "guessed: time added for a row change, as in simulated drives: 9 s" in said
+    assert "guessed: time added for a stop, as in simulated drives: 1.13 s" in said
+    thesis = Robot().with_times("thesis")
+    assert names(assumed_by((), PriorSettings(), thesis)) == [
+        "background_chance", "speed_m_s", "detects"
+    ]  # fmt: skip
+
+
+def test_where_no_rows_are_only_stops_add_time():
+    trees = Plot.among("park", np.array([[34.9, 32.5], [34.9001, 32.5], [34.9, 32.5001]])).grid
+    said = names(assumed_by((), PriorSettings(), Robot(), trees))
+    assert "stop_s" in said
+    assert "row_change_s" not in said
 
 
 def test_a_plot_carries_what_was_assumed_of_its_rows():

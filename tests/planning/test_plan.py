@@ -74,7 +74,7 @@ def test_stops_come_out_in_order_and_the_line_begins_at_the_first_row_end(day, p
     stops = day.route.to_geopandas()
     assert stops.index.tolist() == list(range(1, len(stops) + 1))
     assert stops["arrive_s"].is_monotonic_increasing
-    assert ((stops["leave_s"] - stops["arrive_s"]).round(6) == ROBOT.look_s).all()
+    assert ((stops["leave_s"] - stops["arrive_s"]).round(6) == ROBOT.visit_s).all()
     assert np.allclose(np.c_[stops.geometry.x, stops.geometry.y], day.route.stops_lonlat())
     gate = plot.grid.frame.lonlat(plot.aisles.gate_m[None])[0]
     assert day.route.line.coords[0] == pytest.approx(tuple(gate))

@@ -1,5 +1,7 @@
 """Robots and scouts: the numbers that cost time and find insects."""
 
+from dataclasses import replace
+
 import pytest
 
 from fieldmon.errors import SettingError
@@ -17,8 +19,9 @@ def test_viewpoints_follow_the_table_of_the_thesis(seconds, chance):
     assert Viewpoints().detection(seconds) == chance
 
 
-def test_the_default_robot_is_that_of_the_thesis():
+def test_the_default_robot_is_that_of_the_thesis_charged_as_simulated_drives_took():
     robot = Robot()
+    assert (robot.row_change_s, robot.turn_180_s, robot.stop_s) == (9.0, 0.0, 1.13)
     assert (robot.speed_m_s * 3.6, robot.hours, robot.look_s) == (2.5, 12, 40)
     assert robot.detects == 0.84
     assert robot.day_s == 43_200
@@ -31,6 +34,13 @@ def test_a_detection_given_by_hand_wins_over_the_table():
 def test_a_scout_is_a_robot_with_other_numbers():
     assert isinstance(scout(), Robot)
     assert scout().speed_m_s > Robot().speed_m_s
+
+
+def test_a_scout_is_known_by_its_times_whatever_the_hours_and_is_charged_no_robot_s():
+    assert replace(scout().with_hours(7), look_s=50.0).on_foot
+    assert not Robot().on_foot
+    with pytest.raises(SettingError, match="A scout has times of its own"):
+        scout().with_times("thesis")
 
 
 @pytest.mark.parametrize(
@@ -65,9 +75,11 @@ def test_no_chance_is_above_one():
 
 
 def test_times_have_names_and_others_have_none():
-    assert Robot().times == "thesis"
-    assert Robot().with_times("measured").times == rover().times == "measured"
-    assert Robot().with_times("measured").with_times("thesis") == Robot()
+    assert Robot().times == rover().times == "measured"
+    thesis = Robot().with_times("thesis")
+    assert (thesis.row_change_s, thesis.turn_180_s, thesis.stop_s) == (25.0, 23.0, 0.0)
+    assert thesis.times == "thesis"
+    assert thesis.with_times("measured") == Robot()
     assert Robot(row_change_s=12.0).times is None
-    with pytest.raises(SettingError, match="thesis or measured, but they are 'quick'"):
+    with pytest.raises(SettingError, match="measured or thesis, but they are 'quick'"):
         Robot().with_times("quick")

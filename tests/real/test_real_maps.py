@@ -12,7 +12,7 @@ from fieldmon.studies.thesis.chapter5.mapped_plots import SHARES_PCT, MapRules, 
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS
 
 QUARTER = int(np.flatnonzero(SHARES_PCT == 25.0)[0])
-RULES = MapRules(Robot(), CALIBRATED.spread)
+RULES = MapRules(Robot().with_times("thesis"), CALIBRATED.spread)
 
 
 @pytest.fixture(scope="module")

@@ -57,10 +57,10 @@ def check_times(line, stops):
     assert len(stops) == summary["stops"] > 0
     assert summary["drive_m"] == pytest.approx(metres(line), rel=1e-5, abs=0.05)
     rows_changed = sum(a["row"] != b["row"] for a, b in pairwise(stops))
-    seconds = summary["drive_m"] * 3.6 / 2.5 + 40 * len(stops) + 25 * rows_changed
+    seconds = summary["drive_m"] * 3.6 / 2.5 + 41.13 * len(stops) + 9 * rows_changed
     # a row cut by a hole or a gap between parts changes aisles, but keeps its number
     assert seconds <= summary["seconds"] + 1 <= 12 * 3600 + 1
-    assert summary["seconds"] <= seconds + 25 * len(stops)
+    assert summary["seconds"] <= seconds + 9 * len(stops)
     assert len({stop["plant"] for stop in stops}) == len(stops)
     assert [stop["order"] for stop in stops] == list(range(1, len(stops) + 1))
 

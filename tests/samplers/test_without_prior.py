@@ -26,7 +26,7 @@ P = 8
 
 def day(sampler, hours=24.0, grid=VINEYARD, **changes):
     scene = scene_on(grid, hours=hours)
-    robot = Robot(hours=hours, returns=False)
+    robot = Robot(hours=hours, returns=False).with_times("thesis")
     scene = replace(scene, robot=robot, **changes)
     return scene, plan_work(scene, sampler)
 

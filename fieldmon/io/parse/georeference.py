@@ -84,7 +84,9 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
         )
     wanted = options.crs or stated
     if wanted is None:
-        raise ask_for_crs(xy, options, "The file does not say in which coordinate system it is.")
+        raise ask_for_crs(
+            xy, options, worded("The file does not say in which coordinate system it is.")
+        )
     crs = system(wanted)
     _check_range(xy, crs, options)
     xy, more = _without_zone(xy, crs)
@@ -120,7 +122,12 @@ def _check_range(xy: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions)
             ("no" if options.swap_axes else "yes",),
         )
     raise ask_for_crs(
-        xy, options, f"The file says {crs.name}, in degrees, but its coordinates are no degrees."
+        xy,
+        options,
+        worded(
+            "The file says {name}, in degrees, but its coordinates are no degrees.",
+            name=crs.name,
+        ),
     )
 
 

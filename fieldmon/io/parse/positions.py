@@ -277,7 +277,11 @@ class _Unread(NamedTuple):
         )
         if not self.n_dotted:
             return [dropped(said)]
-        many = f"{said} {self.n_dotted} of them have two points, as 35.26.33."
+        many = worded(
+            "{said} {n_dotted} of them have two points, as 35.26.33.",
+            said=said,
+            n_dotted=self.n_dotted,
+        )
         label = worded("Read them as degrees, minutes and seconds")
         return [dropped(many, remedy=Remedy("degrees", "dms", label, ("dm",)))]
 

@@ -134,10 +134,14 @@ def _fits(samples: list[bytes], encoding: str) -> bool:
 
 def _guess(best: str, stated: str | None = None) -> ImportMessage:
     other, *more = (name for name in ENCODINGS if name != best)
-    why = f"The .cpg file says {stated}, but the" if stated else "The"
     return guessed(
-        worded(
-            "{why} text is not UTF-8; by its letters it was read as {best}.", why=why, best=best
+        worded("The text is not UTF-8; by its letters it was read as {best}.", best=best)
+        if not stated
+        else worded(
+            "The .cpg file says {stated}, but the text is not UTF-8; by its letters it was read "
+            "as {best}.",
+            stated=stated,
+            best=best,
         ),
         remedy=Remedy("encoding", other, worded("Read as {other}", other=other), tuple(more)),
     )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.infestation.raster_risk import risk_chance
 from fieldmon.io.import_report import seen
 from fieldmon.io.rasters.read import read_raster
@@ -45,7 +45,9 @@ def read_risk(
         high=high,
         mean=mean,
     )
-    return read.having(chance, [seen(said + _unseen(chance, "and have no risk by it"))])
+    return read.having(
+        chance, [seen(joined("", (said, _unseen(chance, worded("and have no risk by it")))))]
+    )
 
 
 def read_missing(
@@ -69,9 +71,13 @@ def read_missing(
         total=len(missing),
         below=below,
     )
-    return read.having(missing, [seen(said + _unseen(values, "and count as there"))])
+    return read.having(
+        missing, [seen(joined("", (said, _unseen(values, worded("and count as there")))))]
+    )
 
 
 def _unseen(values: Floats, what: str) -> str:
     unseen = int(np.isnan(values).sum())
-    return f"; {unseen} have no value on the raster {what}." if unseen else "."
+    if not unseen:
+        return worded(".")
+    return worded("; {n} have no value on the raster {what}.", n=unseen, what=what)

@@ -160,7 +160,13 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
         )
     if crs.is_geographic and (abs(middle[0]) > 180 or abs(middle[1]) > 90):
         raise ask_for_crs(
-            middle[None], options, f"{name} says {crs.name}, in degrees, but it lies nowhere so."
+            middle[None],
+            options,
+            worded(
+                "{name} says {name_2}, in degrees, but it lies nowhere so.",
+                name=name,
+                name_2=crs.name,
+            ),
         )
     through = transformation_from(crs, (float(middle[0]), float(middle[1])))
     if not np.isfinite(through.lonlat(middle[None])).all():
@@ -283,7 +289,7 @@ def _system(
             )
             return crs, said
     ends = map_xy(to_map, np.array([[0.0, 0.0], [tif.width, tif.height]]))
-    raise ask_for_crs(ends, options, "The raster does not say its coordinate system.")
+    raise ask_for_crs(ends, options, worded("The raster does not say its coordinate system."))
 
 
 def _own(tif: DatasetReader) -> str:

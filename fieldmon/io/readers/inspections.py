@@ -20,6 +20,7 @@ Decisions
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -42,6 +43,8 @@ from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.io.options import Source
@@ -112,17 +115,17 @@ def look_up(
     problems |= snapped.problems
     doubts = doubts | snapped.doubts | _own_doubts(rows)
     for i in np.flatnonzero(plant < 0).tolist():
-        problems.setdefault(i, "it names no plant and has no position")
+        problems.setdefault(i, worded("it names no plant and has no position"))
     taken = plant >= 0
     if not options.take_doubtful:
         taken[list(doubts)] = False
     taken[list(problems)] = False
     said = [
-        *_listed(rows, problems, "cannot be placed", None),
+        *_listed(rows, problems, dropped, None),
         *_listed(
             rows,
             {i: why for i, why in doubts.items() if i not in problems},
-            "is doubtful" + (" and was taken as asked" if options.take_doubtful else ""),
+            doubtful,
             None if options.take_doubtful else _TAKE,
         ),
         *labelled.said,
@@ -155,19 +158,26 @@ def _by_number(rows: InspectionRows, grid: PlantGrid) -> _Placed:
     """Place records that name the plant's number, and hold it against whatever else they say."""
     stated = rows.plant
     plant = np.where((stated >= 0) & (stated < len(grid)), stated, -1)
-    problems = {
-        i: f"plant {stated[i]} is none of 0 to {len(grid) - 1} on this plot"
+    problems: dict[int, str] = {
+        i: worded(
+            "plant {plant} is none of 0 to {last} on this plot",
+            plant=stated[i],
+            last=len(grid) - 1,
+        )
         for i in np.flatnonzero((stated >= len(grid)) | (stated < -1)).tolist()
     }
-    doubts = {}
+    doubts: dict[int, str] = {}
     here = np.flatnonzero(plant >= 0)
     label = row_label(grid, plant[here])
     line, number = rows.line[here], rows.number[here]
     other = (line > 0) & ((label.line != line) | (label.number != number))
     for k in np.flatnonzero(other).tolist():
-        doubts[int(here[k])] = (
-            f"plant {plant[here[k]]} is {_label(grid, plant[here[k]])} on this plot, but the "
-            f"record says row {line[k]}, number {number[k]}"
+        doubts[int(here[k])] = worded(
+            "plant {plant} is {label} on this plot, but the record says row {row}, number {number}",
+            plant=plant[here[k]],
+            label=_label(grid, plant[here[k]]),
+            row=line[k],
+            number=number[k],
         )
     return _Placed(plant, problems, doubts)
 
@@ -179,8 +189,11 @@ def _misplaced(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) 
     spacing_m = max(grid.row_spacing_m, grid.plant_spacing_m)
     reach_m = spacing_m + 3 * np.nan_to_num(rows.accuracy_m[here])
     return {
-        int(here[k]): f"{_label(grid, plant[here[k]])} is {far_m[k]:.1f} m from the record's "
-        "position: is it a file for another plot?"
+        int(here[k]): worded(
+            "{plant} is {far_m:.1f} m from the record's position: is it a file for another plot?",
+            plant=_label(grid, plant[here[k]]),
+            far_m=far_m[k],
+        )
         for k in np.flatnonzero(far_m > reach_m).tolist()
     }
 
@@ -214,8 +227,13 @@ def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) 
     is_there = first >= 0
     second = (rows.face[records] == 2) & (grid.twin[first] >= 0)
     plant[records] = np.where(is_there, np.where(second, grid.twin[first], first), -1)
-    problems = {
-        i: f"there is no plant {rows.number[i]} in row {rows.line[i]}{_of_block(rows, grid, i)}"
+    problems: dict[int, str] = {
+        i: worded(
+            "there is no plant {number} in row {row}{of_block}",
+            number=rows.number[i],
+            row=rows.line[i],
+            of_block=_of_block(rows, grid, i),
+        )
         for i in records[~is_there].tolist()
     }
     return _Placed(plant, problems, {}, said)
@@ -223,8 +241,12 @@ def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) 
 
 def _of_block(rows: InspectionRows, grid: PlantGrid, record: int) -> str:
     if grid.n_blocks == 1 or not rows.block[record]:
-        return " on this plot"
-    return f" of block {rows.block[record]} (blocks are 1 to {grid.n_blocks} on this plot)"
+        return worded(" on this plot")
+    return worded(
+        " of block {block} (blocks are 1 to {last} on this plot)",
+        block=rows.block[record],
+        last=grid.n_blocks,
+    )
 
 
 def _labelled(
@@ -298,7 +320,8 @@ def _by_position(
     """
     plant = np.full(len(rows), -1, np.int64)
     near = _is_near(rows.lonlat[records], grid)
-    problems = dict.fromkeys(records[~near].tolist(), "it lies far from the plot")
+    far: str = worded("it lies far from the plot")
+    problems: dict[int, str] = dict.fromkeys(records[~near].tolist(), far)
     records = records[near]
     if not len(records):
         return _Placed(plant, problems, {})
@@ -310,16 +333,20 @@ def _by_position(
     stated = rows.accuracy_m[records]
     told = 0.0 if options.accuracy_m is None else options.accuracy_m
     accuracy_m = np.where(np.isnan(stated), told, stated)
-    doubts = {}
+    doubts: dict[int, str] = {}
     for k in np.flatnonzero(margin_m <= accuracy_m + _TOUCH_M).tolist():
-        doubts[int(records[k])] = (
-            f"with an accuracy of {accuracy_m[k]:.2g} m it may be {_label(grid, first[k])} or "
-            f"{_label(grid, rival[k])}"
+        doubts[int(records[k])] = worded(
+            "with an accuracy of {accuracy_m:.2g} m it may be {plant} or {other}",
+            accuracy_m=accuracy_m[k],
+            plant=_label(grid, first[k]),
+            other=_label(grid, rival[k]),
         )
     for k in np.flatnonzero((step > half).any(axis=1)).tolist():
-        doubts[int(records[k])] = (
-            f"it lies {np.hypot(*step[k]):.1f} m from the nearest plant, {_label(grid, first[k])}, "
-            "which is more than half the spacing"
+        doubts[int(records[k])] = worded(
+            "it lies {away_m:.1f} m from the nearest plant, {plant}, which is more than half the "
+            "spacing",
+            away_m=np.hypot(*step[k]),
+            plant=_label(grid, first[k]),
         )
     return _Placed(plant, problems, doubts)
 
@@ -354,25 +381,48 @@ def _nearest(
 
 def _label(grid: PlantGrid, plant: int) -> str:
     label = row_label(grid, np.array([plant]))
-    return f"row {label.line[0]}, number {label.number[0]}"
+    return worded(
+        "row {line}, number {number}",
+        line=label.line[0],
+        number=label.number[0],
+    )
 
 
 def _own_doubts(rows: InspectionRows) -> dict[int, str]:
     return {i: str(rows.doubt[i]) for i in np.flatnonzero(rows.doubt != "").tolist()}
 
 
+def _verdict(is_out: bool, is_taken: bool, why: str) -> str:  # noqa: FBT001 - what of three
+    """Return what is said of a record, and why."""
+    if is_out:
+        return worded("It cannot be placed: {why}.", why=why)
+    if is_taken:
+        return worded("It is doubtful and was taken as asked: {why}.", why=why)
+    return worded("It is doubtful: {why}.", why=why)
+
+
 def _listed(
-    rows: InspectionRows, why: dict[int, str], verdict: str, remedy: Remedy | None
+    rows: InspectionRows,
+    why: dict[int, str],
+    make: Callable[[str, str | None, Remedy | None], ImportMessage],
+    remedy: Remedy | None,
 ) -> list[ImportMessage]:
     """Return a message for each of the first records, and one for the rest."""
-    make = dropped if verdict.startswith("cannot") else doubtful
-    records = sorted(why)
+    records, said = sorted(why), partial(_verdict, make is dropped, remedy is None)
     messages = [
-        make(f"It {verdict}: {why[i]}.", f"record {rows.source_row[i]}", remedy)
-        for i in records[:_LISTED]
+        make(said(why[i]), f"record {rows.source_row[i]}", remedy) for i in records[:_LISTED]
     ]
     if len(records) > _LISTED:
-        messages.append(make(f"{len(records) - _LISTED} more record(s) are so.", None, remedy))
+        messages.append(
+            make(
+                worded(
+                    "{n} more record(s) are so.",
+                    n=len(records) - _LISTED,
+                ),
+                None,
+                remedy,
+            )
+        )
     return messages
 
 

@@ -65,7 +65,11 @@ def pest_of(said: str) -> Pest:
     path = Path(said)
     if not path.is_file():
         raise FileProblem(
-            f"A pest must be a file, or one of {', '.join(shipped_names())}; but it is {said!r}."
+            worded(
+                "A pest must be a file, or one of {names}; but it is {said!r}.",
+                names=", ".join(shipped_names()),
+                said=said,
+            )
         )
     return read_pest(path)
 
@@ -202,7 +206,7 @@ class _PestText:
             pairs = told["viewpoints"]
             if not all(isinstance(one, tuple) and len(one) == 2 for one in pairs):
                 at = _At("detection", 0, "viewpoints")
-                self._refuse(at, "viewpoints must be pairs, as [[20, 0.5], [40, 0.84]].")
+                self._refuse(at, worded("viewpoints must be pairs, as [[20, 0.5], [40, 0.84]]."))
             longer = told.get("longer", pairs[-1][1] if pairs else 0.0)
             steps = {"steps": pairs, "longer": longer}
             made["viewpoints"] = self._made(Viewpoints, steps, _At("detection", 0, "viewpoints"))
@@ -213,7 +217,13 @@ class _PestText:
     def _table(self, part: str) -> dict[str, Any]:
         table = self.told.get(part, {})
         if not isinstance(table, dict):
-            self._refuse(_At(part, 0, ""), f"{part} must be a table, as [{part}].")
+            self._refuse(
+                _At(part, 0, ""),
+                worded(
+                    "{part} must be a table, as [{part}].",
+                    part=part,
+                ),
+            )
         return self._checked(part, table, 0)
 
     def _checked(self, part: str, table: dict[str, Any], number: int) -> dict[str, Any]:
@@ -229,7 +239,14 @@ class _PestText:
             return value
         if at.key in _FLAGS:
             if not isinstance(value, bool):
-                self._refuse(at, f"{at.key} must be true or false, but it is {value!r}.")
+                self._refuse(
+                    at,
+                    worded(
+                        "{key} must be true or false, but it is {value!r}.",
+                        key=at.key,
+                        value=value,
+                    ),
+                )
             return value
         is_list = at.key in _LISTS and (at.table, at.key) not in {
             ("movement", "at_c"),
@@ -237,7 +254,14 @@ class _PestText:
         }
         if is_list:
             if not isinstance(value, list):
-                self._refuse(at, f"{at.key} must be a list in brackets, but it is {value!r}.")
+                self._refuse(
+                    at,
+                    worded(
+                        "{key} must be a list in brackets, but it is {value!r}.",
+                        key=at.key,
+                        value=value,
+                    ),
+                )
             return tuple(
                 tuple(self._number(at, inner) for inner in one)
                 if isinstance(one, list)
@@ -249,13 +273,32 @@ class _PestText:
     def _number(self, at: _At, value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
             unit = next((said for end, said in _UNITS.items() if at.key.endswith(end)), "")
-            kind = f"a number in {unit}" if unit and unit != "a day" else "a number"
-            self._refuse(at, f"{at.key} must be {kind}, without quotes, but it is {value!r}.")
+            kind = (
+                worded("a number in {unit}", unit=unit)
+                if unit and unit != "a day"
+                else worded("a number")
+            )
+            self._refuse(
+                at,
+                worded(
+                    "{key} must be {kind}, without quotes, but it is {value!r}.",
+                    key=at.key,
+                    kind=kind,
+                    value=value,
+                ),
+            )
         return float(value)
 
     def _must_be_text(self, at: _At, value: object) -> None:
         if not isinstance(value, str):
-            self._refuse(at, f"{at.key} must be text in quotes, but it is {value!r}.")
+            self._refuse(
+                at,
+                worded(
+                    "{key} must be text in quotes, but it is {value!r}.",
+                    key=at.key,
+                    value=value,
+                ),
+            )
 
     def _must_know(self) -> None:
         known = (*_WORDS, *_TABLES, *_NOTES)
@@ -263,18 +306,31 @@ class _PestText:
             if key not in known:
                 at = _At("", 0, key)
                 at = at if at in self.lines else _At(key, 0, "")
-                self._refuse(at, _unknown(key, known, "a pest"))
+                self._refuse(at, _unknown(key, known, worded("a pest")))
 
     def _citations(self) -> Iterable[Citation]:
         notes = {}
         for note in _NOTES:
             notes[note] = self.told.get(note, {})
             if not isinstance(notes[note], dict):
-                self._refuse(_At(note, 0, ""), f"{note} must be a table, as [{note}].")
+                self._refuse(
+                    _At(note, 0, ""),
+                    worded(
+                        "{note} must be a table, as [{note}].",
+                        note=note,
+                    ),
+                )
             for part, words in notes[note].items():
                 at = _At(note, 0, part)
                 if part not in self.told or part not in _TABLES:
-                    self._refuse(at, f"[{note}] speaks of {part}, which is no part of this pest.")
+                    self._refuse(
+                        at,
+                        worded(
+                            "[{note}] speaks of {part}, which is no part of this pest.",
+                            note=note,
+                            part=part,
+                        ),
+                    )
                 self._must_be_text(at, words)
         for part in _TABLES:
             if part not in self.told:
@@ -282,8 +338,11 @@ class _PestText:
             if not notes["sources"].get(part, "").strip():
                 self._refuse(
                     _At(part, 0, ""),
-                    f"[{part}] has no source. Say under [sources] who published it, or that it is "
-                    f'your choice: {part} = "...".',
+                    worded(
+                        "[{part}] has no source. Say under [sources] who published it, or that it "
+                        'is your choice: {part} = "...".',
+                        part=part,
+                    ),
                 )
             yield Citation(part, notes["sources"][part], notes["doubts"].get(part, ""))
 
@@ -292,7 +351,14 @@ class _PestText:
         for each in fields(kind):
             needed = each.default is MISSING and each.default_factory is MISSING
             if needed and each.name not in given:
-                self._refuse(at, f"[{at.table}] must say its {each.name}, but does not.")
+                self._refuse(
+                    at,
+                    worded(
+                        "[{table}] must say its {name}, but does not.",
+                        table=at.table,
+                        name=each.name,
+                    ),
+                )
         try:
             return kind(**given)
         except SettingError as error:
@@ -326,7 +392,25 @@ def _unknown(key: str, known: Iterable[str], of: str) -> str:
     if other_unit:
         name = other_unit[0]
         unit = next((said for end, said in _UNITS.items() if name.endswith(end)), "")
-        return f"{key} has another unit than fieldmon reads: convert it to {unit}, as {name}."
+        return worded(
+            "{key} has another unit than fieldmon reads: convert it to {unit}, as {name}.",
+            key=key,
+            unit=unit,
+            name=name,
+        )
     near = get_close_matches(key, [*known], 1)
-    hint = f" Is it {near[0]}?" if near else ""
-    return f"{key} is nothing that {of} can say ({', '.join(known)}).{hint}"
+    hint = (
+        worded(
+            " Is it {near}?",
+            near=near[0],
+        )
+        if near
+        else ""
+    )
+    return worded(
+        "{key} is nothing that {of} can say ({names}).{hint}",
+        key=key,
+        of=of,
+        names=", ".join(known),
+        hint=hint,
+    )

@@ -255,8 +255,19 @@ def _offer(table: _Table, role: str, fits: Callable[[list[str]], bool]) -> Remed
     choices = tuple(f"{role}={name}" for name in _fitting(table, fits))
     if not choices:
         return None
-    one = f"Take the {role} from {choices[0].partition('=')[2]}"
-    label = one if len(choices) == 1 else f"Name the column of the {role}"
+    one = worded(
+        "Take the {role} from {other}",
+        role=role,
+        other=choices[0].partition("=")[2],
+    )
+    label = (
+        one
+        if len(choices) == 1
+        else worded(
+            "Name the column of the {role}",
+            role=role,
+        )
+    )
     return Remedy("columns", choices[0], label, choices[1:])
 
 

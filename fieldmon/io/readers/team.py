@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
@@ -48,15 +49,24 @@ def read_team(path: Path) -> tuple[StatedMember, ...]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        raise FileProblem(f"{path} must be a readable table (CSV), but it is not.") from error
+        raise FileProblem(
+            worded(
+                "{path} must be a readable table (CSV), but it is not.",
+                path=path,
+            )
+        ) from error
     delimiter = ";" if text.partition("\n")[0].count(";") else ","
     table = csv.DictReader(text.splitlines(), delimiter=delimiter)
     columns = [(name or "").strip().casefold() for name in table.fieldnames or ()]
     unknown = [name for name in columns if name not in COLUMNS]
     if "name" not in columns or unknown:
         raise FileProblem(
-            f"{path} must have a column name, and of others only {', '.join(COLUMNS[1:])}, but it "
-            f"has {', '.join(columns) or 'none'}."
+            worded(
+                "{path} must have a column name, and of others only {names}, but it has {names_2}.",
+                path=path,
+                names=", ".join(COLUMNS[1:]),
+                names_2=", ".join(columns) or "none",
+            )
         )
     members = []
     for number, line in enumerate(table, 2):
@@ -64,23 +74,44 @@ def read_team(path: Path) -> tuple[StatedMember, ...]:
         if any(values.values()):
             members.append(_member(values, f"{path}, line {number}"))
     if not members:
-        raise FileProblem(f"{path} must name a member of the team, but it names none.")
+        raise FileProblem(
+            worded(
+                "{path} must name a member of the team, but it names none.",
+                path=path,
+            )
+        )
     return tuple(members)
 
 
 def _member(values: dict[str, str], where: str) -> StatedMember:
     who = values.get("who", "").casefold() or "robot"
     if who not in {"robot", "scout"}:
-        raise FileProblem(f"{where}: who must be robot or scout, but it is {values['who']!r}.")
+        raise FileProblem(
+            worded(
+                "{where}: who must be robot or scout, but it is {who!r}.",
+                where=where,
+                who=values["who"],
+            )
+        )
     if not values["name"]:
-        raise FileProblem(f"{where}: every member must have a name, but this has none.")
+        raise FileProblem(
+            worded(
+                "{where}: every member must have a name, but this has none.",
+                where=where,
+            )
+        )
     number = {
         name: _number(values[name], name, where)
         for name in ("hours", "speed_km_h", "look_s", "detection", "lon", "lat")
         if values.get(name)
     }
     if ("lon" in number) != ("lat" in number):
-        raise FileProblem(f"{where}: a gate must have lon and lat, but it has one of them.")
+        raise FileProblem(
+            worded(
+                "{where}: a gate must have lon and lat, but it has one of them.",
+                where=where,
+            )
+        )
     gate = (number.pop("lon"), number.pop("lat")) if "lon" in number else None
     if "speed_km_h" in number:
         number["speed_m_s"] = number.pop("speed_km_h") / 3.6
@@ -91,4 +122,11 @@ def _number(text: str, name: str, where: str) -> float:
     try:
         return float(text.replace(",", "."))
     except ValueError as error:
-        raise FileProblem(f"{where}: {name} must be a number, but it is {text!r}.") from error
+        raise FileProblem(
+            worded(
+                "{where}: {name} must be a number, but it is {text!r}.",
+                where=where,
+                name=name,
+                text=text,
+            )
+        ) from error

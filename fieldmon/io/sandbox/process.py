@@ -166,13 +166,15 @@ class ReadingProcess:
 
     def _why(self, late: bool) -> str:  # noqa: FBT001
         if late:
-            return (
-                f"A file must be read within {limits.READ_SECONDS:g} seconds of work, but this one "
-                "takes longer: it is too big or made to be slow. Cut it to the plots that matter."
+            return worded(
+                "A file must be read within {read_seconds:g} seconds of work, but this one "
+                "takes longer: it is too big or made to be slow. Cut it to the plots that "
+                "matter.",
+                read_seconds=limits.READ_SECONDS,
             )
-        return (
-            "The file made its reader crash and was given up: it is damaged, or made to do harm. "
-            "Export or download it again."
+        return worded(
+            "The file made its reader crash and was given up: it is damaged, or made to do "
+            "harm. Export or download it again."
         )
 
     @property

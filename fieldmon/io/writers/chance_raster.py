@@ -9,6 +9,7 @@ import numpy as np
 import pyproj
 
 from fieldmon.compute.jit import routine
+from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.rasters.smooth import smoothly
@@ -50,7 +51,11 @@ def write_chance_raster(grid: PlantGrid, chance: Float, to: str | Path) -> Chanc
     """
     if len(chance) != len(grid):
         raise PlotError(
-            f"A chance map must have one chance a plant ({len(grid)}), but it has {len(chance)}."
+            worded(
+                "A chance map must have one chance a plant ({n}), but it has {n_2}.",
+                n=len(grid),
+                n_2=len(chance),
+            )
         )
     picture = chance_raster(grid, np.asarray(chance, np.float64))
     write_whole(to, _packed(picture))

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND
 
@@ -52,8 +53,13 @@ class EppoCodes:
         ):
             if not re.fullmatch(rf"[A-Z0-9]{{5,{most}}}", code):
                 raise SettingError(
-                    f"The {what} must be an EPPO code, such as {example} (see gd.eppo.int), but it "
-                    f"is {code!r}."
+                    worded(
+                        "The {what} must be an EPPO code, such as {example} (see gd.eppo.int), but "
+                        "it is {code!r}.",
+                        what=what,
+                        example=example,
+                        code=code,
+                    )
                 )
 
 

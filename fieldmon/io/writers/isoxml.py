@@ -13,6 +13,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.writers.zone_cells import ZoneCells
 
@@ -64,7 +65,12 @@ def isoxml_taskdata(
         If there is no such version.
     """
     if version not in _MINOR:
-        raise SettingError(f"Task data can be of version 3 or 4, but not of {version}.")
+        raise SettingError(
+            worded(
+                "Task data can be of version 3 or 4, but not of {version}.",
+                version=version,
+            )
+        )
     root = ET.Element(
         "ISO11783_TaskData",
         VersionMajor=str(version),

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.writers.isoxml import isoxml_taskdata
@@ -57,13 +58,18 @@ class TreatmentMap:
     def __post_init__(self) -> None:
         if not 0.0 < self.rate_l_ha < 100_000.0:
             raise SettingError(
-                "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it is "
-                f"{self.rate_l_ha:g}."
+                worded(
+                    "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "
+                    "is {rate_l_ha:g}.",
+                    rate_l_ha=self.rate_l_ha,
+                )
             )
         if not self.zones:
             raise SettingError(
-                "A treatment map needs a zone or more, but spraying pays nowhere. No file is "
-                "written."
+                worded(
+                    "A treatment map needs a zone or more, but spraying pays nowhere. No file is "
+                    "written."
+                )
             )
 
     def __repr__(self) -> str:
@@ -102,7 +108,11 @@ def treatment_map_bytes(of: TreatmentMap, name: str) -> bytes:
         if name.lower().endswith(ending):
             return make(of)
     raise SettingError(
-        f"A treatment map must be called *{', *'.join(FORMATS)}, but it is {name!r}."
+        worded(
+            "A treatment map must be called *{names}, but it is {name!r}.",
+            names=", *".join(FORMATS),
+            name=name,
+        )
     )
 
 
@@ -166,8 +176,11 @@ def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: str) -> Non
         )
     except (OSError, pyogrio.errors.DataSourceError) as error:
         raise FileProblem(
-            f"The treatment map could not be made in the folder for temporary files ({error}). "
-            "Make room there."
+            worded(
+                "The treatment map could not be made in the folder for temporary files "
+                "({error}). Make room there.",
+                error=error,
+            )
         ) from error
 
 

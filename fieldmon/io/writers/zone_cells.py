@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.sandbox import limits
 
@@ -52,7 +53,12 @@ class ZoneCells:
 
     def __post_init__(self) -> None:
         if self.kind not in {1, 2}:
-            raise SettingError(f"A grid must be of kind 1 or 2, but it is {self.kind}.")
+            raise SettingError(
+                worded(
+                    "A grid must be of kind 1 or 2, but it is {kind}.",
+                    kind=self.kind,
+                )
+            )
 
     def __repr__(self) -> str:
         rows, columns = self.sprayed.shape
@@ -81,7 +87,12 @@ def zone_cells(
         If there would be more cells than a file may hold.
     """
     if not cell_m > 0.0:
-        raise SettingError(f"The cells of a grid must have a size above 0, but it is {cell_m:g} m.")
+        raise SettingError(
+            worded(
+                "The cells of a grid must have a size above 0, but it is {cell_m:g} m.",
+                cell_m=cell_m,
+            )
+        )
     whole = shapely.union_all(list(zones))
     # rows reach past an assumed outline by half a spacing
     west, south, east, north = shapely.total_bounds([boundary, whole])

@@ -128,7 +128,7 @@ def best(
     reward
         ``(n,)`` what a stop at each plant is worth, 0 or more: finds expected, or anything else.
     robot
-        Who drives; None: the thesis's robot.
+        Who drives; None: the usual `Robot`.
     seconds
         The time; None: the robot's working day.
     others

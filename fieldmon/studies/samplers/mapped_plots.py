@@ -80,7 +80,7 @@ def found_at(plot: DatedMap, sampler: Sampler) -> tuple[list[int], list[float]]:
     No plant is inspected twice, every infested one inspected is found, and none infects another.
     """
     n = len(plot.infested)
-    robot = Robot(detection=1.0, returns=False)
+    robot = Robot(detection=1.0, returns=False).with_times("thesis")
     belief = _believed(sampler)(plot.aisles.grid, np.full(n, _FLAT))
     seen = np.zeros(n, np.bool_)
     order, done_s = np.empty(0, np.int32), np.empty(0)

@@ -104,10 +104,9 @@ class Scenario:
 
     @property
     def robot(self) -> Robot:
-        """Return who inspects, as it is."""
-        if self.flaw == "detection":
-            return Robot(detection=_POOR_DETECTION, hours=self.hours)
-        return Robot(hours=self.hours)
+        """Return who inspects, as it is: charged the thesis's times."""
+        detection = _POOR_DETECTION if self.flaw == "detection" else None
+        return Robot(detection=detection, hours=self.hours).with_times("thesis")
 
     @property
     def settings(self) -> SeasonSettings:

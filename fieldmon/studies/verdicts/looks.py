@@ -175,7 +175,7 @@ def _drawn(question: Question, streams: RandomStreams) -> _Plot:
     else:
         aisles, infested = question.real.aisles, question.real.infested
         level = float(np.clip(infested.mean() / apart, 0.002, 0.45))
-    robot = Robot(returns=False, hours=24.0)
+    robot = Robot(returns=False, hours=24.0).with_times("thesis")
     shows = infested & (rng.random(len(infested)) < robot.detects)
     known = Scenario(prior=question.prior)
     morning = known_chance(aisles.grid, known, infested, streams.of("records"), level)

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from app.actions.changing import is_on_foot
 from fieldmon.plot.robot import Robot, scout
 from tests.app.driving import go, metric, press, until
 
@@ -73,10 +72,3 @@ def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, sea
     who(season_app).set_value("Robot").run()
     press(season_app, "Use from now on")
     assert season().settings.robot == Robot()
-
-
-def test_a_scout_is_known_by_foot_whatever_the_hours():
-    assert is_on_foot(scout().with_hours(7))
-    assert is_on_foot(replace(scout(), look_s=50.0))
-    assert not is_on_foot(Robot())
-    assert not is_on_foot(Robot(speed_m_s=scout().speed_m_s))

@@ -20,13 +20,14 @@ def test_a_robot_too_wide_for_the_aisles_is_said_and_a_narrow_one_planned(app):
     assert "wide as it is" in app.error[0].value
 
 
-def test_measured_times_inspect_more_plants_than_the_thesis_s(app):
+def test_the_thesis_s_times_inspect_other_plants_than_those_of_simulated_drives(app):
     def stops():
         return next(one.value for one in app.metric if one.label.startswith("Plants to inspect"))
 
-    assert any("a row change takes 25 s more" in one.value for one in app.caption)
+    said = "a row change takes 9 s more, as in simulated drives"
+    assert any(said in one.value for one in app.caption)
     before = stops()
-    app.selectbox(key="robot_times").set_value("measured").run()
+    app.selectbox(key="robot_times").set_value("thesis").run()
     assert not any("a row change takes" in one.value for one in app.caption)
     assert stops() != before
 
@@ -34,12 +35,11 @@ def test_measured_times_inspect_more_plants_than_the_thesis_s(app):
 def test_a_season_keeps_the_width_and_the_times(season_app, season):
     width = next(one for one in season_app.number_input if one.label.startswith("Width"))
     width.set_value(0.7)
-    next(one for one in season_app.selectbox if one.label == "Times charged").set_value("measured")
+    next(one for one in season_app.selectbox if one.label == "Times charged").set_value("thesis")
     season_app.run()
     press(season_app, "Use from now on")
     assert not season_app.exception
-    usual = Robot().with_times("measured")
-    assert season().settings.robot == replace(usual, width_m=0.7)
+    assert season().settings.robot == replace(Robot(), width_m=0.7).with_times("thesis")
 
 
 def test_times_set_by_a_command_stay_unless_they_are_changed(season_app, season):

@@ -1,7 +1,15 @@
 """What there is to translate, and the files that hold it."""
 
+import ast
+from pathlib import Path
+
+import pytest
+
+import fieldmon
 from app.words import catalogues
-from tests.app.words.known_texts import entries
+from app.words.language import LIBRARY
+from fieldmon import errors
+from tests.app.words.known_texts import catalogue, entries
 
 OTHERS = ("he", "ar", "es")
 
@@ -25,3 +33,56 @@ def test_a_new_text_waits_for_its_translation(tmp_path, monkeypatch):
     monkeypatch.setattr(catalogues, "entries", lambda: [*known, new])
     assert catalogues.update("he") == [new]
     assert catalogues.read("he").get(new.id, new.context).string == ""
+
+
+#: whose sentences only commands, studies and programs meet, not somebody at a page
+_ELSEWHERE = {
+    "cli", "compute", "drive", "samplers", "simulation", "studies",
+    "decisions/leaves.py", "decisions/taylor.py", "infestation/belief.py",
+    "infestation/hotspots.py", "infestation/inspections.py", "infestation/kernels.py",
+    "infestation/observations.py", "infestation/spread.py", "monitoring/monitor.py",
+    "planning/routes", "plot/frames.py",
+}  # fmt: skip
+_SAYS = {"seen", "repaired", "guessed", "dropped", "doubtful", "ask_for_crs"}
+_LABEL = {"Remedy": 2, "ask_for_crs": 2}
+
+
+def _unworded(path):
+    """Yield what a module says to a person in words that no catalogue can know."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if not isinstance(node, ast.Call) or not node.args:
+            continue
+        name = ast.unparse(node.func).rpartition(".")[2]
+        is_problem = isinstance(getattr(errors, name, None), type)
+        place = _LABEL.get(name, 0)
+        if (is_problem or name in _SAYS or name in _LABEL) and len(node.args) > place:
+            said = node.args[place]
+            plain = isinstance(said, ast.Constant) and isinstance(said.value, str)
+            if isinstance(said, ast.JoinedStr) or plain:
+                yield f"{path.name}:{node.lineno}: {ast.unparse(said)[:80]}"
+
+
+def test_what_somebody_at_a_page_may_be_told_is_worded_and_so_translated():
+    folder = Path(fieldmon.__file__).parent
+    paths = [path for path in sorted(folder.rglob("*.py")) if "_app" not in path.parts]
+    for path in paths:
+        place = path.relative_to(folder).as_posix()
+        if not any(place == one or place.startswith(f"{one}/") for one in _ELSEWHERE):
+            assert [*_unworded(path)] == []
+
+
+def test_a_plain_sentence_is_noticed(tmp_path):
+    module = tmp_path / "module.py"
+    module.write_text(
+        "raise SettingError(f'It is {it}.')\nmessage = dropped('Left out.')\n"
+        "raise FileProblem(worded('It is {it}.', it=it))\n"
+    )
+    assert [line.partition(":")[2][:1] for line in _unworded(module)] == ["1", "2"]
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_different_things_are_counted_in_different_words(code):
+    held, same = catalogue(code), {"{n} stations", "{n} pieces"}  # as stops and plots in some
+    counted = [e for e in entries() if e.one and e.context == LIBRARY and e.words not in same]
+    assert len(counted) > 10
+    assert len({held.get(e.id, e.context).string for e in counted}) == len(counted)

@@ -146,6 +146,7 @@ def test_where_finds_stand_alone_it_soon_finds_as_many_as_a_sweep(seed):
         if not alone[other[start[plant] : start[plant + 1]]].any():
             alone[plant] = rng.random() < 0.15
     scene = scene_with(np.full(N, 0.1), hours=6.0, company=0.6)
+    scene = replace(scene, robot=scene.robot.with_times("thesis"))  # as it was tuned
     work, sweep = (work_day(scene, s, alone) for s in (Adaptive(), Naive()))
     assert work.found.sum() >= 0.9 * sweep.found.sum()
 

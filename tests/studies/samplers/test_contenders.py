@@ -23,6 +23,7 @@ N = 144
 
 
 def scene(robot, chance=0.01):
+    robot = robot.with_times("thesis")  # as studies charge
     return Scene(
         AISLES, robot, np.full(N, chance), np.full(N, NEVER, np.int32), seconds_left=robot.day_s
     )
@@ -59,7 +60,7 @@ def test_the_misinformed_decide_as_if_the_robot_saw_as_the_thesiss_does():
             seen.append(scene.robot)
             return Naive().walk(scene, would_find)
 
-    poor, nothing = Robot(hours=1.0, detection=0.5), np.zeros(N, np.bool_)
+    poor, nothing = Robot(hours=1.0, detection=0.5).with_times("thesis"), np.zeros(N, np.bool_)
     told = Misinformed(Listens()).walk(scene(poor), nothing)
     assert seen == [replace(poor, detection=Robot().detects)]
     assert (told.plant == Naive().walk(scene(poor), nothing).plant).all()

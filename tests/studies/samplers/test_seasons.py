@@ -68,7 +68,8 @@ def test_who_pays_for_no_driving_inspects_as_many_plants_as_looks_fit_into_a_day
     bound = next(each for each in CONTENDERS if each.name == NO_TRAVEL)
     streams = RandomStreams(1)
     day = next(season(Scenario("C"), bound, Scenario("C").draw_start(streams), streams))
-    most = int(Robot().day_s / Robot().visit_s)
+    robot = Scenario("C").robot
+    most = int(robot.day_s / robot.visit_s)
     assert most - 1 <= len(day.work) <= most
 
 

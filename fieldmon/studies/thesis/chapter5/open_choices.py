@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Literal
 
 from fieldmon.errors import SettingError
@@ -117,12 +117,8 @@ class OpenChoices:
 
     def robot(self, look_s: float = 40.0, detection: float | None = None) -> Robot:
         """Return the thesis's robot: 12 h a day at 2.5 km/h, detection by its viewpoint table."""
-        return Robot(
-            row_change_s=self.row_change_s,
-            stop_s=self.stop_s,
-            look_s=look_s,
-            detection=detection,
-        )
+        robot = Robot(look_s=look_s, detection=detection).with_times("thesis")
+        return replace(robot, row_change_s=self.row_change_s, stop_s=self.stop_s)
 
     def sentences(self) -> tuple[str, ...]:
         """Return each choice as ``name: value``, nested ones with their group's name."""

@@ -1,0 +1,47 @@
+"""Languages for paper: those of the app, whose catalogues hold the library's sentences too."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fieldmon.cli.beside import app_words
+from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.compute.units import Units
+    from fieldmon.reports.tongue import Tongue
+
+Language = Annotated[
+    str | None,
+    typer.Option(help="Language of its reports: en, he, ar or es; what a season keeps, else en."),
+]
+
+
+def checked_language(code: str) -> str:
+    """Return a language's code; raise `SettingError` where nobody has translated into it."""
+    known: Any = app_words("language").LANGUAGES
+    low = code.strip().lower()
+    if low not in known:
+        raise SettingError(
+            worded(
+                "A language must be one of {known}, but it is {code!r}.",
+                known=", ".join(known),
+                code=code,
+            )
+        )
+    return low
+
+
+def spoken(asked: str | None, kept: str) -> tuple[Tongue, Units]:
+    """Return the language that is asked for, else the season's, and how it writes figures."""
+    from fieldmon.reports.tongue import ENGLISH  # noqa: PLC0415
+
+    # a season may keep a language of a later fieldmon
+    known = kept if kept in app_words("language").LANGUAGES else ENGLISH.code
+    code = known if asked is None else checked_language(asked)
+    tongue: Tongue = app_words("language").tongue(code)
+    units: Units = app_words("units").usual(code).of_library
+    return tongue, units

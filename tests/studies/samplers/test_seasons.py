@@ -7,7 +7,6 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread
-from fieldmon.plot.robot import Robot
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
 from fieldmon.studies.samplers.contenders import CLAIRVOYANT, CONTENDERS, NAMES, NO_TRAVEL, SOME

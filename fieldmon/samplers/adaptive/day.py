@@ -224,6 +224,7 @@ def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in more or fewer infested plants, once finds differ enough from those expected.
 
     Every plant's odds are multiplied; what neighbours have in common stays, as a correlation.
+    A plan, whose results are supposed, begins so sure of the number that nothing changes.
     """
     level = belief.level[0] / belief.level[1]
     if belief.traces.kernel.size == 1 or abs(level - belief.level[2]) < _NOTABLE * belief.level[2]:

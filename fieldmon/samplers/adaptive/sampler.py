@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import WouldFind
 
 
+# as if so many finds had told how many plants are infested: a day tells nothing more
+_SETTLED_FINDS = 1e12
+
+
 @dataclass(frozen=True)
 class Adaptive(Sampler):
     """Take the drive through the rows with the most expected finds for its time.
@@ -90,6 +94,7 @@ class Adaptive(Sampler):
         traces = Traces.none(n) if scene.traces is None else scene.traces.own()
         lean = 0.5 if scene.traces is None else leaning(traces.evidence)
         trust = 1.0 if scene.traces is None else trust_in_differences(scene.chance.mean())
+        finds = _SETTLED_FINDS if scene.supposed else LEVEL_FINDS
         belief = BeliefArrays(
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
@@ -100,7 +105,7 @@ class Adaptive(Sampler):
             pair_chance.copy(),
             ClusterEstimate.none(n, traces.evidence, lean),
             np.array([1.0, chance_apart(traces.evidence), lean, trust]),
-            np.array([LEVEL_FINDS, LEVEL_FINDS, 1.0]),
+            np.array([finds, finds, 1.0]),
             traces,
             Raised.of(n),
         )

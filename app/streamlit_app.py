@@ -2,6 +2,7 @@
 
 import importlib
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import streamlit as st
@@ -46,6 +47,14 @@ def links() -> None:
             st.page_link(page, label=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:")
 
 
+def load(*, map_sent: bool = False) -> None:
+    """Wait for what a page needs; from then on this run opens the file of a season once."""
+    preload.start().load(map_sent=map_sent)
+    from fieldmon.monitoring import kept_open  # noqa: PLC0415 - as just loaded
+
+    FILES.enter_context(kept_open())
+
+
 def page_of(name: str) -> st.Page:
     """Return the page of a room: what was chosen in the panel, or how to begin."""
 
@@ -53,7 +62,7 @@ def page_of(name: str) -> st.Page:
         with st.container(key="panel"), st.container(key=f"room_{name}"):
             if name == "plots":
                 links()
-                preload.start().load(map_sent=False)
+                load()
                 view("plots").show()
             else:
                 in_panel(name)
@@ -74,7 +83,7 @@ def in_panel(name: str) -> None:
         links()
     with said:
         waiting = first_screen.FirstScreen(st.empty())
-    preload.start().load(map_sent=waiting.begin())
+    load(map_sent=waiting.begin())
     from .actions import ways_in  # noqa: PLC0415
     from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
     from .actions.choosing import choose, mark_day  # noqa: PLC0415
@@ -106,7 +115,7 @@ def wide(run: str, *, of_plot: bool) -> None:
         if not of_plot:
             view(run).show()
             return
-        preload.start().load(map_sent=False)
+        load()
         from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
 
         with st.expander(texts.PLOT_FROM):
@@ -143,7 +152,8 @@ turned = st.navigation(
 widget_memory.turn(turned.url_path)
 if (room := rooms.turned_to()) is not None:
     st.switch_page(ROOM_PAGES[room])
-turned.run()
-with map_place:
-    field_map.draw()
+with ExitStack() as FILES:
+    turned.run()
+    with map_place:
+        field_map.draw()
 preload.start().shown.set()

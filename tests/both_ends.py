@@ -1,4 +1,4 @@
-"""Who of two workers runs which file."""
+"""Who of several workers runs which file."""
 
 from xdist.scheduler import LoadFileScheduling
 
@@ -18,9 +18,34 @@ class BothEnds(LoadFileScheduling):
 
     So one browser and one server do; what a room's loops compile to is mostly made by one worker;
     and what is long is begun first, so that no worker is left alone at the end.
+
+    A test that crashes its worker fails once, and the others of its file are run by another.
     """
 
     def _assign_work_unit(self, node):
         if node.gateway.id != "gw0":
             self.workqueue.move_to_end(next(reversed(self.workqueue)), last=False)
         super()._assign_work_unit(node)
+
+    def _reschedule(self, node):
+        """Give a worker so much that it goes on: it begins a test once it knows the next one."""
+        if node not in self.registered_collections:  # it comes for work once it has collected
+            return
+        super()._reschedule(node)
+        while not node.shutting_down and self._pending_of(self.assigned_work[node]) < 2:
+            super()._reschedule(node)
+
+    def remove_node(self, node):
+        """Give what a worker left to others, without the test at which it crashed: return that."""
+        files, self.assigned_work[node] = self.assigned_work[node], {}
+        super().remove_node(node)
+        crashed = None
+        for file, tests in files.items():
+            for test, is_done in tests.items():
+                if crashed is None and not is_done:
+                    crashed, tests[test] = test, True
+            if not all(tests.values()):
+                self.workqueue[file] = tests
+        for other in self.nodes:
+            self._reschedule(other)
+        return crashed

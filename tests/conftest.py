@@ -1,9 +1,13 @@
 """Settings for all tests."""
 
+import gc
 import os
 import shutil
 import sys
+import tempfile
+from pathlib import Path
 
+import psutil
 import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
@@ -13,6 +17,24 @@ from tests.both_ends import BothEnds, in_order
 # once, whatever the environment says
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# a season waits for the disk before a record counts, several times for each: tests keep their files
+# in memory where there is plenty, and let go of them as they pass (pyproject.toml)
+MEMORY, PLENTY = Path("/dev/shm"), 8e9  # noqa: S108 - as the folder is called on Linux
+
+
+def has_plenty():
+    """Tell whether files can be kept in memory."""
+    if "TMPDIR" in os.environ or not os.access(MEMORY, os.W_OK):
+        return False
+    return min(shutil.disk_usage(MEMORY).free, psutil.virtual_memory().available) > PLENTY
+
+
+if has_plenty():
+    os.environ["TMPDIR"], tempfile.tempdir = str(MEMORY), None
+
+# a million objects come while tests are collected, and stay: see `pytest_collection_finish`
+gc.disable()
 
 # each property is tried on so many examples instead of its own number: see `thorough` below
 EXAMPLES = int(os.environ.get("FIELDMON_EXAMPLES", "0"))
@@ -55,6 +77,13 @@ def pytest_collection_modifyitems(items):
         for test in items:
             if is_hypothesis_test(getattr(test, "obj", None)):
                 thorough(test)
+
+
+def pytest_collection_finish():
+    """Look for garbage among what tests make, not among the tests themselves: a tenth of all."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 50)
+    gc.enable()
 
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")

@@ -160,6 +160,8 @@ def show(content: MapContent, answers: MapAnswers | None = None) -> None:
         on_selected_change=lambda: _heard(answers),
         # the server had let go of something: the run that follows publishes it again
         on_missing_change=lambda: None,
+        # the device turned dark or light: the run that follows draws in its colours
+        on_turned_change=lambda: None,
     )  # fmt: skip
 
 

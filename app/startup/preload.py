@@ -5,6 +5,7 @@ Nothing heavy is imported here: the server answers before any of it is loaded.
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 from functools import cache
@@ -36,7 +37,7 @@ class Preload(threading.Thread):
         self._loaded.wait()
 
     def run(self) -> None:
-        """Load what draws an outline, then what plans, then what simulates."""
+        """Load what draws an outline, then what plans, then what prints and simulates."""
         try:
             _load_outline()
             self._asked.wait(_LATER_S)
@@ -48,7 +49,11 @@ class Preload(threading.Thread):
             self._loaded.set()
             self.ready.set()
         self.shown.wait(_LATER_S)
+        _load_paper()
         _load_simulation()
+        # what is loaded stays: a click now and then would wait while all of it is looked through
+        gc.collect()
+        gc.freeze()
 
 
 def _load_outline() -> None:
@@ -66,6 +71,12 @@ def _load_planning() -> None:
     from . import compiled_loops  # noqa: PLC0415
 
     compiled_loops.load_planning()
+
+
+def _load_paper() -> None:
+    from fieldmon.reports import pdf  # noqa: PLC0415
+
+    pdf.load()
 
 
 def _load_simulation() -> None:

@@ -231,13 +231,10 @@ def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpot
 
 def season(path: Path) -> Season:
     """Open a season; all sessions share it, and each call of it reads what is new in the file."""
-    inode = path.stat().st_ino if path.is_file() else 0
-    return _season(path, inode)
-
-
-@st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def _season(path: Path, inode: int) -> Season:  # noqa: ARG001 - another file of the same name
-    return opened_seasons.opened(path)
+    if opened_seasons.is_open(path):
+        return opened_seasons.opened(path)
+    with st.spinner(texts.WORKING):
+        return opened_seasons.opened(path)
 
 
 @st.cache_resource(max_entries=_FEW)

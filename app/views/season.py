@@ -67,13 +67,15 @@ def _again(progress: Progress) -> None:
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:
     named, day, out = choices.units.short_day, texts.DATE_AXIS, texts.OUT_AXIS
     axes = (day, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
-    st.altair_chart(charts.season_days(days, axes, named), alt=texts.FOUND_AXIS)
+    if progress.inspected:  # a chart of nothing says nothing, least of all to who hears it read
+        st.altair_chart(charts.season_days(days, axes, named), alt=texts.FOUND_AXIS)
     st.altair_chart(charts.still_out(days, (day, out), named), alt=out)
     st.markdown(f"**{texts.ROW_AGES}**")
     line = choices.plot.grid.row_line.astype(np.int64) + 1
     never = len(np.unique(line)) - len(np.unique(line[~np.isnan(progress.days_since)]))
-    st.altair_chart(
-        charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
-        alt=texts.ROW_AGES,
-    )
+    if progress.inspected:
+        st.altair_chart(
+            charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
+            alt=texts.ROW_AGES,
+        )
     st.caption(texts.NEVER_ROWS.format(n=never, all=len(np.unique(line))))

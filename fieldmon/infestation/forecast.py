@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import gammaincinv
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import counted
@@ -27,15 +26,18 @@ if TYPE_CHECKING:
 
 #: how far ahead
 NIGHTS = 14
-# how far a rate that nobody measured on the plot may be off, as a share (1 sigma; our choice): so
-# much of what is still to come
-_RATE_DOUBT = 0.4
-# what arrives from outside is a guess of ours: how many finds it is worth. So it may well be that
-# nothing arrives, or four times as much (our choice)
-_ARRIVALS_KNOWN = 0.5
-_DRAWS = 2000
+# how far the number now may be off beyond what the chance map says of itself, where nobody named
+# the pest and where somebody did; and how far the logarithm of the rate at which it grows (1 sigma;
+# our choice)
+_LEVEL_DOUBT, _OF_A_PEST = 0.6, 0.25
+_RATE_DOUBT = 0.5
+# what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
+# found are not told from others. So it may well be that nothing arrives, or many times as much
+_ARRIVALS_KNOWN, _NOT_TOLD = 0.35, 3.0
+_DRAWS = 4000
 # an interval of 90 % is so many standard deviations wide
 _SIGMAS = 3.29
+_LEAST = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,24 +125,14 @@ def forecast(
     for spread in nights:
         mornings.append(mornings[-1].overnight(spread))
     expected = np.array([float(one.chance.sum()) for one in mornings])
-    arrived = expected - _from_inside(evening, nights, expected)
+    inside = _from_inside(evening, nights, expected)
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
-    # what is more now than believed sends out more: as a share, it stays in doubt
-    tonight = _deviation(now or _estimate(evening, grid, evening.doubt))
-    to_come = max(1.0 - expected[0] / max(expected[-1], 1e-9), 0.0)
-    fields = _deviation(_estimate(mornings[-1], grid, 0.0))
-    later = float(np.sqrt(tonight**2 + (_RATE_DOUBT * to_come) ** 2 + fields**2))
-    known = _ARRIVALS_KNOWN + max(found - 2.0, 0.0)
-    ends = [
-        _ends((inside, outside), doubt, known)
-        for inside, outside, doubt in zip(
-            (expected - arrived)[[0, -1]], arrived[[0, -1]], (tonight, later), strict=True
-        )
-    ]
-    # drawn tonight and for the last morning, which takes longest; between them evenly
-    begin, end = ends
-    low, high = (np.linspace(begin[k], end[k], len(expected)) for k in range(2))
-    return Forecast(expected, np.floor(expected * low), np.ceil(expected * high), weather)
+    tonight = now or estimate_plot(grid, evening.chance, evening.pair_chance, doubt=evening.doubt)
+    named = isinstance(evening, TracedPairs) and evening.pest is not None
+    doubts = _deviation(tonight), _OF_A_PEST if named else _LEVEL_DOUBT
+    ends = _interval(inside, expected - inside, doubts, found)
+    high = np.minimum(np.ceil(ends[1]), len(evening.chance))
+    return Forecast(expected, np.floor(ends[0]), high, weather)
 
 
 def _from_inside(evening: Belief, nights: Sequence[Spread], expected: Floats) -> Floats:
@@ -156,31 +148,68 @@ def _from_inside(evening: Belief, nights: Sequence[Spread], expected: Floats) ->
     return least
 
 
-def _estimate(belief: Belief, grid: PlantGrid, doubt: float) -> PlotEstimate:
-    return estimate_plot(grid, belief.chance, belief.pair_chance, doubt=doubt)
-
-
 def _deviation(made: PlotEstimate) -> float:
     """Return the standard deviation of the number, over the number; never none."""
-    return max((made.high - made.low) / made.expected / _SIGMAS, 0.01)
+    return max((made.high - made.low) / max(made.expected, _LEAST) / _SIGMAS, 0.01)
 
 
-def _ends(parts: tuple[float, float], doubt: float, known: float) -> tuple[float, float]:
-    """Return the ends of the interval over the expected number.
+def _interval(inside: Floats, arrived: Floats, doubts: tuple[float, float], found: float) -> Floats:
+    """Return the interval of 90 % on each morning, ``(2, d)``, from whole numbers that are drawn.
+
+    What is on the plot, and what arrives, multiply each by chance, as fast as was expected or as
+    the rate is doubted: where nothing is, nothing comes of it.
 
     Parameters
     ----------
-    parts
-        Expected of what was on the plot, and of what arrives.
-    doubt
-        How far the first may be off, as a share.
-    known
-        As many finds tell how much arrives.
+    inside, arrived
+        ``(d,)`` expected of what is on the plot this evening, and of what came from outside.
+    doubts
+        How far tonight's number may be off, as a share: as the chance map says, and beyond that.
+    found
+        How many finds tell what arrives.
     """
-    draws = RandomStreams(0).of("forecast").random((2, _DRAWS))
-    inside, outside = (
-        part * gammaincinv(shape, drawn) / shape
-        for part, shape, drawn in zip(parts, (doubt**-2.0, known), draws, strict=True)
-    )
-    low, high = np.quantile(inside + outside, (0.05, 0.95)) / sum(parts)
-    return float(low), float(high)
+    draws = RandomStreams(0).of("forecast")
+    known = _ARRIVALS_KNOWN + max(found - _NOT_TOLD, 0.0)
+    doubt, beyond = doubts
+    level = draws.gamma(beyond**-2.0, beyond**2.0, _DRAWS)
+    faster = np.exp(draws.normal(0.0, _RATE_DOUBT, _DRAWS))
+    arrives = draws.gamma(known, 1.0 / known, _DRAWS)
+    here = draws.poisson(level * _tonight(inside[0], arrived[0], doubt, draws))
+    came = draws.poisson(level * arrives * arrived[0])
+    ends = [np.quantile(here + came, (0.05, 0.95))]
+    for night in range(1, len(inside)):
+        grows = max(inside[night], _LEAST) / max(inside[night - 1], _LEAST)
+        new = max(arrived[night] - grows * arrived[night - 1], 0.0)
+        here = _grown(here, grows**faster, draws)
+        came = _grown(came, grows**faster, draws) + draws.poisson(arrives * new)
+        ends.append(np.quantile(here + came, (0.05, 0.95)))
+    return np.array(ends).T
+
+
+def _tonight(inside: float, arrived: float, doubt: float, draws: np.random.Generator) -> Floats:
+    """Draw how many are expected of what is on the plot, as far as that is in doubt.
+
+    Its part of the doubt is as its part of the number; what is drawn as a whole number varies by
+    itself, so that much of the doubt is not drawn here.
+    """
+    inside = max(inside, _LEAST)
+    over = (doubt * (inside + arrived)) ** 2 / (inside + arrived) / inside - 1.0 / inside
+    if over <= _LEAST:
+        return np.full(_DRAWS, inside)
+    return inside * draws.gamma(1.0 / over, over, _DRAWS)
+
+
+def _grown(
+    number: NDArray[np.int64], times: Floats, draws: np.random.Generator
+) -> NDArray[np.int64]:
+    """Draw what becomes of whole numbers in a night in which each grows so many times.
+
+    Each of them by itself, as in a birth process (Yule 1925); where they are to become fewer, each
+    lives on by chance.
+    """
+    lives = np.minimum(times, 1.0)
+    left = draws.binomial(number, lives)
+    stays = np.clip(1.0 / np.maximum(times, 1.0), _LEAST, 1.0)
+    born = draws.negative_binomial(np.maximum(left, 1), stays)
+    grown: NDArray[np.int64] = left + np.where(left > 0, born, 0)
+    return grown

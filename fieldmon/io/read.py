@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.import_report import Imported
     from fieldmon.io.readers.crews import Crew
-    from fieldmon.io.readers.inspection_file.rows import InspectionRows
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks

@@ -15,7 +15,7 @@ from fieldmon.monitoring.season_log import LogEntry
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.tables import KeptMessage
-from fieldmon.monitoring.transactions import Store, copy_season, is_season
+from fieldmon.monitoring.transactions import Store, copy_season, is_season, kept_open
 from fieldmon.monitoring.treatment_effect import TreatmentEffect
 from fieldmon.monitoring.treatments import KeptTreatment
 from fieldmon.monitoring.worked_route import day_was_worked, worked_route
@@ -42,5 +42,6 @@ __all__ = [
     "counting_copy",
     "day_was_worked",
     "is_season",
+    "kept_open",
     "worked_route",
 ]

@@ -14,7 +14,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.io.readers.inspection_file.rows import InspectionRows
+from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import look_up
 from fieldmon.monitoring import inspection_lots, inspection_table

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sqlite3
 import tempfile
+import threading
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,6 +34,8 @@ _PATIENCE_S = 30.0
 # whether a file is a season at all is asked of many files in passing
 _GLANCE_S = 0.5
 _MAGIC = b"SQLite format 3\x00"
+# the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
+_KEPT = threading.local()
 
 
 def is_season(path: str | Path) -> bool:
@@ -135,7 +138,7 @@ class Store:
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
         """Give a consistent view of the file."""
-        with _sentences(self.path), closing(_connect(self.path)) as db:
+        with _sentences(self.path), _opened(self.path) as db:
             db.execute("BEGIN")
             yield db
 
@@ -161,6 +164,52 @@ class Store:
             said = [row[0] for row in db.execute("PRAGMA quick_check(5)")]
         if said != ["ok"]:
             raise _damaged(self.path, said[0])
+
+
+@contextmanager
+def kept_open() -> Iterator[None]:
+    """Let this thread open each season's file once for all that it reads within this block.
+
+    Opening it costs many times what is mostly read. Each reading still sees what the file says at
+    that moment, and between them nothing is locked.
+    """
+    if _kept() is not None:
+        yield
+        return
+    _KEPT.files = {}
+    try:
+        yield
+    finally:
+        files, _KEPT.files = _KEPT.files, None
+        for db in files.values():
+            db.close()
+
+
+def _kept() -> dict[tuple[Path, int], sqlite3.Connection] | None:
+    return getattr(_KEPT, "files", None)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[sqlite3.Connection]:
+    """Give a connection for one transaction: one that this thread keeps, if it may."""
+    files = _kept()
+    if files is None:
+        with closing(_connect(path)) as db:
+            yield db
+        return
+    # another file of the same name is another season
+    of_file = path, path.stat().st_ino if path.is_file() else 0
+    # one that is at work belongs to whoever reads around this
+    db = files.pop(of_file) if of_file in files else _connect(path)
+    try:
+        yield db
+    finally:
+        if of_file in files:
+            db.close()
+        else:
+            if db.in_transaction:
+                db.execute("ROLLBACK")
+            files[of_file] = db
 
 
 def copy_season(path: Path, to: Path) -> None:

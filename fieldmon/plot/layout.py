@@ -19,13 +19,13 @@ from fieldmon.plot.block_layout import lay_blocks
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.line_layout import copies, is_straight, lay_along
 from fieldmon.plot.measured_rows import (
-    PlantNames,
     SaidRows,
     bent_rows,
     measured_grid,
     rows_in_blocks,
     said_rows,
 )
+from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.layout import Planting
+    from fieldmon.plot.plant_names import PlantNames
     from fieldmon.plot.projection import Frame
 
     Float = NDArray[np.float64]
@@ -80,16 +81,6 @@ class SaidRows(NamedTuple):
         misnamed = 1.0 - min(_shared(row, named), _shared(named, row))
         label = None if misnamed > _NONSENSE else self.label
         return self._replace(label=label, misnamed=misnamed)
-
-
-class PlantNames(NamedTuple):
-    """The names ``(n,)`` of the row and of the block of each measured plant; None: not known."""
-
-    row: NDArray[np.str_] | None = None
-    block: NDArray[np.str_] | None = None
-
-    def __repr__(self) -> str:
-        return f"<PlantNames: {0 if self.row is None else len(self.row)} plants>"
 
 
 def said_rows(plants: Float, names: PlantNames, field: Field | None, *, bearing: bool) -> SaidRows:

@@ -14,8 +14,9 @@ from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
 from fieldmon.plot.line_layout import lay_along
-from fieldmon.plot.measured_rows import PlantNames, said_rows
+from fieldmon.plot.measured_rows import said_rows
 from fieldmon.plot.missing_plants import without
+from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
 from fieldmon.plot.row_report import RowReport, row_report
 from fieldmon.plot.travel import Aisles

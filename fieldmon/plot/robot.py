@@ -187,7 +187,7 @@ class Robot:
         (9.0, 25.0)
         """
         if self.on_foot:
-            raise SettingError("A scout has times of its own: leave a robot's out.")
+            raise SettingError(worded("A scout has times of its own: leave a robot's out."))
         if name not in ROBOT_TIMES:
             raise SettingError(
                 worded(

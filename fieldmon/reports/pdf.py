@@ -29,6 +29,7 @@ from fieldmon.reports.content import (
 from fieldmon.reports.drawing import Lettering
 from fieldmon.reports.fonts import FontSet
 from fieldmon.reports.pdf_painter import PT_MM, letter, paint
+from fieldmon.reports.tongue import ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,6 +48,13 @@ _FLOW_GAP = 5.0
 _LEAST_NOTES, _MOST_NOTES = 2, 7
 _LEAST_PICTURE_MM = 35.0
 _OTHER_END = {"start": "end", "middle": "middle", "end": "start"}
+
+
+def load() -> None:
+    """Load what writes a PDF, for who will print: most of what the first one takes."""
+    import fpdf  # noqa: F401, PLC0415 - half a second
+
+    FontSet.of(_own_words(ENGLISH))
 
 
 def pdf_bytes(report: Report, paper: str = "a4") -> bytes:

@@ -28,11 +28,14 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
-    from fieldmon.samplers.base import Sampler
+    from fieldmon.samplers.base import Sampler, WouldFind
     from fieldmon.simulation.insects import PlotInsects
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.treating import TreatmentRule
 
+    Floats = NDArray[np.float64]
+    #: who works for a day, given what each of them would find: all together, and each of a team
+    Walk = Callable[[list[WouldFind]], tuple[Workday, tuple[Workday, ...]]]
 
 _HOUR_S, _DAY_S = 3600.0, 86400.0
 
@@ -309,33 +312,60 @@ class SeasonOnItsWay:
     def work_by_hour(
         self, number: int, own_key: np.uint64, inspect_key: np.uint64, spread_key: np.uint64
     ) -> SimulatedDay:
-        """Work for a day in whose hours insects move; return what came of it.
+        """Work for a day in whose hours insects move; return what came of it."""
+        scene = self.scene(number, own_key)
+
+        def walk(would_find: list[WouldFind]) -> tuple[Workday, tuple[Workday, ...]]:
+            return work_day(scene, self.sampler, would_find[0]), ()
+
+        return self.by_hour(number, walk, [self.detects], (inspect_key, spread_key))
+
+    def by_hour(
+        self, number: int, walk: Walk, detects: list[Floats], keys: tuple[np.uint64, np.uint64]
+    ) -> SimulatedDay:
+        """Return what comes of a day in whose hours insects move while somebody works.
 
         A plant is as it is in the hour in which it is inspected.
+
+        Parameters
+        ----------
+        walk
+            Who works.
+        detects
+            What each of them detects, by inspection time.
+        keys
+            Name the coins of the day's inspections and of its insects.
         """
-        if not isinstance(self.insects, PestInsects):
-            return self.work(number, own_key, inspect_key)
-        morning, scene = self.infested, self.scene(number, own_key)
-        would_find = draw_detections(self.showing(number), self.detects, inspect_key)
-        work, done, gone_s = work_day(scene, self.sampler, would_find), 0, 0.0
-        while gone_s + _HOUR_S <= min(work.end_s, _DAY_S):
+        inspect_key, spread_key = keys
+        morning, insects = self.infested, self.insects
+
+        def would_be_found() -> list[WouldFind]:
+            showing = self.showing(number)
+            return [draw_detections(showing, each, inspect_key) for each in detects]
+
+        would_find = would_be_found()
+        (work, each), gone_s = walk(would_find), 0.0
+        seen = np.zeros(len(morning), np.bool_)
+        while isinstance(insects, PestInsects) and gone_s + _HOUR_S <= min(work.end_s, _DAY_S):
             gone_s += _HOUR_S
-            until = int(np.searchsorted(work.arrive_s, gone_s))
-            passed = slice(done, until)
-            found, done = work.plant[passed][work.found[passed]], until
-            self.ever_infested += self.insects.pass_hour(found, number, spread_key)
-            now = draw_detections(self.showing(number), self.detects, inspect_key)
+            passed = (work.arrive_s < gone_s) & ~seen[work.plant]
+            self.ever_infested += insects.pass_hour(
+                work.plant[passed & work.found], number, spread_key
+            )
+            seen[work.plant[passed]] = True
             # what was seen stays seen; what lies ahead may be another matter now
-            now[work.plant[:done]] = would_find[work.plant[:done]]
-            ahead = work.plant[done:]
-            changed = bool((now[ahead] != would_find[ahead]).any())
+            now = [np.where(seen, a, b) for a, b in zip(would_find, would_be_found(), strict=True)]
+            ahead = work.plant[~seen[work.plant]]
+            changed = any(
+                (a[ahead] != b[ahead]).any() for a, b in zip(now, would_find, strict=True)
+            )
             would_find = now
             if changed:
-                work = work_day(scene, self.sampler, would_find)
-        self._found_last = work.plant[done:][work.found[done:]]
+                work, each = walk(would_find)
+        self._found_last = work.plant[~seen[work.plant] & work.found]
         evening = self.infested.copy()
         evening[self._found_last] = False
-        return replace(self.worked(number, work), infested=morning, evening=evening)
+        return replace(self.worked(number, work, each), infested=morning, evening=evening)
 
     def showing(self, number: int) -> NDArray[np.bool_]:
         """Return where an inspection may find something on a day, ``(n,)``."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
-    from fieldmon.samplers.base import Sampler
+    from fieldmon.samplers.base import Sampler, Scene, WouldFind
     from fieldmon.simulation.season import SeasonSettings, SimulatedDay
     from fieldmon.simulation.start import Start
 
@@ -89,7 +89,7 @@ def simulated_team_days(
     names = ("inspect", "spread")
     keys = zip(*(streams.keys(name) for name in names), strict=True)
     for number, (inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
-        day = season.day(number, streams, inspect)
+        day = season.day(number, streams, inspect, overnight)
         yield day
         season.pass_night(day, overnight)
 
@@ -118,27 +118,40 @@ class _TeamSeason(SeasonOnItsWay):
         ]
         self.trails = [np.empty(0, np.int32) for _ in self.members]
 
-    def day(self, number: int, streams: RandomStreams, inspect_key: np.uint64) -> SimulatedDay:
+    def day(
+        self, number: int, streams: RandomStreams, inspect_key: np.uint64, spread_key: np.uint64
+    ) -> SimulatedDay:
         """Work for a day; return what came of it."""
-        posts = []
-        for k, member in enumerate(self.members):
-            own = (number,) if k == 0 else (number, k)
-            trail, robot = self.trails[k], member.robot
-            scene = replace(
-                self.scene(number, streams.key("sampler", *own)),
-                aisles=self.of_each[k], robot=robot, seconds_left=robot.day_s,
-                at=resting_place(robot, trail), trail=trail,
-            )  # fmt: skip
-            detects = self.sampler.inspection_times(robot).detects
-            would_find = draw_detections(self.showing(number), detects, inspect_key)
-            posts.append(Posted(scene, member.starts_s, would_find))
+        scenes = [self._scene(number, k, streams) for k in range(len(self.members))]
+        starts_s = [one.starts_s for one in self.members]
         learn = self._learner(number) if self.sampler.reads_chance else None
-        each = team_day(posts, self.sampler, self.teamwork, learn)
+
+        def walk(would_find: list[WouldFind]) -> tuple[Workday, tuple[Workday, ...]]:
+            posts = [Posted(*one) for one in zip(scenes, starts_s, would_find, strict=True)]
+            each = team_day(posts, self.sampler, self.teamwork, learn)
+            return merged(each, starts_s), each
+
+        detects = [self.sampler.inspection_times(one.robot).detects for one in self.members]
+        if self.moves_by_day:
+            day = self.by_hour(number, walk, detects, (inspect_key, spread_key))
+        else:
+            showing = self.showing(number)
+            work, each = walk([draw_detections(showing, one, inspect_key) for one in detects])
+            day = self.worked(number, work, each)
         self.trails = [
             work.plant if len(work) else trail
-            for work, trail in zip(each, self.trails, strict=True)
+            for work, trail in zip(day.each, self.trails, strict=True)
         ]
-        return self.worked(number, merged(each, [one.starts_s for one in self.members]), each)
+        return day
+
+    def _scene(self, number: int, k: int, streams: RandomStreams) -> Scene:
+        """Return what the k-th of the team knows in the morning."""
+        own, robot = (number,) if k == 0 else (number, k), self.members[k].robot
+        return replace(
+            self.scene(number, streams.key("sampler", *own)),
+            aisles=self.of_each[k], robot=robot, seconds_left=robot.day_s,
+            at=resting_place(robot, self.trails[k]), trail=self.trails[k],
+        )  # fmt: skip
 
     def _learning(self, work: Workday) -> Learning:
         return self.settings.learning or Learning(detection=work.detects)

@@ -4,7 +4,9 @@ import base64
 import io
 import json
 from contextlib import suppress
+from pathlib import Path
 
+import axe_playwright_python
 import numpy as np
 import pytest
 from PIL import Image
@@ -13,6 +15,13 @@ from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from tests.app.driving import until
 
 MAP = ".map"
+#: axe-core, as its package brings it
+AXE = Path(axe_playwright_python.__file__).with_name("axe.min.js")
+_FAULTS = """async (runOnly) => {
+  const found = await axe.run(document, { resultTypes: ["violations"], ...(runOnly ? { runOnly } : {}) });
+  return found.violations.filter((one) => ["serious", "critical"].includes(one.impact)).flatMap((one) =>
+    one.nodes.map((node) => `${one.id}: ${node.html.slice(0, 120)} (${(node.any[0] ?? node.all[0])?.message})`));
+}"""  # noqa: E501
 #: the map with all that is wanted on it, while the server has nothing more to say
 IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
 DRAWN = f"{MAP}[data-shown]"
@@ -112,6 +121,34 @@ def is_near(image, place, colour, reach=2, tolerance=40):
 def share_near(image, places, colour, **more):
     """Return the share of places that have a colour near."""
     return float(np.mean([is_near(image, place, colour, **more) for place in places]))
+
+
+# -- for everybody
+
+
+def faults(page, *rules):
+    """Return what axe-core finds serious or critical on a page, by these rules or by all."""
+    if not page.evaluate("Boolean(window.axe)"):
+        page.evaluate(AXE.read_text(encoding="utf-8"))
+    found = page.evaluate(_FAULTS, {"type": "rule", "values": rules} if rules else None)
+    return [f"{one} on {page.url}" for one in found]
+
+
+def in_scheme(page, scheme):
+    """Let the device be light or dark; wait until the page and its map are so."""
+    page.emulate_media(color_scheme=scheme)
+    dark = f"{MAP}.dark" if scheme == "dark" else f"{MAP}:not(.dark)"
+    page.wait_for_selector(dark, state="attached", timeout=_REST_MS)
+    rest(page)
+
+
+def tab_to(page, target, most=120):
+    """Press Tab until what is wanted has the keyboard."""
+    for _ in range(most):
+        if target.count() and target.first.evaluate("(one) => one.matches(':focus')"):
+            return
+        page.keyboard.press("Tab")
+    pytest.fail(f"{target} is not reached by {most} times Tab")
 
 
 # -- what lies on the map

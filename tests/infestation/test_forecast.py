@@ -53,6 +53,26 @@ def test_the_interval_holds_the_number_after_fourteen_nights():
     assert 0.8 <= np.mean(held) <= 1.0
 
 
+def test_where_nothing_may_be_nothing_may_come_of_it():
+    """A clean plot stays within the interval for 14 nights: what is not there sends nothing out."""
+    ahead = forecast(TracedPairs.of(GRID, np.full(784, 5e-4)), GRID, [Spread(0.1)] * 14)
+    assert ahead.low.tolist() == [0.0] * 15
+    assert ahead.high[-1] > ahead.expected[-1] > 1.0
+
+
+def test_the_interval_ends_at_the_number_of_plants_and_holds_what_is_expected():
+    ahead = forecast(TracedPairs.of(GRID, np.full(784, 0.3)), GRID, [Spread(0.5)] * 14)
+    assert ahead.high.max() == 784
+    assert (ahead.low < ahead.expected).all()
+    assert (ahead.expected <= ahead.high).all()
+
+
+def test_the_interval_widens_as_nights_go_by():
+    ahead = forecast(TracedPairs.of(GRID, np.full(784, 0.02)), GRID, [Spread(0.02)] * 14)
+    wide = ahead.high - ahead.low
+    assert wide[-1] > wide[7] > wide[0]
+
+
 @pytest.mark.parametrize(
     ("weather", "basis"),
     [

@@ -14,7 +14,7 @@ import pyogrio
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import Season, is_season
+from fieldmon.monitoring import Season, is_season, kept_open, transactions
 from fieldmon.monitoring.transactions import Store
 from tests.monitoring.open_elsewhere import as_qgis, beside
 from tests.monitoring.seasons import BEGINS, state, three_results
@@ -235,3 +235,40 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
         season.record(big, "x", confirmed=True)
     season.store.writing = original
     assert state(path) == 12
+
+
+def test_what_is_kept_open_is_opened_once_says_what_is_new_and_locks_nothing(path, monkeypatch):
+    season, opened, connect = Season(path), [], transactions._connect
+    monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)
+    with kept_open():
+        before = season.revision
+        monkeypatch.setattr(
+            transactions, "_connect", lambda *of: opened.append(of[0]) or connect(*of)
+        )
+        assert season.settings.begins == BEGINS
+        with season.store.reading() as db, season.store.reading() as inner:
+            assert db is not inner
+        with kept_open():  # a page within a page
+            assert len(season.days()) == len(season.days())
+        assert opened == [path]  # for the reading within a reading
+        Season(path).record(three_results(), "another window")
+        n = len(opened)
+        assert season.revision != before
+        assert len(season.history.inspections) == 15
+        assert len(opened) == n
+        with closing(sqlite3.connect(path, timeout=0)) as other:
+            other.execute("BEGIN EXCLUSIVE")
+            with pytest.raises(FileProblem, match="must be free"):
+                season.revision  # noqa: B018 - it reads
+    season.revision  # noqa: B018
+    assert len(opened) == n + 1
+
+
+def test_a_file_that_takes_the_place_of_one_kept_open_is_the_one_that_is_read(path, tmp_path):
+    season = Season(path)
+    with kept_open():
+        before = season.revision
+        shutil.copy(path, tmp_path / "other.gpkg")
+        Season(tmp_path / "other.gpkg").record(three_results(), "elsewhere")
+        (tmp_path / "other.gpkg").replace(path)
+        assert season.revision != before

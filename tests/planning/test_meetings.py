@@ -1,6 +1,7 @@
 """Two in one aisle at once are seen on their lines, one after the other are not."""
 
 import numpy as np
+import pytest
 
 from fieldmon.planning.meetings import meetings
 from fieldmon.planning.plan import plan_in
@@ -8,6 +9,7 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.base import NEVER, Sampler, Scene, Stops
+from tests.second_by_second import in_aisles
 
 AISLES = Aisles.of(rectangle(4, 10))
 
@@ -60,3 +62,25 @@ def test_who_only_drives_through_is_met_too():
 
 def test_a_day_without_stops_meets_nobody():
     assert meetings([route(13), route()], np.zeros(2)) == []
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_meetings_are_when_two_stand_in_one_aisle_second_by_second(seed):
+    rng = np.random.default_rng(seed)
+    routes = [route(*rng.permutation(40)[: rng.integers(1, 7)].tolist()) for _ in range(3)]
+    starts_s, step_s = rng.uniform(0.0, 120.0, 3), 0.5
+    there = in_aisles(routes, starts_s, step_s)
+    told = np.zeros((3, 3, there.shape[1]), bool)
+    clear = told.copy()
+    clear[:] = True
+    clock = np.arange(there.shape[1]) * step_s
+    for met in meetings(routes, starts_s):
+        at = (clock > met.since_s) & (clock < met.until_s)
+        told[met.who] |= at
+        here = at & (there[met.who[0]] >= 0)
+        assert (there[met.who[0]][here] == met.aisle).mean() > 0.9
+        for edge in (met.since_s, met.until_s):  # half a metre from an aisle's end
+            clear[met.who] &= np.abs(clock - edge) > 2.0
+    for a, b in ((0, 1), (0, 2), (1, 2)):
+        together = (there[a] == there[b]) & (there[a] >= 0)
+        np.testing.assert_array_equal(told[a, b][clear[a, b]], together[clear[a, b]])

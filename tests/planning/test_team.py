@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.members import TeamMember, team_of
-from fieldmon.planning.team import bound_of_days, plan_team
+from fieldmon.planning.team import _Task, bound_of_days, plan_team, team_bound
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
@@ -59,7 +59,7 @@ def test_a_team_shares_a_plot_and_nobody_meets(n, faces):
 
 
 @settings(max_examples=6, deadline=None)
-@given(crooked_fields(max_radius_m=60.0), st.integers(2, 3), st.booleans(), st.data())
+@given(crooked_fields(max_radius_m=45.0), st.integers(2, 3), st.booleans(), st.data())
 def test_on_crooked_plots_nobody_meets_either(field, n, returns, data):
     try:
         plot = Plot.of(field)
@@ -144,3 +144,14 @@ def test_the_days_of_a_team_have_a_bound_as_long_as_they_are_whole():
     assert said.startswith(f"{plan.expected_found:.1f} finds expected; no routes of these hours ")
     begun = replace(plan.days[0], scene=replace(plan.days[0].scene, seconds_left=60.0))
     assert bound_of_days([begun, plan.days[1]]) == ""
+
+
+def test_a_bound_of_two_gates_holds_what_only_the_farther_gate_can_reach():
+    grid = rectangle(30, 15)
+    low, high = grid.xy_m.min(axis=0) - 3.0, grid.xy_m.max(axis=0) + 3.0
+    at_low, at_high = (Aisles.of(grid, (float(at[0]), float(at[1]))) for at in (low, high))
+    worth = np.zeros(len(grid))
+    worth[np.argmin(np.hypot(*(grid.xy_m - high).T))] = 1.0
+    robot = Robot(hours=0.04)
+    assert team_bound([_Task(at_high, robot, worth)]) == pytest.approx(1.0)
+    assert team_bound([_Task(at_low, robot, worth), _Task(at_high, robot, worth)]) >= 1.0 - 1e-9

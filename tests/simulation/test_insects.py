@@ -16,7 +16,7 @@ from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
 from fieldmon.samplers.base import InspectionTimes, Stops
 from fieldmon.simulation.insects import NightInsects, PestInsects
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SeasonSettings, morning_beliefs, simulated_days
 from fieldmon.simulation.start import Start
 
 AISLES = Aisles.of(rectangle(12, 12))
@@ -55,15 +55,15 @@ def test_a_rule_of_nights_hides_what_is_new_for_its_nights():
 
 
 def test_the_hours_of_a_day_and_of_its_night_are_each_passed_once():
-    insects = PestInsects(GRID, at(40, 100), PestInWeather(BY_HOUR))
+    insects = PestInsects(GRID, at(*range(0, N, 9)), PestInWeather(BY_HOUR))
     none = np.empty(0, np.int32)
     for _ in range(9):
         insects.pass_hour(none, 0, key(0))
     insects.pass_night(none, 0, key(0))
-    alone = PestInsects(GRID, at(40, 100), PestInWeather(BY_HOUR))
+    alone = PestInsects(GRID, at(*range(0, N, 9)), PestInWeather(BY_HOUR))
     alone.pass_night(none, 0, key(0))
     assert (insects.infested == alone.infested).all()
-    assert insects.infested.sum() > 2
+    assert insects.infested.sum() > 16
 
 
 def test_nothing_comes_of_a_plant_whose_insects_were_destroyed():
@@ -124,3 +124,15 @@ def test_the_evening_counts_what_came_by_day():
         assert day.left == int(day.evening.sum())
     early = replace(BY_HOUR, movement=replace(BY_HOUR.movement, hours=(6.0, 7.0), per_day=3.0))
     assert any((day.evening & ~day.infested).any() for day in season(early, n_days=2))
+
+
+def test_the_map_believes_of_the_pest_that_there_is_unless_told_of_another():
+    def ages_of(**told):
+        start = Start(at(40), np.full(N, 0.01))
+        kept = morning_beliefs(GRID, Robot(), start, SeasonSettings(**told), chooses_time=False)
+        return kept.on(0).cohorts is not None
+
+    living = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
+    assert ages_of(pest=living)
+    assert ages_of(believed_pest=living)
+    assert not ages_of()

@@ -7,7 +7,9 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
+from fieldmon.pests.pest import Movement, Pest
 from fieldmon.planning.members import TeamMember, Teamwork, team_of
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
@@ -96,6 +98,38 @@ def test_more_robots_leave_less_behind():
         for n in (1, 3)
     ]
     assert losses[1] < 0.7 * losses[0]
+
+
+def hourly(members, n_days=3, hours=(6.0, 12.0)):
+    """Return the days of a team while a pest moves by the hour."""
+    movement = Movement("exponential", 2.0, reach_m=6.0, hours=hours, by_hour=True)
+    settings = SeasonSettings(n_days=n_days, pest=PestInWeather(Pest("quick", movement=movement)))
+    works = team_of(members, Robot(hours=4.0)), Teamwork()
+    streams = RandomStreams(3)
+    return list(simulated_team_days(PLOT, works, sampler("adaptive"), start(), settings, streams))
+
+
+def test_insects_move_while_a_team_works_by_one_clock():
+    """What comes by day is there in the evening, and some of it is found on the same day."""
+    days = hourly(2)
+    assert any((day.evening & ~day.infested).any() for day in days)
+    new = [(day.work.found & ~day.infested[day.work.plant]).sum() for day in days]
+    assert sum(new) > 0
+    at_night = hourly(2, hours=(20.0, 24.0))
+    assert not any((day.evening & ~day.infested).any() for day in at_night)
+
+
+def test_by_the_hour_too_a_team_of_one_has_the_season_of_one_alone():
+    team = hourly(1)
+    streams, robot = RandomStreams(3), Robot(hours=4.0)
+    movement = Movement("exponential", 2.0, reach_m=6.0, hours=(6.0, 12.0), by_hour=True)
+    settings = SeasonSettings(n_days=3, pest=PestInWeather(Pest("quick", movement=movement)))
+    alone = simulated_days(PLOT.aisles, robot, sampler("adaptive"), start(), settings, streams)
+    for one, other in zip(team, alone, strict=True):
+        assert (one.work.plant == other.work.plant).all()
+        assert (one.evening == other.evening).all()
+    for day in hourly(2):
+        assert day.ever_found <= day.ever_infested
 
 
 def test_members_differ_in_hours_gates_and_where_they_rest():

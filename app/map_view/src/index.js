@@ -17,12 +17,13 @@ import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
 import { Playback } from "./playback.js";
 import { ofRuns, runsOf, withRow } from "./select.js";
-import { covered, keepShape } from "./shape.js";
+import { covered, keepShape, listed } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
 import { fitted, metresPerPixel } from "./view.js";
 
-const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600;
+const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600, TURN_MS = 300;
+const DARK = matchMedia("(prefers-color-scheme: dark)");
 // a GIF of more pixels is too large to be sent; more plants at once are no selection
 const FILM_PX = 1100, MOST_PICKED = 20000;
 
@@ -106,6 +107,7 @@ class MapPage {
     const page = document.documentElement, turned = page.dir !== direction;
     page.lang = language;
     page.dir = direction;
+    listed();
     if (turned) window.dispatchEvent(new Event("resize"));
   }
 
@@ -457,6 +459,9 @@ class MapPage {
 
   listen() {
     const place = this.canvasPlace;
+    // at dusk many devices turn dark by themselves: what the server colours follows, once Streamlit knows
+    this.turned = () => setTimeout(() => this.tell?.("turned", this.turn), TURN_MS);
+    DARK.addEventListener("change", this.turned);
     place.setAttribute("role", "application");
     place.tabIndex = 0;
     place.addEventListener("pointerdown", (event) => this.pressed(event), true);
@@ -638,6 +643,7 @@ class MapPage {
     this.frames.stop();
     this.drive.end();
     this.watch?.disconnect();
+    DARK.removeEventListener("change", this.turned);
     this.shape.end();
     this.deck?.finalize();
     this.root.remove();

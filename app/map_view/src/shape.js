@@ -5,6 +5,8 @@ import style from "./shape.css";
 
 // where a phone's sheet begins, and how far up a tap pulls it
 const HALF = 0.58, UP = 0.14;
+// a window made narrow has its list of pages a moment later
+const LATER_MS = 500;
 const KEY = "fieldmon panel";
 const page = document.documentElement;
 
@@ -40,6 +42,14 @@ function measure() {
   page.style.setProperty("--covers-bottom", `${bottom}px`);
 }
 
+// Streamlit's list of pages, on a phone, has a group in it that is no item, and whose items are then in no list.
+export function listed() {
+  for (const group of document.querySelectorAll("ul[data-testid=stSidebarNavItems] > div:not([role])")) {
+    group.setAttribute("role", "listitem");
+    for (const item of group.querySelectorAll("li")) item.setAttribute("role", "none");
+  }
+}
+
 // Set the panel's handle up; return what fits it to the page again, and what takes it away.
 export function keepShape(words) {
   const shape = shapeOf();
@@ -56,6 +66,7 @@ export function keepShape(words) {
     page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
     measure();
+    setTimeout(listed, LATER_MS);
     const said = words() ?? {};
     fold.textContent = shape.folded ? "›" : "‹"; // mirrored by itself where one reads from the right
     fold.setAttribute("aria-label", (shape.folded ? said.unfold : said.fold) ?? "");

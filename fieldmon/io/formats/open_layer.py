@@ -1,4 +1,7 @@
-"""From a source and what was chosen to one layer, whatever the file is."""
+"""From a source and what was chosen to one layer, whatever the file is.
+
+GDAL and Parquet take half a second to load: they wait for a file that needs them.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.gdal import list_layers as gdal_layers
-from fieldmon.io.formats.gdal import read_layer, read_mapinfo, read_shapefile
 from fieldmon.io.formats.geojson import read_geojson
-from fieldmon.io.formats.geoparquet import read_parquet
 from fieldmon.io.formats.isoxml import read_isoxml
 from fieldmon.io.formats.layer import Layer, LayerInfo
 from fieldmon.io.formats.signatures import TABULAR, VECTOR, WORKBOOKS, FileKind
@@ -23,6 +23,8 @@ from fieldmon.io.sandbox.unpack import Member, Workroom, choose_member, members
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
+
+    from fieldmon.io.formats.gdal import GdalLayer
 
 _MAPINFO = frozenset({FileKind.MAPINFO_TAB, FileKind.MAPINFO_MIF})
 _NOTES = (".txt", ".md", ".html", ".xml", ".json.txt")
@@ -79,7 +81,7 @@ def _listed(staged: StagedMember) -> list[LayerInfo]:
         return [LayerInfo(staged.name, staged.member.stem, "Unknown")]
     if kind is FileKind.TABLE:
         return [LayerInfo(staged.name, staged.member.stem, None)]
-    listed = gdal_layers(staged.path, staged.name)
+    listed = _gdal_layers(staged)
     if kind in {FileKind.SHAPEFILE, *_MAPINFO}:
         return [LayerInfo(staged.name, staged.member.stem, listed[0].geometry_type)]
     return [LayerInfo(staged.name, one.name, one.geometry_type) for one in listed]
@@ -91,22 +93,46 @@ def _read(staged: StagedMember, options: ReadOptions) -> Layer:
         return _READERS[kind](staged.path, stem, options)
     if kind in WORKBOOKS:
         return _only_layer(staged, options, sheet_names(staged.path, staged.name))
-    listed = gdal_layers(staged.path, staged.name)
+    listed = _gdal_layers(staged)
     names = tuple(one.name for one in listed)
     spatial = tuple(one.name for one in listed if one.geometry_type is not None)
     # a plain table beside maps is read only when it is asked for by name
     return _only_layer(staged, options, names if options.layer in names else spatial or names)
 
 
+def _parquet(path: Path, name: str, _: ReadOptions) -> Layer:
+    from fieldmon.io.formats.geoparquet import read_parquet  # noqa: PLC0415
+
+    return read_parquet(path, name)
+
+
+def _shapefile(path: Path, name: str, options: ReadOptions) -> Layer:
+    from fieldmon.io.formats.gdal import read_shapefile  # noqa: PLC0415
+
+    return read_shapefile(path, name, options.encoding)
+
+
+def _mapinfo(path: Path, name: str, _: ReadOptions) -> Layer:
+    from fieldmon.io.formats.gdal import read_mapinfo  # noqa: PLC0415
+
+    return read_mapinfo(path, name)
+
+
 _READERS: dict[FileKind, Callable[[Path, str, ReadOptions], Layer]] = {
     FileKind.GEOJSON: lambda path, name, options: read_geojson(path, name, options.encoding),
-    FileKind.PARQUET: lambda path, name, _: read_parquet(path, name),
+    FileKind.PARQUET: _parquet,
     FileKind.TABLE: read_text_table,
-    FileKind.SHAPEFILE: lambda path, name, options: read_shapefile(path, name, options.encoding),
+    FileKind.SHAPEFILE: _shapefile,
     FileKind.ISOXML: lambda path, name, _: read_isoxml(path, name),
-    FileKind.MAPINFO_TAB: lambda path, name, _: read_mapinfo(path, name),
-    FileKind.MAPINFO_MIF: lambda path, name, _: read_mapinfo(path, name),
+    FileKind.MAPINFO_TAB: _mapinfo,
+    FileKind.MAPINFO_MIF: _mapinfo,
 }
+
+
+def _gdal_layers(staged: StagedMember) -> list[GdalLayer]:
+    from fieldmon.io.formats.gdal import list_layers  # noqa: PLC0415
+
+    return list_layers(staged.path, staged.name)
 
 
 def _only_layer(staged: StagedMember, options: ReadOptions, names: tuple[str, ...]) -> Layer:
@@ -164,6 +190,8 @@ def _full_layers(
 def _layer(staged: StagedMember, layer: str, options: ReadOptions) -> Layer:
     if staged.member.kind in WORKBOOKS:
         return read_sheet(staged.path, staged.name, layer, options)
+    from fieldmon.io.formats.gdal import read_layer  # noqa: PLC0415
+
     read = read_layer(staged.path, staged.name, layer)
     # a file whose only layer has no name is given that of the copy
     return replace(read, name=staged.member.stem) if read.name == staged.path.stem else read

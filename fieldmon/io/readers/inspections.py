@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import Source
-    from fieldmon.io.readers.inspection_file.rows import InspectionRows
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.plot.grid import PlantGrid
 
 _RESULTS = {PRESENT: FOUND, ABSENT: CLEAN, UNKNOWN: SKIPPED}

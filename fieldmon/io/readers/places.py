@@ -17,7 +17,7 @@ from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.parse.values import is_missing
 from fieldmon.plot.grid import block_label, row_in_block, row_label
-from fieldmon.plot.measured_rows import PlantNames
+from fieldmon.plot.plant_names import PlantNames
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -32,6 +32,12 @@ _OUT_OF_TIME = getattr(signal, "SIGXCPU", 0) or -1
 
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
+#: what a process that is to have all at hand loads before its first file
+_LOADED_AHEAD = (
+    "fieldmon.io.sandbox.tasks",
+    *(f"fieldmon.io.readers.{name}" for name in ("plots", "points_and_lines", "treated", "crews")),
+    *(f"fieldmon.io.formats.{name}" for name in ("gdal", "geoparquet")),
+)
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not
 # there at all, and a proxy that does not exist stands between the rest and the world.
 _SKIPPED = (
@@ -257,7 +263,7 @@ def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> An
 
 def warm() -> None:
     """Start a reading process now, so that the first file need not wait for it to load."""
-    _IDLE.give_back(_IDLE.borrow("fieldmon.io.sandbox.tasks"))
+    _IDLE.give_back(_IDLE.borrow(*_LOADED_AHEAD))
 
 
 def peaks_bytes() -> list[int]:

@@ -1,4 +1,7 @@
-"""What the reading process does: one function for each door of `reading`."""
+"""What the reading process does: one function for each door of `reading`.
+
+What lays out rows takes longest to load: who reads a table of results does not wait for it.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.io.formats.open_layer import layers_of, open_layer
-from fieldmon.io.readers.crews import crews_of
-from fieldmon.io.readers.inspection_file.rows import InspectionRows, rows_of
-from fieldmon.io.readers.plots import named_areas, plots_of
-from fieldmon.io.readers.points_and_lines import (
-    drawn_blocks_of,
-    drawn_rows_of,
-    lines_of,
-    plants_of,
-)
+from fieldmon.io.readers.inspection_file.rows import rows_of
 from fieldmon.io.readers.records import records_by_plot, records_of
-from fieldmon.io.readers.treated import treated_of
 from fieldmon.io.readers.weather import weather_in
 from fieldmon.io.sandbox.unpack import Workroom
 
@@ -28,6 +22,7 @@ if TYPE_CHECKING:
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
     from fieldmon.io.readers.crews import Crew
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
@@ -43,6 +38,8 @@ def layers(folder: str, source: Source) -> tuple[LayerInfo, ...]:
 
 def plots(folder: str, source: Source, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the plots of a source."""
+    from fieldmon.io.readers.plots import plots_of  # noqa: PLC0415
+
     return plots_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
@@ -50,12 +47,17 @@ def crews(
     folder: str, source: Source, options: PlotOptions
 ) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
     """Return the plots of a source, and who works on each."""
+    from fieldmon.io.readers.crews import crews_of  # noqa: PLC0415
+    from fieldmon.io.readers.plots import named_areas, plots_of  # noqa: PLC0415
+
     layer = open_layer(source, options, Workroom(Path(folder)))
     return plots_of(layer, options), crews_of(*named_areas(layer, options))
 
 
 def treated(folder: str, source: Source, options: PlotOptions) -> Imported[MultiPolygon]:
     """Return the area that a source says was treated."""
+    from fieldmon.io.readers.treated import treated_of  # noqa: PLC0415
+
     return treated_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
@@ -76,21 +78,29 @@ def plot_records(
 
 def plants(folder: str, source: Source, options: ReadOptions) -> Imported[Plants]:
     """Return the plants of a source."""
+    from fieldmon.io.readers.points_and_lines import plants_of  # noqa: PLC0415
+
     return plants_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
 def lines(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the lines of a source."""
+    from fieldmon.io.readers.points_and_lines import lines_of  # noqa: PLC0415
+
     return lines_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
 def drawn_rows(folder: str, source: Source, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the rows of a source that holds lines, or end posts."""
+    from fieldmon.io.readers.points_and_lines import drawn_rows_of  # noqa: PLC0415
+
     return drawn_rows_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 
 def drawn_blocks(folder: str, source: Source, options: PlotOptions) -> Imported[DrawnBlocks]:
     """Return the blocks of a source that holds areas, or lines that part a plot."""
+    from fieldmon.io.readers.points_and_lines import drawn_blocks_of  # noqa: PLC0415
+
     return drawn_blocks_of(open_layer(source, options, Workroom(Path(folder))), options)
 
 

@@ -38,7 +38,7 @@ def test_the_background_chance_is_changed_where_the_finds_are_expected(app):
 def test_a_season_keeps_what_was_assumed_and_is_told_otherwise(season_app, season):
     assert [one.setting for one in season().assumed()] == [
         *(one.setting for one in season().plot.assumed),
-        "background_chance", "speed_m_s", "row_change_s", "detects", "rate_per_day",
+        "background_chance", "speed_m_s", "row_change_s", "stop_s", "detects", "rate_per_day",
     ]  # fmt: skip
     go(season_app, "season")
     before = metric(season_app, texts.EXPECTED_LEFT)

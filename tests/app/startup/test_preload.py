@@ -11,7 +11,13 @@ from app.startup import preload
 def steps(monkeypatch):
     """Return what is loaded, in order, with nothing really loaded."""
     done = []
-    for name in ("_load_outline", "_load_first_page", "_load_planning", "_load_simulation"):
+    for name in (
+        "_load_outline",
+        "_load_first_page",
+        "_load_planning",
+        "_load_paper",
+        "_load_simulation",
+    ):
         monkeypatch.setattr(preload, name, lambda name=name: done.append(name))
     monkeypatch.setattr(preload, "_BROWSER_S", 0.0)
     monkeypatch.setattr(preload, "_LATER_S", 30.0)
@@ -27,7 +33,7 @@ def test_the_outline_comes_first_and_what_other_pages_need_comes_after_a_page_wa
     assert "_load_simulation" not in steps
     loading.shown.set()
     loading.join(180)
-    assert steps == ["_load_outline", "_load_first_page", "_load_planning", "_load_simulation"]
+    assert steps[2:] == ["_load_planning", "_load_paper", "_load_simulation"]
 
 
 def test_a_page_is_not_kept_waiting_where_loading_fails(steps, monkeypatch):

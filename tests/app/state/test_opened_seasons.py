@@ -5,9 +5,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from app.state import cached
 from app.state.opened_seasons import opened
 from fieldmon.errors import FileProblem
+from fieldmon.infestation.inspections import FOUND
 from tests.monitoring.seasons import a_season
+from tests.monitoring.test_drafts import PLANT, add
 
 
 def test_all_who_ask_get_the_same_until_the_file_is_another(tmp_path):
@@ -23,3 +26,17 @@ def test_all_who_ask_get_the_same_until_the_file_is_another(tmp_path):
 def test_a_season_that_is_not_there_is_a_sentence(tmp_path):
     with pytest.raises(FileProblem):
         opened(tmp_path / "none.gpkg")
+
+
+@pytest.mark.parametrize("ask", [opened, cached.season])
+def test_a_finding_that_qgis_adds_while_the_season_is_open_counts_when_it_is_asked_for(
+    tmp_path, ask
+):
+    a_season(tmp_path / "a.gpkg")
+    before = ask(tmp_path / "a.gpkg")
+    add(tmp_path / "a.gpkg")
+    season = ask(tmp_path / "a.gpkg")
+    assert season is before
+    assert season.history.states(0)[PLANT] == FOUND
+    add(tmp_path / "a.gpkg", plant=PLANT + 1, date=None)
+    assert "no date" in ask(tmp_path / "a.gpkg").drafts[0]

@@ -24,6 +24,7 @@ def test_a_season_just_begun_has_found_nothing_and_says_what_is_expected(app):
     assert metric(app, texts.INSPECTED_EVER).startswith("0 / ")
     low, high = metric(app, texts.EXPECTED_LEFT).split("(")[1].rstrip(")").split("-")
     assert 0 <= int(low) < int(high)
+    assert len(app.get("vega_lite_chart")) == 2, "of what was not done there is no chart"
 
 
 def test_the_season_says_why_days_sum_to_more_than_the_plants_found(season_app, season):

@@ -142,20 +142,25 @@ def said(app):
 
 def english_left(app, code):
     """Return our own English texts on a page, and lines with three of our English words."""
-    held = catalogue(code)
-    english = {
-        entry.words for entry in entries() if entry.words not in strings(held, entry)
-    } - {w for entry in entries() for w in strings(held, entry)}  # fmt: skip
+    english, ours = only_english(code)
     lines = [line for line in said(app) if "[English]" not in line]
     whole = [line for line in lines if line in english]
     plain = [re.sub(r"\u2068.*?\u2069|\u2066.*?\u2069", "", line) for line in lines]
-    ours = {w.lower() for e in entries() for w in re.findall(r"[A-Za-z]{2,}", e.words)}
-    ours -= {word.lower() for word in SAME_WORDS}
     return whole + [
         line for line in plain
         if any(all(w.lower() in ours for w in run.split()) and not spanish(run)
                for run in re.findall(r"(?:\b[A-Za-z]{2,}\b[ ]){2}\b[A-Za-z]{2,}\b", line))
     ]  # fmt: skip
+
+
+@cache
+def only_english(code):
+    """Return our English texts that this language says otherwise, and the words of all of ours."""
+    held = catalogue(code)
+    english = {entry.words for entry in entries() if entry.words not in strings(held, entry)}
+    english -= {words for entry in entries() for words in strings(held, entry)}
+    ours = {w.lower() for e in entries() for w in re.findall(r"[A-Za-z]{2,}", e.words)}
+    return english, ours - {word.lower() for word in SAME_WORDS}
 
 
 def spanish(words):

@@ -10,7 +10,7 @@ from pyproj import Transformer
 
 from fieldmon.errors import FileProblem, PlotError
 from fieldmon.io.rasters.read import read_raster
-from fieldmon.io.writers.chance_raster import NODATA, chance_raster, write_chance_raster
+from fieldmon.io.writers.chance_raster import NODATA, _paint, chance_raster, write_chance_raster
 from fieldmon.plot.layout import Planting, lay, rectangle
 from tests.crooked import crooked_grids
 from tests.io.rasters.raster_files import PLOT
@@ -142,3 +142,25 @@ def test_a_map_of_other_plants_or_without_end_is_refused(tmp_path):
     with pytest.raises(FileProblem, match="pixels at most"):
         chance_raster(far, np.zeros(6))
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_each_pixel_is_the_nearest_plants_on_whose_ground_it_lies_by_trying_all(seed):
+    rng = np.random.default_rng(seed)
+    turn, shape, halves = rng.uniform(0.0, np.pi), (14, 17), np.array([1.4, 2.3])
+    to_rows = 0.9 * np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    places = rng.uniform(0.0, 1.0, (12, 2)) * [17.0, 14.0]
+    chance = rng.random(12).astype(np.float32)
+    painted = np.full(shape, NODATA, np.float32)
+    _paint(painted, places, chance, to_rows, halves)
+    for r, c in np.ndindex(shape):
+        own = [i for i in range(12) if (int(places[i, 1]), int(places[i, 0])) == (r, c)]
+        away = (np.array([c + 0.5, r + 0.5]) - places) @ to_rows.T
+        on_ground = np.flatnonzero((np.abs(away) <= halves).all(axis=1))
+        if own:
+            expected = max(chance[own])
+        elif on_ground.size:
+            expected = chance[on_ground[np.argmin((away[on_ground] ** 2).sum(axis=1))]]
+        else:
+            expected = NODATA
+        assert painted[r, c] == np.float32(expected), (r, c)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import rasterio
 import shapely
+import shapely.affinity
 from rasterio.io import MemoryFile
 from shapely import MultiPolygon
 
@@ -47,3 +48,14 @@ def test_cells_that_cannot_be_are_refused():
         zone_cells(PLOT, ZONES, 1e-4)
     with pytest.raises(SettingError, match="kind 1 or 2"):
         zone_cells(PLOT, ZONES, 5.0, kind=3)
+
+
+@pytest.mark.parametrize(("long_m", "wide_m"), [(4.0, 4.0), (30.0, 1.5), (12.0, 3.0)])
+@pytest.mark.parametrize("turned_deg", [0.0, 30.0])
+def test_the_narrowest_of_a_rectangle_is_half_its_shorter_side_however_it_lies(
+    long_m, wide_m, turned_deg
+):
+    flat = shapely.affinity.rotate(shapely.box(0.0, 0.0, long_m, wide_m), turned_deg)
+    degrees = 111_320.0 * np.array([np.cos(np.radians(30.36)), 1.0])
+    zone = shapely.transform(flat, lambda xy: xy / degrees + [35.15, 30.36])
+    assert narrowest_m([MultiPolygon([zone])]) == pytest.approx(wide_m / 2, rel=0.02)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.planning.routes.binned import proposals
+from fieldmon.planning.routes.binned import _Offers, _sweep, proposals
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.planning.routes.stops import stops_of
@@ -66,3 +66,38 @@ def test_where_nothing_is_to_be_gained_nothing_is_proposed():
     aisles = Aisles.of(rectangle(4, 4, Planting(faces=2)))
     nothing = np.zeros(len(aisles.grid))
     assert [*proposals(priced_by(Robot(), aisles, nothing), 0.006, 2000.0)] == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_sweep_finds_the_most_of_all_offers_at_every_number_of_steps(seed):
+    """Against the same walk up the ladder with every offer tried, whatever its neighbours take."""
+    rng, never = np.random.default_rng(seed), -np.inf
+    priced = priced_by(Robot(), Aisles.of(rectangle(4, 3)), rng.random(12))
+    ladder, tables, n_steps, n_prices = priced.ladder, priced.tables, 40, 4
+    n, n_states = len(ladder.across_m), len(tables.passes)
+    n_ways = 1 + max(int(tables.aisle[:, 1].max()), int(tables.gate[:, 1].max()))
+    # dearer drives hold and take less; some take as much as the next, some are not possible
+    steps = -np.sort(-rng.integers(0, 6, (n, n_ways, n_prices)), axis=2)
+    steps[rng.random((n, n_ways)) < 0.2] = -1
+    steps[ladder.gate, 0] = 0
+    reward = -np.sort(-rng.random((n, n_ways, n_prices)), axis=2)
+    up = rng.integers(0, 3, (3, n, 2))
+    room = np.empty((2, n_states, n_steps + 1)), np.full((n, n_states, n_steps + 1), -1, np.int32)
+    ends = np.full(n_steps + 1, never)
+    _sweep(ladder, tables, _Offers(reward, steps.astype(np.int64)), up, (*room, ends))
+    most = np.full((n_states, n_steps + 1), never)
+    most[0, 0] = 0.0
+    for k in range(n):
+        after_k = np.full_like(most, never)
+        for before, way, after in tables.gate if k == ladder.gate else tables.aisle:
+            if (after == 1 and k < ladder.gate) or (k + 1 == n and after != 1):
+                continue
+            on = int(up[tables.passes[after], k, [0, 1]].sum())
+            for by, held in zip(steps[k, way], reward[k, way], strict=True):
+                if by >= 0 and by + on <= n_steps:
+                    moved = most[before, : n_steps + 1 - by - on] + held
+                    after_k[after, by + on :] = np.maximum(after_k[after, by + on :], moved)
+        most = after_k
+    reached = most[1] > never
+    assert reached.any()
+    np.testing.assert_allclose(ends[reached], most[1][reached])

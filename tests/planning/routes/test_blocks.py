@@ -1,6 +1,7 @@
 """Several ladders for parts that lie apart: each is a bound, and closer than one ladder."""
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -94,3 +95,13 @@ def test_a_price_for_each_set_of_parts_bounds_no_less_sharply_than_one_for_all(r
     middle = float(min(prices, key=lambda p: parts.bound(parts.best(p), p, robot.day_s)))
     by_set = parts.bound_by_kind(robot.day_s, middle, np.inf)
     assert best(aisles, reward, robot).reward <= by_set <= at_one * (1 + 1e-3)
+
+
+def test_two_aisles_that_lie_apart_are_two_blocks_and_two_that_touch_are_none():
+    def blocks_at(metres):
+        apart_m = np.full((2, 2, 3, 3), metres)
+        return [block.tolist() for block in blockings(SimpleNamespace(apart_m=apart_m))]
+
+    (block,) = blocks_at(400.0)
+    assert sorted(block) == [0, 1]
+    assert blocks_at(3.0) == []

@@ -115,3 +115,16 @@ def test_who_does_not_return_need_not_think_of_the_way_home():
     scene = scene_with(GRID, np.full(len(GRID), 0.1), returns=False)
     assert (tours_on(scene).home_s == 0.0).all()
     assert GATE < 0
+
+
+def test_the_ways_measured_are_those_of_the_table_from_every_lane_end():
+    scene = scene_with(GRID, np.full(len(GRID), 0.1), 2.0, returns=True)
+    tours, between_m = tours_on(scene), scene.aisles.travel.between_m
+    for row, end in product(range(N_ROWS), range(2)):
+        home_s = between_m[2 * row + end, -1] / scene.clock.speed_m_s
+        assert tours.home_s[row, end] == pytest.approx(home_s)
+        for other, other_end in product(range(N_ROWS), range(2)):
+            if other != row:
+                down, step = int(other < row), abs(other - row) - 1
+                way_s = between_m[2 * row + end, 2 * other + other_end] / scene.clock.speed_m_s
+                assert tours.next_s[down, row, end, step, other_end] == pytest.approx(way_s)

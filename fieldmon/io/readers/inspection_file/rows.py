@@ -5,7 +5,7 @@ This half runs in the reading process and knows no plot.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,14 +18,13 @@ from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.readers.inspection_file.columns import columns_of, own_column, texts_in, who_in
+from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in
 from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
 from fieldmon.io.readers.wide_tables import by_day
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.options import Source
     from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -33,59 +32,6 @@ if TYPE_CHECKING:
 
 # Layers of files given out and of a season's file: what to read where nobody chose
 _LAYERS = ("inspections", "stops", "plants", "waypoints")
-
-
-@dataclass(frozen=True, eq=False)
-class InspectionRows:
-    """Inspections as a file tells them, one entry a record that says anything, ``(m,)`` each.
-
-    Parameters
-    ----------
-    plant
-        Number of the plant in the grid, as files given out have it; -1 where it is not named.
-    line, number, face
-        Row and number in it as people count, and which face; 0 where not named.
-    lonlat
-        ``(m, 2)`` degrees; NaN without a position.
-    accuracy_m
-        Of the position; NaN where not stated.
-    result
-        int8 `PRESENT`, `ABSENT` or `UNKNOWN` (could not be inspected).
-    count
-        Pests counted; NaN where not counted.
-    doubt
-        Why a record is doubtful in itself; empty where it is not.
-    when
-        datetime64[s], local; NaT without a clock time.
-    day
-        datetime64[D]; NaT where none is stated.
-    who, notes
-        Text; empty where there is none.
-    source_row
-        Which record of the file, from 1.
-    block
-        What is named as the plant's block; empty where nothing is.
-    """
-
-    plant: NDArray[np.int64]
-    line: NDArray[np.int64]
-    number: NDArray[np.int64]
-    face: NDArray[np.int8]
-    lonlat: NDArray[np.float64]
-    accuracy_m: NDArray[np.float64]
-    result: NDArray[np.int8]
-    count: NDArray[np.float64]
-    doubt: NDArray[np.str_]
-    when: NDArray[np.datetime64]
-    day: NDArray[np.datetime64]
-    who: NDArray[np.str_]
-    notes: NDArray[np.str_]
-    source_row: NDArray[np.int64]
-    block: NDArray[np.str_]
-
-    def __len__(self) -> int:
-        """Return the number of records."""
-        return len(self.result)
 
 
 def rows_of(

@@ -1,0 +1,63 @@
+"""Inspections as a file tells them. Who only takes them loads none of what reads files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class InspectionRows:
+    """Inspections as a file tells them, one entry a record that says anything, ``(m,)`` each.
+
+    Parameters
+    ----------
+    plant
+        Number of the plant in the grid, as files given out have it; -1 where it is not named.
+    line, number, face
+        Row and number in it as people count, and which face; 0 where not named.
+    lonlat
+        ``(m, 2)`` degrees; NaN without a position.
+    accuracy_m
+        Of the position; NaN where not stated.
+    result
+        int8 `PRESENT`, `ABSENT` or `UNKNOWN` (could not be inspected).
+    count
+        Pests counted; NaN where not counted.
+    doubt
+        Why a record is doubtful in itself; empty where it is not.
+    when
+        datetime64[s], local; NaT without a clock time.
+    day
+        datetime64[D]; NaT where none is stated.
+    who, notes
+        Text; empty where there is none.
+    source_row
+        Which record of the file, from 1.
+    block
+        What is named as the plant's block; empty where nothing is.
+    """
+
+    plant: NDArray[np.int64]
+    line: NDArray[np.int64]
+    number: NDArray[np.int64]
+    face: NDArray[np.int8]
+    lonlat: NDArray[np.float64]
+    accuracy_m: NDArray[np.float64]
+    result: NDArray[np.int8]
+    count: NDArray[np.float64]
+    doubt: NDArray[np.str_]
+    when: NDArray[np.datetime64]
+    day: NDArray[np.datetime64]
+    who: NDArray[np.str_]
+    notes: NDArray[np.str_]
+    source_row: NDArray[np.int64]
+    block: NDArray[np.str_]
+
+    def __len__(self) -> int:
+        """Return the number of records."""
+        return len(self.result)

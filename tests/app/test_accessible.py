@@ -1,0 +1,160 @@
+"""For everybody: pages that axe-core finds nothing serious in, and tasks done by keys alone."""
+
+import io
+from contextlib import contextmanager, suppress
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app.state import kept_ground, rooms
+from app.state.kept_ground import GroundPicture
+from app.words import texts
+from fieldmon.io.rasters.read import Backdrop
+from tests.app.driving import until
+from tests.app.on_screen import IDLE, MAP, faults, in_scheme, open_part, rest, still, tab_to
+from tests.app.test_in_browser import sample, season
+
+NAVIGATION = "ul[data-testid=stSidebarNavItems]"
+
+
+@pytest.fixture(scope="module")
+def kept(served_seasons):
+    """Keep a season with a picture of the ground under it; return how an address names it."""
+    plot, _ = sample()
+    path = served_seasons / "Everybody.gpkg"
+    season(path, plot)
+    (west, south), (east, north) = plot.grid.lonlat().min(axis=0), plot.grid.lonlat().max(axis=0)
+    corners = np.array([[west, south], [west, north], [east, north], [east, south]])
+    file = io.BytesIO()
+    stripes = np.indices((64, 64)).sum(axis=0)[..., None] % 16 * np.array([16, 14, 8])
+    Image.fromarray(stripes.astype(np.uint8)).save(file, "PNG")
+    kept_ground.keep(
+        path, GroundPicture("air.tif", Backdrop(file.getvalue(), "image/png", corners))
+    )
+    return "season=Everybody"
+
+
+@pytest.fixture(scope="module")
+def tab(visitors, address):
+    """Return what opens a page of the app in one tab."""
+    page = visitors((1400, 1000), None).new_page()
+
+    def opened(path):
+        page.goto(f"{address}/{path}")
+        page.wait_for_selector(IDLE, timeout=240_000)
+        return page
+
+    yield opened
+    page.close()
+
+
+@pytest.mark.parametrize("room", [*rooms.ROOMS, "study"])
+def test_axe_finds_nothing_serious_in_any_part_of_a_room_light_or_dark(tab, kept, room):
+    page = tab(f"{'' if room == 'today' else room}?{kept}")
+    if room in rooms.ROOMS:
+        rest(page)
+    found = left(page)
+    if room in rooms.ROOMS:
+        in_scheme(page, "dark")
+        found += left(page, "color-contrast")
+        in_scheme(page, "light")
+        for part in rooms.ROOMS[room].parts[1:]:
+            open_part(page, texts.PARTS[part])
+            found += left(page)
+    assert found == []
+
+
+def left(page, *rules):
+    """Return the faults of a page that has come to rest: colours fade in for a moment."""
+    with suppress(AssertionError):
+        until(lambda: not faults(page, *rules), 5.0)
+    return faults(page, *rules)
+
+
+@contextmanager
+def phone(page):
+    """Let the window be a phone's for a while."""
+    page.set_viewport_size({"width": 390, "height": 844})
+    yield
+    page.set_viewport_size({"width": 1400, "height": 1000})
+
+
+def test_axe_finds_nothing_serious_on_a_phone(tab, kept):
+    page = tab(f"?{kept}")
+    with phone(page):
+        rest(page)
+        page.wait_for_selector(f"{NAVIGATION} [role=listitem]", state="attached")
+        assert left(page) == []
+
+
+def test_words_on_a_picture_of_the_ground_stand_on_a_ground_of_their_own(tab, kept):
+    page = tab(f"?{kept}")
+    still(page)
+    bare = page.evaluate("""() => [...document.querySelectorAll("*")].flatMap((one) =>
+      [...(one.shadowRoot?.querySelectorAll(".label:not([hidden]),.scale") ?? [])]
+        .filter((label) => ["transparent", "rgba(0, 0, 0, 0)"].includes(getComputedStyle(label).backgroundColor))
+        .map((label) => label.textContent))""")  # noqa: E501
+    assert bare == []
+
+
+def test_a_day_is_done_by_keys_alone(tab, kept):
+    page = tab(f"?{kept}")
+    rest(page)
+    # hours
+    said = page.locator("[data-testid=stMetricValue]").nth(1)
+    before = said.inner_text()
+    tab_to(page, page.get_by_role("slider", name=texts.HOURS))
+    page.keyboard.press("ArrowLeft")
+    change = page.locator(".st-key-change_setup button")
+    change.wait_for()
+    tab_to(page, change)
+    page.keyboard.press("Enter")
+    until(lambda: said.inner_text() != before, 120)
+    rest(page)
+    # why a plant is on the route
+    tab_to(page, page.get_by_role("application"))
+    said = page.locator(f"{MAP} [role=status]")
+    for _ in range(20):  # the middle may lie between plants
+        page.keyboard.press("Shift+ArrowDown")
+        still(page)
+        if "chance" in said.text_content():
+            break
+    page.keyboard.press("Enter")
+    page.get_by_text(texts.HISTORY).first.wait_for()
+    # the route, handed out
+    press(page, texts.STEP_BUTTONS["send"])
+    with page.expect_download() as file:
+        press(page, "Download for GPS")
+    assert b"<gpx" in file.value.path().read_bytes()[:300]
+    tab_to(page, page.get_by_role("dialog").get_by_role("button", name="Close"))
+    page.keyboard.press("Enter")
+    page.get_by_role("dialog").wait_for(state="hidden")
+    # the day on paper
+    with page.expect_download() as file:
+        press(page, texts.STEP_BUTTONS["report"])
+    assert file.value.path().read_bytes().startswith(b"%PDF")
+    # a find
+    press(page, texts.STEP_BUTTONS["record"])
+    page.locator("[data-testid=stForm]").first.wait_for()
+    rest(page)
+    for name, number in ((texts.HISTORY_ROW, "3"), (texts.HISTORY_PLANT, "4")):
+        tab_to(page, page.get_by_role("spinbutton", name=name, exact=True))
+        page.keyboard.type(number)
+    radio = page.locator("[data-testid=stForm]").get_by_role("radio", name="found", exact=True)
+    tab_to(page, page.get_by_role("radio", name="clean", exact=True).or_(radio))
+    for _ in range(5):
+        if radio.evaluate("(one) => one.matches(':focus')"):
+            break
+        page.keyboard.press("ArrowRight")
+    page.keyboard.press("Space")
+    press(page, texts.RECORD_BUTTON)
+    page.get_by_role("button", name="Undo", exact=True).first.wait_for()
+
+
+def press(page, name):
+    """Press a button by the keyboard."""
+    button = page.get_by_role("button", name=name).locator("visible=true")
+    button.first.wait_for()
+    tab_to(page, button)
+    page.keyboard.press("Enter")

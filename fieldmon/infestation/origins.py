@@ -26,7 +26,7 @@ N_ORIGINS = JUMPED + 6
 # how many finds what was believed before the season is worth, of each origin (our choice): little
 # where a plot's insects differ most from another's
 _PRIOR_FINDS = np.full(N_ORIGINS, 5.0)
-_PRIOR_FINDS[[ANYWHERE, BY_EDGE]] = 0.5
+_PRIOR_FINDS[[AT_START, ANYWHERE, BY_EDGE]] = 1.0, 0.5, 0.5
 # inspections are taken to overlook so much at least and at most
 _DETECTS = (0.05, 0.99)
 

@@ -41,7 +41,7 @@ from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.reach import pest_reach_of, reach_of
-from fieldmon.infestation.tracing import Raised, Traces, trace
+from fieldmon.infestation.tracing import Raised, Traces, rescale_traced, trace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -206,13 +206,15 @@ class TracedPairs:
         told = self.counts.detects(learning.detects(len(plants)))
         shown = self._shown(plants, told)
         inspections = plants, found, shown
-        day = _Day(self.shares.copy(), self.chance.copy(), *none, *nothing)
         lean = leaning(self.evidence)
         clusters = ClusterEstimate.none(n, self.evidence, lean)
         believed = self.chance.copy(), self.pair_chance.copy()
         learn_clustering(believed, self.grid.linked, inspections, clusters, lean)
         evidence = kept_evidence(clusters.evidence)
         jumps = self._jumps(evidence)
+        # before any find of the day is traced: that is done with what is known of jumps by now
+        shares = self._jumping(believed, jumps / self.jumps)
+        day = _Day(shares, believed[0].copy(), *none, *nothing)
         traces = self.traces.own()
         each = self.reach.kernels * self.beyond[:, None, None]
         room = _Room(each, Neighbourhood.of(n), Raised.of(n))
@@ -230,6 +232,15 @@ class TracedPairs:
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return lowered.counting(self, day)
+
+    def _jumping(self, believed: tuple[Floats, Floats], ratio: float) -> NDArray[np.float32]:
+        """Believe in what jumps have brought `ratio` times as much, in place; return the shares."""
+        shares = self.shares.copy()
+        afar = shares[:, JUMPED:].sum(axis=1, dtype=np.float64)
+        rescale_traced(believed, self.grid.linked, afar, ratio)
+        shares[:, JUMPED:] *= np.float32(ratio)
+        shares /= shares.sum(axis=1, keepdims=True)
+        return shares
 
     def _shown(self, plants: NDArray[np.int32], detects: Floats) -> Floats:
         """Return the chance that inspections find what is there, seen yet or not, ``(k,)``."""
@@ -262,7 +273,6 @@ class TracedPairs:
         expected[JUMPED:] /= max(self.jumps, _LEAST_JUMPS)
         counts = self.counts.and_those(day.found, expected)
         ratio = counts.scale / before.counts.scale
-        ratio[JUMPED:] *= self.jumps / before.jumps
         scaled = self.shares * ratio.astype(np.float32)
         total = np.maximum(scaled.sum(axis=1, dtype=np.float64), LEAST_CHANCE)
         shares = scaled / total[:, None].astype(np.float32)

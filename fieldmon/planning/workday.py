@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,7 +59,8 @@ class Workday:
 
 def plan_work(scene: Scene, sampler: Sampler) -> Workday:
     """Return the rest of the day as it goes if nothing is found."""
-    return work_day(scene, sampler, np.zeros(len(scene.chance), np.bool_))
+    supposed = replace(scene, supposed=True)
+    return work_day(supposed, sampler, np.zeros(len(scene.chance), np.bool_))
 
 
 def work_day(scene: Scene, sampler: Sampler, would_find: WouldFind) -> Workday:

@@ -103,6 +103,9 @@ class Scene:
         ``grid.adjacent``; None where nothing is believed of pairs.
     traces
         What is believed of how far insects jump; None where nothing is.
+    supposed
+        Whether results are supposed, as in a plan that takes every plant for clean: from those
+        nobody learns how many plants are infested.
     """
 
     aisles: Aisles
@@ -116,6 +119,7 @@ class Scene:
     key: np.uint64 = np.uint64(0)  # noqa: RUF009 - a number, not a call with effects
     pair_chance: NDArray[np.float64] | None = None
     traces: Traces | None = None
+    supposed: bool = False
 
     def __post_init__(self) -> None:
         robot = self.aisles.worked_by(self.robot)

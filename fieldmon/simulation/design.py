@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _CHUNK_S = 4.0
 _S_PER_DAY = 3e-4
 # changes when seasons come out differently, so that old chunks are not taken for new ones
-_VERSION, _DIGITS = "3", 20
+_VERSION, _DIGITS = "4", 20
 # settings that later versions added: unsaid, they leave a plot what it was
 _LATER = ("half_canopy_m", "in_rows")
 

@@ -17,7 +17,7 @@ def test_at_first_it_is_what_was_believed_with_wide_intervals():
     assert told["detection"].value == 0.84
     assert told["infested at the start"].value == pytest.approx(1.62)
     assert all(one.low <= one.value <= one.high for one in told.values())
-    assert told["infested at the start"].sentence() == "infested at the start 1.6 (0.6 to 3.0)"
+    assert told["infested at the start"].sentence() == "infested at the start 1.6 (0.1 to 4.9)"
     assert told["jumps beyond neighbours"].is_share
     assert 1.0 <= told["length of jumps"].low < 4.0 < told["length of jumps"].high + 1.0
 

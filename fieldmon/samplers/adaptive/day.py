@@ -20,7 +20,7 @@ from fieldmon.infestation.tracing import rescale_traced, trace
 from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NEARLY, NOWHERE
 from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
-from fieldmon.samplers.adaptive.rows import best_time, most_in
+from fieldmon.samplers.adaptive.rows import best_time, most_in, trusted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,7 +42,9 @@ if TYPE_CHECKING:
 # how much closer or less close infested plants must stand than thought to think again
 _NOTABLE = 0.1
 #: how many finds the morning's idea of how many plants are infested is worth (our choice)
-LEVEL_FINDS = 10.0
+LEVEL_FINDS = 3.0
+# where this share is infested, chances count by their roots when a day is planned (our choice)
+_HEAVY = 0.2
 
 
 @loop
@@ -222,6 +224,7 @@ def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in more or fewer infested plants, once finds differ enough from those expected.
 
     Every plant's odds are multiplied; what neighbours have in common stays, as a correlation.
+    A plan, whose results are supposed, begins so sure of the number that nothing changes.
     """
     level = belief.level[0] / belief.level[1]
     if belief.traces.kernel.size == 1 or abs(level - belief.level[2]) < _NOTABLE * belief.level[2]:
@@ -240,7 +243,18 @@ def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     for i in range(chance.size):
         chance[i] = times_odds(chance[i], ratio)
     belief.level[2] = level
+    belief.scale[3] = trust_in_differences(chance.mean())
     rows.stale[:], rows.most[:] = True, -1.0
+
+
+@inlined
+def trust_in_differences(share: float) -> float:
+    """Return the power of chances by which plans are made where such a share is infested.
+
+    Where a tenth is infested a good order may find ten times as much as a sweep, where most are
+    it finds hardly more: there small differences do not pay for the drive, and many are mistaken.
+    """
+    return float(1.0 / (1.0 + (share / _HEAVY) ** 2))
 
 
 @inlined
@@ -280,7 +294,7 @@ def _next_in(
         i = travel.row_start[stretch.row + 1] - 1
     step = 1 if up else -1
     while (i <= stretch.last) if up else (i >= stretch.last):
-        gain, time = best_time(times, belief.worth[i], belief.chance[i], price)
+        gain, time = best_time(times, belief.worth[i], trusted(belief, belief.chance[i]), price)
         if gain > 0.0:
             return int(i), time
         i += step
@@ -308,12 +322,13 @@ def _best_left(
             if sharp * most_in(belief, rows, block) <= best_rate * (least_s + quick_s):
                 continue
             for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
-                if sharp * belief.worth[i] * belief.chance[i] <= best_rate * quick_s:
+                worth = belief.worth[i] * trusted(belief, belief.chance[i])
+                if sharp * worth <= best_rate * quick_s:
                     continue
                 way_s = travel_s(travel, clock, at, i)
                 for k in range(times.stop_s.size):
                     stop_s = times.stop_s[k]
-                    rate = times.detects[k] * belief.worth[i] * belief.chance[i] / (way_s + stop_s)
+                    rate = times.detects[k] * worth / (way_s + stop_s)
                     if rate > best_rate and _fits(travel, clock, (at, i), stop_s, now_s):
                         best, best_rate, time = i, rate, k
     return best, time

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.jit import part
 from fieldmon.samplers.adaptive.arrays import LEAST, NOWHERE, Stretch
-from fieldmon.samplers.adaptive.rows import value_row
+from fieldmon.samplers.adaptive.rows import trusted, value_row
 from fieldmon.samplers.adaptive.tours import best_from, extend_tours
 
 if TYPE_CHECKING:
@@ -33,7 +33,8 @@ def first_price(
     for k in range(times.stop_s.size):
         most = LEAST
         for i in range(belief.worth.size):
-            most = max(most, times.detects[k] * belief.worth[i] * belief.chance[i])
+            worth = belief.worth[i] * trusted(belief, belief.chance[i])
+            most = max(most, times.detects[k] * worth)
         high = max(high, most / times.stop_s[k])
     low = high * 1e-7
     if _plan_at(travel, clock, work, (at, low)).seconds <= clock.seconds_left:

@@ -49,11 +49,11 @@ def value_row(
         if most_in(belief, rows, block) < pays:
             continue
         for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
-            if belief.worth[i] * belief.chance[i] < pays:
+            if belief.worth[i] * trusted(belief, belief.chance[i]) < pays:
                 continue
-            gain, time = best_time(times, belief.worth[i], belief.chance[i], price)
+            gain, time = best_time(times, belief.worth[i], trusted(belief, belief.chance[i]), price)
             if gain > 0.0 and previous == i - 1 and previous >= 0:
-                chance = _after_clean(belief, i, times.detects[before])
+                chance = trusted(belief, _after_clean(belief, i, times.detects[before]))
                 gain, time = best_time(times, belief.worth[i], chance, price)
             if gain > 0.0:
                 rows.gain[first + n], rows.stop_s[first + n] = gain, times.stop_s[time]
@@ -78,13 +78,20 @@ def _pays_from(times: InspectionTimes, price: float) -> float:
 
 
 @inlined
+def trusted(belief: BeliefArrays, chance: float) -> float:
+    """Return a chance as plans are made by it: differences count for less than is believed."""
+    trust = belief.scale[3]
+    return float(chance if trust == 1.0 else chance**trust)
+
+
+@inlined
 def most_in(belief: BeliefArrays, rows: RowTours, block: int) -> float:
     """Return the most that a find in a block is expected to be worth."""
     most = rows.most[block]
     if most < 0.0:
         most = 0.0
         for i in range(block * BLOCK, min((block + 1) * BLOCK, belief.worth.size)):
-            most = max(most, belief.worth[i] * belief.chance[i])
+            most = max(most, belief.worth[i] * trusted(belief, belief.chance[i]))
         rows.most[block] = most
     return float(most)
 

@@ -12,7 +12,7 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.adaptive import Adaptive
-from fieldmon.samplers.adaptive.day import times_odds
+from fieldmon.samplers.adaptive.day import times_odds, trust_in_differences
 from fieldmon.samplers.sweeps import Naive
 from tests.scenes import scene_on
 
@@ -104,6 +104,34 @@ def test_where_all_plants_are_infested_unannounced_the_day_is_driven_as_a_sweep(
     )  # fmt: skip
     every = np.ones(N, np.bool_)
     assert len(work_day(scene, Adaptive(), every)) >= 0.95 * len(work_day(scene, Naive(), every))
+
+
+def traced_scene(share, hours, **given):
+    belief, robot = TracedPairs.of(GRID, np.full(N, share)), Robot(hours=hours)
+    return replace(
+        scene_on(GRID), robot=robot, chance=belief.chance, pair_chance=belief.pair_chance,
+        traces=belief.traces, seconds_left=robot.day_s, **given,
+    )  # fmt: skip
+
+
+def test_a_plan_that_takes_plants_for_clean_learns_nothing_of_how_many_are_infested():
+    scene, chances = traced_scene(0.3, 1.5), []
+    none = np.zeros(N, np.bool_)
+    plan = plan_work(scene, Adaptive())
+    supposed = work_day(replace(scene, supposed=True), Adaptive(), none)
+    assert plan.plant.tolist() == supposed.plant.tolist()
+    for each in (scene, replace(scene, supposed=True)):
+        belief = replace(each, robot=replace(each.robot, hours=1.0), seconds_left=3600.0)
+        chances.append(Adaptive().walk(belief, none).plant.tolist())
+    assert chances[0] != chances[1]
+
+
+def test_differences_count_for_less_the_more_plants_are_infested():
+    trust = [trust_in_differences.py_func(share) for share in (0.0, 0.015, 0.2, 0.6)]
+    assert trust[0] == 1.0
+    assert trust[1] > 0.99
+    assert trust[2] == pytest.approx(0.5)
+    assert trust[3] == pytest.approx(0.1)
 
 
 def test_odds_are_multiplied_and_chances_stay_chances():

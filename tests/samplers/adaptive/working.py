@@ -40,7 +40,7 @@ def belief_on(grid, chance, together=0.0):
     return BeliefArrays(
         chance.copy(), pair_chance.copy(), np.ones(n), Neighbourhood.of(n), before,
         chance.copy(), pair_chance.copy(), ClusterEstimate.none(n),
-        np.array([1.0, 0.0, 0.5]), np.array([10.0, 10.0, 1.0]), Traces.none(n), Raised.of(n),
+        np.array([1.0, 0.0, 0.5, 1.0]), np.array([1.0, 1.0, 1.0]), Traces.none(n), Raised.of(n),
     )  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Look down, never up, never sideways: which room may import which."""
 
 import ast
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -67,6 +68,12 @@ def module_of(path: Path) -> str:
 MODULES = {module_of(path): path for path in FILES}
 
 
+@cache
+def tree_of(module: str) -> ast.Module:
+    """Return what a module says, read once."""
+    return ast.parse(MODULES[module].read_text(encoding="utf-8"))
+
+
 def room(module: str) -> str:
     """Return the room of a dotted name."""
     top, *rest = module.split(".")
@@ -105,10 +112,10 @@ def app_floor(module: str) -> int:
     return APP_FLOORS.index(inner[0]) if inner else -1
 
 
-def breaches(here: str, source: str) -> list[str]:
+def breaches(here: str, tree: ast.Module) -> list[str]:
     """Return what a module imports although its floor does not allow it."""
     found = []
-    for name in imports(ast.parse(source), here):
+    for name in imports(tree, here):
         top = name.split(".")[0]
         if top in ALONE and room(here) not in ALONE[top]:
             found.append(f"{here} imports {name}")
@@ -121,22 +128,30 @@ def breaches(here: str, source: str) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_a_module_looks_only_down(module):
-    assert breaches(module, MODULES[module].read_text(encoding="utf-8")) == []
+OF_APP = [module for module in MODULES if room(module) == "app"]
+
+
+@pytest.mark.parametrize("here", sorted({room(module) for module in MODULES}))
+def test_the_modules_of_a_room_look_only_down(here):
+    own = [module for module in MODULES if room(module) == here]
+    assert [one for module in own for one in breaches(module, tree_of(module))] == []
 
 
 def test_every_room_has_a_floor():
     assert {room(module) for module in MODULES} <= FLOOR.keys()
 
 
-@pytest.mark.parametrize("module", [name for name in MODULES if room(name) == "app"])
-def test_the_app_names_its_own_modules_relatively_whatever_it_is_installed_as(module):
-    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
-    nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom))]
-    absolute = [node for node in nodes if getattr(node, "level", 0) == 0]
-    named = [getattr(node, "module", "") or node.names[0].name for node in absolute]
-    assert not [name for name in named if name.split(".")[0] == "app"]
+def named_whole(tree: ast.AST):
+    """Yield the modules that are imported by their whole names."""
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Import, ast.ImportFrom)) and getattr(node, "level", 0) == 0:
+            yield getattr(node, "module", "") or node.names[0].name
+
+
+def test_the_app_names_its_own_modules_relatively_whatever_it_is_installed_as():
+    named = [(module, name) for module in OF_APP for name in named_whole(tree_of(module))]
+    assert len(named) > len(OF_APP)
+    assert [one for one in named if one[1].split(".")[0] == "app"] == []
 
 
 def loaded_by_name(tree: ast.AST):
@@ -147,21 +162,21 @@ def loaded_by_name(tree: ast.AST):
             yield first.value if isinstance(first, ast.Constant) else None
 
 
-@pytest.mark.parametrize("module", [name for name in MODULES if room(name) == "app"])
-def test_only_the_apps_frame_loads_modules_of_its_own_by_name(module):
-    named = [*loaded_by_name(ast.parse(MODULES[module].read_text(encoding="utf-8")))]
-    if module != "app.streamlit_app":
-        assert all(name and name.split(".")[0] in {"pandas", "streamlit"} for name in named)
+def test_only_the_apps_frame_loads_modules_of_its_own_by_name():
+    named = {(module, name) for module in OF_APP for name in loaded_by_name(tree_of(module))}
+    others = {"pandas", "streamlit"}
+    own = {module for module, name in named if not name or name.split(".")[0] not in others}
+    assert own == {"app.streamlit_app"}
 
 
 def test_no_module_needs_itself_round_a_circle():
     graph = {
         module: {
             name
-            for name in imports(typed_only(ast.parse(path.read_text(encoding="utf-8"))), module)
+            for name in imports(typed_only(tree_of(module)), module)
             if name in MODULES and name != module
         }
-        for module, path in MODULES.items()
+        for module in MODULES
     }
     try:
         TopologicalSorter(graph).prepare()
@@ -188,4 +203,4 @@ def test_no_module_needs_itself_round_a_circle():
     ],
 )
 def test_the_rule_notices_a_breach(here, line):
-    assert breaches(here, line) != []
+    assert breaches(here, ast.parse(line)) != []

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import tempfile
+from contextlib import contextmanager
 from datetime import datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +15,8 @@ import streamlit as st
 from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
+from fieldmon.monitoring import counting_copy
+from fieldmon.monitoring.transactions import is_season
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..show import plant_history
@@ -22,10 +27,13 @@ from ..words.language import in_words
 from . import acting, treating
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ..state.choices import Choices
 
 # batches shown, the last ones
 _MOST = 20
+_GEOPACKAGE = b"SQLite format 3"
 
 
 def show(choices: Choices) -> None:
@@ -136,23 +144,57 @@ def _show_file(choices: Choices) -> None:
     brought = st.file_uploader(texts.RECORD_FILE_IN, key="findings_file")
     st.checkbox(texts.TAKE_DOUBTFUL, key="take_doubtful")
     if brought is not None:
+        if brought.getvalue().startswith(_GEOPACKAGE):
+            st.text_input(texts.CORRECTED_BY, key="corrected_by", help=texts.CORRECTED_BY_HELP)
         pressed = st.button(texts.RECORD_BUTTON, key="record_file", type="primary")
         acting.once(pressed, _record_file, choices, brought.name, brought.getvalue())
 
 
 @notices.reporting
 def _record_file(choices: Choices, name: str, data: bytes) -> str:
-    """Record findings from a file: a route given out and filled in, a table, positions."""
+    """Record findings from a file: a route filled in, a table, positions, a copy of the season."""
     # what reads files is half a second to import
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
     from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
 
     options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day).on(choices.plot.field)
-    read = read_inspections(Upload(name, data), choices.plot.grid, options)
+    with _source(choices, name, data) as (source, copy):
+        read = read_inspections(source, choices.plot.grid, options)
+        corrected = "" if copy is None else _corrected(choices, copy, name)
     messages = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
     said = _recorded(choices, read.value, name)
-    return said + messages if said else ""
+    return "\n\n".join(part for part in (corrected, said + messages if said else "") if part)
+
+
+@contextmanager
+def _source(
+    choices: Choices, name: str, data: bytes
+) -> Iterator[tuple[Upload | Path, Path | None]]:
+    """Return what to read findings from, and the file where it is a copy of a season.
+
+    Of a copy only what is new is read: what was corrected there is no new finding.
+    """
+    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        copy = Path(folder) / "copy.gpkg"
+        if data.startswith(_GEOPACKAGE):
+            copy.write_bytes(data)
+        if not is_season(copy):
+            yield Upload(name, data), None
+            return
+        corrected = [one.row for one in choices.season.corrections_in(copy)]
+        (Path(folder) / "new").mkdir()
+        yield counting_copy(copy, Path(folder) / "new", corrected), copy
+
+
+def _corrected(choices: Choices, copy: Path, name: str) -> str:
+    """Take what another program corrected or deleted in a copy; return how many were new."""
+    if not choices.season.corrections_in(copy):
+        return ""
+    who = str(st.session_state.get("corrected_by") or "").strip()
+    if not who:
+        raise SettingError(texts.CORRECTED_UNSAID)
+    return texts.CORRECTED.format(n=choices.season.take_corrections(copy, name, who))
 
 
 def _recorded(choices: Choices, results: Inspections, source: str) -> str:

@@ -47,7 +47,7 @@ def day_map(
         *plan(choices),
         *marks.with_hot(plants(choices), _hot_layers(choices)),
         *route_of(choices, route),
-        *marks.records(choices.records, dark=choices.dark),
+        *records(choices),
         *(above or []),
     ]
     play = route_layers.playback(route, driven.begins)
@@ -111,6 +111,14 @@ def plan(choices: Choices) -> list:
     plot, dark = choices.plot, choices.dark
     return cached.layers(
         f"plan {choices.key} {dark}", lambda: plan_layers.plan(plot.grid, plot.field, dark=dark)
+    )
+
+
+def records(choices: Choices) -> list:
+    """Return the records on the map; made once."""
+    dark = choices.dark
+    return cached.layers(
+        f"records {choices.key} {dark}", lambda: marks.records(choices.records, dark=dark)
     )
 
 

@@ -74,8 +74,6 @@ def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> Non
     line = choices.plot.grid.row_line.astype(np.int64) + 1
     never = len(np.unique(line)) - len(np.unique(line[~np.isnan(progress.days_since)]))
     if progress.inspected:
-        st.altair_chart(
-            charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE)),
-            alt=texts.ROW_AGES,
-        )
+        ages = charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE))
+        st.altair_chart(ages, alt=texts.ROW_AGES)
     st.caption(texts.NEVER_ROWS.format(n=never, all=len(np.unique(line))))

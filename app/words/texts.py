@@ -631,9 +631,18 @@ FOUND_AGAIN = (
     "day. Days count finds, the figure above counts plants."
 )
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
+CORRECTED_BY = "Who corrected"
+CORRECTED_BY_HELP = (
+    "Findings that QGIS or QField changed or deleted in a copy of this season come in as "
+    "corrections, under this name."
+)
+CORRECTED_UNSAID = (
+    "Corrections must have an author, but nobody is named. Say who corrected the findings."
+)
+CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
-    "The route file with its found column filled in, or any table or GPS file with plants, rows "
-    "or positions"
+    "The route file with its found column filled in, any table or GPS file with plants, rows "
+    "or positions, or a copy of this season that QGIS or QField changed"
 )
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"

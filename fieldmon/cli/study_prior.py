@@ -10,11 +10,14 @@ import typer
 
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.pest_options import PestName, tell_pest
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import counting
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from fieldmon.studies.thesis.chapter5.open_choices import OpenChoices
     from fieldmon.studies.thesis.chapter5.sites import Site
     from fieldmon.studies.thesis.chapter5.study import PriorStudy
 
@@ -46,6 +49,24 @@ class PriorOptions:
     observations: Annotated[
         Path | None, typer.Option(help="Pest records of that plot: they seed the start.")
     ] = None
+    pest: PestName = None
+
+    @property
+    def choices(self) -> OpenChoices:
+        """Return what the thesis leaves open; with the pest that was named instead of its rule."""
+        from dataclasses import replace  # noqa: PLC0415
+
+        from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
+        from fieldmon.io.readers.pest_file import pest_of  # noqa: PLC0415
+        from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED  # noqa: PLC0415
+
+        if self.pest is None:
+            return CALIBRATED
+        if self.maps is not None:
+            raise SettingError("--pest goes without --maps: on mapped plants nothing spreads.")
+        named = pest_of(self.pest)
+        tell_pest(named)
+        return replace(CALIBRATED, pest=PestInWeather(named))
 
 
 @with_options
@@ -53,20 +74,23 @@ def prior(options: PriorOptions) -> None:
     """Run Dynamic, Naive and Bouncy with prior information beside the published figures.
 
     Without --scenario and --sweep all of them. Ctrl-C keeps what is done. With --plot or --maps
-    on your own plot, or on mapped plants, with the same rules.
+    on your own plot, or on mapped plants, with the same rules. With --pest that pest lives there
+    instead of the thesis's rule, at the temperature of its figures, and nothing is compared with
+    the thesis.
 
     Example: fieldmon study prior --scenario C --seeds 100 -o study
     """
     must_be_folder(options.output)
+    choices = options.choices
     if options.maps is not None:
         _on_maps(options.maps, options)
     elif options.plot is not None:
-        _on_plot(options.plot, options)
+        _on_plot(options.plot, options, choices)
     else:
-        _as_published(options)
+        _as_published(options, choices)
 
 
-def _as_published(options: PriorOptions) -> None:
+def _as_published(options: PriorOptions, choices: OpenChoices) -> None:
     """Run what the thesis ran, and compare the figures."""
     from fieldmon.studies.thesis.chapter5.published import PARTS  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
@@ -75,17 +99,13 @@ def _as_published(options: PriorOptions) -> None:
 
     parts = (*(options.scenario or []), *(options.sweep or [])) or PARTS
     with counting("Simulating") as count:
-        made = run_prior(parts, options.seeds, options.seed, progress=count)
+        made = run_prior(parts, options.seeds, options.seed, choices, count)
     _tell(made)
     name = "prior" if parts == PARTS else "prior_" + "_".join(parts)
-    write_all(
-        options.output,
-        {
-            f"{name}.csv": csv_text(rows(made)),
-            f"{name}_published.csv": csv_text(made.compared),
-            f"{name}.html": report_html(made),
-        },
-    )
+    written = {f"{name}.csv": csv_text(rows(made)), f"{name}.html": report_html(made)}
+    if choices.pest is None:
+        written[f"{name}_published.csv"] = csv_text(made.compared)
+    write_all(options.output, written)
 
 
 def _on_maps(folder: Path, options: PriorOptions) -> None:
@@ -111,7 +131,7 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
     write_all(options.output, written)
 
 
-def _on_plot(plot: Path, options: PriorOptions) -> None:
+def _on_plot(plot: Path, options: PriorOptions, choices: OpenChoices) -> None:
     """Run the samplers on a plot of one's own."""
     from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.study import rows, run_site  # noqa: PLC0415
@@ -119,7 +139,7 @@ def _on_plot(plot: Path, options: PriorOptions) -> None:
 
     site = site_of(plot, options.feature, options.observations)
     with counting("Simulating") as count:
-        made = run_site(site, options.seeds, options.seed, progress=count)
+        made = run_site(site, options.seeds, options.seed, choices, count)
     for part in made.parts:
         for runs in part.runs:
             typer.echo(

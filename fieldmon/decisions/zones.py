@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.sparse import csr_array, vstack
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import routine
 from fieldmon.compute.wording import counted, worded
+from fieldmon.decisions.rings import best_rings, rings_bound
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -32,13 +33,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
-    #: of a matrix: values, rows, columns
-    _Entries = tuple[Floats, NDArray[np.intp], NDArray[np.intp]]
 
 # the price at which zones keep within the ground allowed is halved so often
 _STEPS = 50
-# rings are tried by suspicion alone where more plants than so many are worth one
-_MOST_WORTH = 5_000
 
 
 @dataclass(frozen=True)
@@ -360,27 +357,17 @@ def _switched(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: Treatme
 
 
 def _knapsack(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: TreatmentCosts) -> Ints:
-    """Return the zone of each plant ``(n,)``, -1: none: plants with their rings that pay.
+    """Return the zone of each plant ``(n,)``, -1: none: plants that pay, with their rings.
 
-    A ring costs only what no other has sprayed yet. Rings that touch are one zone. Without a ring
-    that is the best choice; with one they are tried in the order in which a linear program has
-    them, which is near the best (`ring_bound`).
+    Rings that touch are one zone. Without a ring that is the best choice; with one it is near it
+    (`ring_bound`).
     """
-    treated = np.zeros(len(grid), bool)
-    worth = np.flatnonzero(plants.gain > 0.0)
-    tried = worth[np.argsort(-plants.gain[worth], kind="stable")]
-    if sprayer.ring > 0 and len(worth) <= _MOST_WORTH:
-        tried = _rings(grid, plants.gain, sprayer.ring)[0]
-    for i in tried.tolist():
-        around = _around(grid, i, sprayer.ring)
-        new = around[~treated[around]]
-        if float(plants.gain[new].sum()) > costs.per_zone * (len(new) == len(around)):
-            treated[around] = True
-    treated = treated[grid.vine]
-    if sprayer.ring == 0:
-        alone = np.cumsum(treated & plants.once) - 1
-        return np.where(treated, alone[grid.vine], -1)
-    return _touching(grid, treated)
+    if sprayer.ring > 0:
+        treated = best_rings(grid, plants.gain, sprayer.ring, costs.per_zone)
+        return _touching(grid, treated[grid.vine])
+    treated = (plants.gain > max(costs.per_zone, 0.0))[grid.vine]
+    alone = np.cumsum(treated & plants.once) - 1
+    return np.where(treated, alone[grid.vine], -1)
 
 
 def ring_bound(
@@ -388,8 +375,8 @@ def ring_bound(
 ) -> float:
     """Return what no choice of plants with their rings can save more than, less what it costs.
 
-    A linear program in which rings may be sprayed in part and zones cost nothing: how far the
-    choice of `best_zones` with a knapsack may be from the best.
+    A linear program in which rings may be sprayed in part, if near each plant a ring is paid for,
+    and zones cost nothing: how far the choice of `best_zones` with a knapsack may be from the best.
 
     Parameters
     ----------
@@ -414,50 +401,7 @@ def ring_bound(
     True
     """
     gain = _Plants.of(grid, chance, costs or TreatmentCosts()).gain
-    return _rings(grid, gain, ring)[1]
-
-
-def _rings(grid: PlantGrid, gain: Floats, ring: int) -> tuple[NDArray[np.intp], float]:
-    """Return plants to spray with their rings, the likeliest of the best choice first; the bound.
-
-    By a linear program in which a ring may be sprayed in part.
-    """
-    # only rings that hold a plant worth it can be worth it
-    worth = np.flatnonzero(gain > 0.0)
-    if not worth.size:
-        return worth, 0.0
-    from scipy.optimize import linprog  # noqa: PLC0415 - what only this needs loads longest
-
-    centres = np.unique(np.concatenate([_around(grid, i, ring) for i in worth.tolist()]))
-    rings = [_around(grid, i, ring) for i in centres.tolist()]
-    plants, of_plant = np.unique(np.concatenate(rings), return_inverse=True)
-    n, m = len(plants), len(rings)
-    of_ring = n + np.repeat(np.arange(m), [len(one) for one in rings])
-    each, ones = np.arange(len(of_ring)), np.ones(len(of_ring))
-    # a ring takes all its plants along, and a plant is sprayed in a ring only
-    takes = _sparse((ones, each, of_ring), (-ones, each, of_plant), (len(each), n + m))
-    alone = np.ones(n), np.arange(n), np.arange(n)
-    limits = vstack([takes, _sparse(alone, (-ones, of_plant, of_ring), (n, n + m))])
-    weights = np.concatenate([-gain[plants], np.zeros(m)])
-    made = linprog(weights, limits, np.zeros(limits.shape[0]), bounds=(0.0, 1.0), method="highs")
-    order = np.lexsort((-gain[centres], -np.round(made.x[n:], 6)))
-    return centres[order], max(-float(made.fun), 0.0)
-
-
-def _sparse(one: _Entries, other: _Entries, shape: tuple[int, int]) -> csr_array:
-    """Return a matrix of values at rows and columns."""
-    values, rows, columns = (np.concatenate(pair) for pair in zip(one, other, strict=True))
-    return csr_array((values, (rows, columns)), shape)
-
-
-def _around(grid: PlantGrid, plant: int, ring: int) -> NDArray[np.intp]:
-    """Return a plant and those up to so many steps from it, by neighbours."""
-    start, other = grid.adjacent
-    reached = np.array([plant])
-    for _ in range(ring):
-        beside = [other[start[i] : start[i + 1]] for i in reached.tolist()]
-        reached = np.unique(np.concatenate([reached, *beside]))
-    return np.unique(grid.vine[reached])
+    return rings_bound(grid, gain, ring)
 
 
 def _touching(grid: PlantGrid, treated: NDArray[np.bool_]) -> Ints:

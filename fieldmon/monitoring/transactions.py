@@ -200,7 +200,7 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     # another file of the same name is another season
     of_file = path, path.stat().st_ino if path.is_file() else 0
     # one that is at work belongs to whoever reads around this
-    db = files.pop(of_file, None) or _connect(path)
+    db = files.pop(of_file) if of_file in files else _connect(path)
     try:
         yield db
     finally:

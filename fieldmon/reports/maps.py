@@ -308,6 +308,7 @@ def _arrows(line: Floats) -> list[Part]:
     way = np.append(0.0, np.cumsum(length))
     every = max(_ARROWS_MM, way[-1] / 60)
     at = np.arange(every / 2, way[-1], every)
+    at = at[at < way[-1]]  # rounding may bring one more
     leg = np.searchsorted(way, at, side="right") - 1
     ahead = step[leg] / length[leg][:, None]
     place = line[leg] + ahead * (at - way[leg])[:, None]

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 import urllib.request
 from datetime import UTC, datetime, timedelta
 from functools import cache
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import pytest
 import streamlit as st
+from streamlit import config
 from streamlit.components.v2 import manifest_scanner
 
 from app.words import language
@@ -22,7 +24,7 @@ from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
 from tests.app.on_screen import dressed
-from tests.paths import SHARED
+from tests.paths import ROOT, SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
 
@@ -34,6 +36,15 @@ def components():
         scan = manifest_scanner.scan_component_manifests
         patch.setattr(manifest_scanner, "scan_component_manifests", cache(scan))
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def as_served():
+    """Run pages by the app's own settings, which a session without a server does not read."""
+    told = tomllib.loads((ROOT / "app" / ".streamlit" / "config.toml").read_text(encoding="utf-8"))
+    for part in ("global", "runner"):
+        for name, value in told[part].items():
+            config.set_option(f"{part}.{name}", value)
 
 
 @pytest.fixture(autouse=True)

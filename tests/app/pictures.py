@@ -1,8 +1,9 @@
 """Pictures of every room in every language, to be looked at: ``python -m tests.app.pictures``.
 
-It is no test: it starts the app, turns to each part of each room on a laptop and a phone, and keeps
-what a person would see in a folder. ``--languages he,ar`` and ``--parts today,season`` take fewer;
-``--url`` takes an app that is running.
+It is no test: it starts the app, turns to each part of each room on a laptop, a tablet and a phone,
+by day and by night, and keeps what a person would see in a folder; what axe-core finds serious is
+said. ``--languages he,ar``, ``--parts today,season``, ``--sizes phone`` and ``--schemes dark`` take
+fewer; ``--url`` takes an app that is running.
 """
 
 import argparse
@@ -14,6 +15,7 @@ import tempfile
 import time
 import urllib.request
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
 from urllib.parse import quote
 
@@ -21,9 +23,15 @@ from playwright.sync_api import sync_playwright
 
 from app.state import rooms
 from app.words.language import LANGUAGES
+from tests.app.on_screen import faults
 from tests.paths import ROOT
 
-SIZES = {"laptop": (1440, 900, None), "phone": (390, 844, "Mozilla/5.0 (Android 14) Mobile Safari")}
+SIZES = {
+    "laptop": (1440, 900, None),
+    "tablet": (1024, 768, None),
+    "phone": (390, 844, "Mozilla/5.0 (Android 14) Mobile Safari"),
+}
+SCHEMES = ("light", "dark")
 PARTS = tuple(part for room in rooms.ROOMS.values() for part in room.parts)
 STILL = "[data-testid=stApp][data-test-script-state=notRunning]"
 
@@ -73,6 +81,8 @@ def take(page, url, language, part, to, season=""):
     # what moves comes to rest
     page.wait_for_timeout(1200)
     page.screenshot(path=to)
+    for fault in faults(page):
+        print(to.stem, fault)  # noqa: T201
 
 
 def main():
@@ -82,6 +92,7 @@ def main():
     ask.add_argument("--languages", default=",".join(LANGUAGES))
     ask.add_argument("--parts", default=",".join(PARTS))
     ask.add_argument("--sizes", default=",".join(SIZES))
+    ask.add_argument("--schemes", default=",".join(SCHEMES))
     ask.add_argument("--url", default="")
     ask.add_argument("--season", default="", help="of the app at --url")
     said = ask.parse_args()
@@ -99,22 +110,17 @@ def pictures(browsers, url, said):
     """Take all pictures that are asked for."""
     chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
     browser = browsers.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-    for size in said.sizes.split(","):
+    every = product(said.sizes.split(","), said.schemes.split(","), said.languages.split(","))
+    season = f"&season={quote(said.season)}" if said.season else ""
+    for size, scheme, language in every:
         width, height, agent = SIZES[size]
-        for language in said.languages.split(","):
-            context = browser.new_context(viewport={"width": width, "height": height},
-                                          user_agent=agent, color_scheme="light")  # fmt: skip
-            page = context.new_page()
-            for part in said.parts.split(","):
-                take(
-                    page,
-                    url,
-                    language,
-                    part,
-                    said.to / f"{part}_{language}_{size}.png",
-                    f"&season={quote(said.season)}" if said.season else "",
-                )
-            context.close()
+        context = browser.new_context(viewport={"width": width, "height": height},
+                                      user_agent=agent, color_scheme=scheme)  # fmt: skip
+        page = context.new_page()
+        for part in said.parts.split(","):
+            to = said.to / f"{part}_{language}_{size}_{scheme}.png"
+            take(page, url, language, part, to, season)
+        context.close()
     browser.close()
 
 

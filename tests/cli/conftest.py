@@ -1,10 +1,14 @@
 """A command, run as a person does."""
 
+import shutil
 import sys
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
 
 import pytest
 
-from fieldmon.cli.main import main
+from fieldmon.cli.main import app, main
 from tests.cli.estate import BEGINS, MITES, ZIP
 
 
@@ -27,13 +31,19 @@ def run(monkeypatch, capsys, tmp_path):
     return go
 
 
+@pytest.fixture(scope="session")
+def begun(tmp_path_factory):
+    """Begin a season on the smallest plot by its command, once; return its file."""
+    file = tmp_path_factory.mktemp("begun") / "season.gpkg"
+    words = ["init", file, ZIP, "--feature", "Nursery", "--observations", MITES]
+    words += ["--begins", BEGINS, "--hours", "1"]
+    with redirect_stdout(StringIO()) as said:
+        app([str(word) for word in words], standalone_mode=False)
+    assert "Season begun" in said.getvalue()
+    return file
+
+
 @pytest.fixture
-def season(run, tmp_path):
-    """Return the file of a season on the smallest plot that has just begun."""
-    code, out, err, _ = run(
-        *("init", "season.gpkg", ZIP, "--feature", "Nursery", "--observations", MITES),
-        *("--begins", BEGINS, "--hours", "1"),
-    )
-    assert code == 0, err
-    assert "Season begun" in out
-    return tmp_path / "season.gpkg"
+def season(begun, tmp_path):
+    """Return the file of a season that has just begun, a copy for each test."""
+    return Path(shutil.copy(begun, tmp_path / "season.gpkg"))

@@ -240,3 +240,63 @@ def test_a_simulated_curve_shows_what_clustered_finds_do():
 def test_plans_that_cannot_be_are_refused(made, said):
     with pytest.raises(SettingError, match=said):
         made()
+
+
+# of the vignette of sequential.pops 0.1.1: leafminers on tomatoes, whose counts cluster by Taylor's
+# law with a = 1.83 and b = 1.21, at a threshold of nine larvae a plant
+LEAFMINERS = 9.0**2 / (1.83 * 9.0**1.21 - 9.0)
+
+
+@pytest.mark.parametrize(
+    ("plan", "begins", "rises"),
+    [
+        (SPREAD, 5.128255, 2.841808),
+        (WaldPlan(8, 10, "negative binomial", k=LEAFMINERS), 28.45668, 8.93856),
+        (WaldPlan(0.35, 0.45), 5.251888, 0.3992989),
+    ],
+)
+def test_stop_lines_are_those_that_sequential_pops_publishes(plan, begins, rises):
+    """To the digits printed: where each line begins, and how it rises from look to look."""
+    for line, side in zip(plan.lines(2), (-1.0, 1.0), strict=True):
+        assert line[1] - line[0] == pytest.approx(rises, rel=1e-6)
+        assert 2.0 * line[0] - line[1] == pytest.approx(side * begins, rel=1e-6)
+
+
+def test_walds_test_ends_where_the_vignette_of_sequential_pops_says():
+    counts = [2, 2, 5, 1, 7, 17, 4, 6, 5, 11, 7, 5, 4, 5, 4, 5, 8, 6, 4, 5]
+    plan = WaldPlan(8, 10, "negative binomial", k=LEAFMINERS)
+    assert decided(plan, counts) == (LEAVE, 9)
+    found = [int(one) for one in "0111100111101010110001001010101101110000"]
+    assert decided(WaldPlan(0.35, 0.45), found) == (TREAT, 34)
+
+
+def bout_by_bout(counts, plan):
+    """Return the chance at which their Bayesian test stops, and after how many counts ``(m, n)``.
+
+    Theirs takes each bout by itself and multiplies the odds; `BayesPlan` takes all counts together.
+    """
+    above = plan.chance_above(1.0, np.arange(counts.max() + 1))[counts]
+    chance = 1.0 / (1.0 + np.exp(-np.cumsum(np.log(above) - np.log1p(-above), axis=1)))
+    ended = np.argmax((chance < 1.0 - plan.sure) | (chance > plan.sure), axis=1)
+    return chance[np.arange(len(chance)), ended], ended + 1
+
+
+def test_their_bayesian_test_is_ours_bout_by_bout():
+    plan = BayesPlan(9, "negative binomial", k=4.5, sure=0.99)
+    counts = [7, 3, 9, 3, 4, 4, 4, 4, 6, 3, 4, 3, 5, 1, 4, 5, 2, 9, 4, 1]
+    chance, bouts = bout_by_bout(np.array([counts]), plan)
+    assert (round(float(chance[0]), 5), int(bouts[0])) == (0.00548, 11)
+
+
+def test_the_published_curve_of_their_bayesian_test_comes_out_within_its_error():
+    """Twenty simulations a mean were published, from 3 to 12 larvae: bouts, and how often H."""
+    bouts = [4.05, 5.60, 9.75, 14.05, 10.20, 7.95, 6.15, 5.70, 3.95, 3.15]
+    accepts = [0.0, 0.0, 0.05, 0.5, 0.85, 1.0, 1.0, 1.0, 1.0, 1.0]
+    plan = BayesPlan(9, "negative binomial", k=4.5, sure=0.99)
+    draws = np.random.default_rng(1)
+    for mean, said, accepted in zip(range(3, 13), bouts, accepts, strict=True):
+        counts = draws.negative_binomial(4.5, 4.5 / (4.5 + mean), (200, 150))
+        chance, looks = bout_by_bout(counts, plan)
+        assert abs(looks.mean() - said) <= 3.5 * looks.std() / np.sqrt(20.0)
+        share = (chance > 0.5).mean()
+        assert abs(share - accepted) <= 3.5 * np.sqrt(max(share * (1 - share), 0.01) / 20.0)

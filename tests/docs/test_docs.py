@@ -4,6 +4,7 @@ import ast
 import re
 import shlex
 import tomllib
+from functools import cache
 
 import pytest
 import typer
@@ -72,10 +73,21 @@ def test_every_file_that_a_page_names_is_there(name):
             assert (ROOT / path).exists(), path
 
 
+@cache
+def defined():
+    """Return the names of all classes and functions of the library."""
+    code = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "fieldmon").rglob("*.py"))
+    return set(re.findall(r"^(?:class|def) (\w+)", code, re.MULTILINE))
+
+
+@cache
+def whole_command():
+    """Return the command with all that is below it."""
+    return typer.main.get_command(app)
+
+
 @pytest.mark.parametrize("name", PAGES)
 def test_every_module_and_class_that_a_page_names_is_there(name):
-    code = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "fieldmon").rglob("*.py"))
-    defined = set(re.findall(r"^(?:class|def) (\w+)", code, re.MULTILINE))
     for said in INLINE.findall(prose(PAGES[name])):
         for dotted in re.findall(r"\b(?:fm|fieldmon)\.([a-zA-Z_][\w.]*)", said):
             module = ROOT / "fieldmon" / dotted.replace(".", "/")
@@ -83,12 +95,12 @@ def test_every_module_and_class_that_a_page_names_is_there(name):
             assert there or hasattr(fieldmon, dotted.split(".")[0]), said
         # a class stands alone in its backquotes: `Robot`, `RoadNetwork`
         if re.fullmatch(r"(?:[A-Z][a-z]+)+", said) and said not in NO_CLASSES:
-            assert said in defined, said
+            assert said in defined(), said
 
 
 @pytest.mark.parametrize(("name", "words", "whole"), COMMANDS)
 def test_every_command_line_is_one_that_fieldmon_takes(name, words, whole):
-    command, left = typer.main.get_command(app), [word.replace("$day", "18") for word in words]
+    command, left = whole_command(), [word.replace("$day", "18") for word in words]
     while hasattr(command, "commands") and left and not left[0].startswith("-"):
         assert left[0] in command.commands, name
         command = command.commands[left.pop(0)]
@@ -109,7 +121,7 @@ def test_every_command_is_on_a_page():
         if not hasattr(command, "commands"):
             yield name
 
-    missing = [name for name in names(typer.main.get_command(app), "fieldmon") if name not in said]
+    missing = [name for name in names(whole_command(), "fieldmon") if name not in said]
     assert missing == []
 
 

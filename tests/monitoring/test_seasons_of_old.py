@@ -6,8 +6,6 @@ changed): planned, recorded, undone, treated, changed. Beside each lies what ``f
 """
 
 import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
@@ -15,11 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fieldmon.cli.main import app as command
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Season
-from tests.paths import ROOT
 
 FOLDER = Path(__file__).with_name("seasons_of_old")
 LAST = date(2026, 4, 9)
@@ -36,18 +34,18 @@ def season(request, tmp_path):
     return Season(shutil.copy(FOLDER / f"{request.param}.gpkg", tmp_path))
 
 
-def test_a_season_says_what_it_said(season):
-    command = [sys.executable, "-m", "fieldmon.cli", "status", str(season.path)]
-    asked = [*command, "--rows", "--batches", "--date", str(LAST)]
-    done = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+def test_a_season_says_what_it_said(season, capsys):
+    asked = ["status", str(season.path), "--rows", "--batches", "--date", str(LAST)]
+    command(asked, standalone_mode=False)
+    done = capsys.readouterr()
     # and besides, what none could know otherwise then or was not foretold
-    said = done.stdout.splitlines(keepends=True)
+    said = done.out.splitlines(keepends=True)
     for new in ("  finds are traced       to neighbours", "  in days to come "):
         since = [line for line in said if line.startswith(new)]
         assert len(since) == 1
         said.remove(since[0])
     assert "".join(said) == (FOLDER / f"{season.path.stem}.status.txt").read_text("utf-8")
-    assert "doubtful" not in done.stderr
+    assert "doubtful" not in done.err
 
 
 def test_its_mornings_come_out_as_they_were_kept(season):

@@ -1,6 +1,6 @@
 // A driven day between the rows: the robot, its way, what it found and what is believed by then.
 
-import { WebMercatorViewport } from "@deck.gl/core";
+import { COORDINATE_SYSTEM, WebMercatorViewport } from "@deck.gl/core";
 import { TripsLayer } from "@deck.gl/geo-layers";
 import { ColumnLayer, PathLayer, PolygonLayer, ScatterplotLayer } from "@deck.gl/layers";
 
@@ -209,23 +209,38 @@ export class Drive {
   }
 
   // Return deck.gl's own layers: nothing of them is sent, or made from JSON.
+  //
+  // Their data is the same object from picture to picture while nothing of it changes: of another
+  // one deck.gl makes everything anew, the whole way too.
   layers(viewport, dark) {
     if (!this.data || !viewport) return [];
-    const metres = metresPerPixel(viewport);
-    const finds = this.data.stops.slice(0, until(this.data.stops, this.second)).filter((one) => one[2]).map((one) => one[1]);
-    const { way = [], released = 0 } = this.data;
+    const { whole, ordered, finds } = this.parts(), metres = metresPerPixel(viewport);
     const { places } = this.from ?? {}, colour = dark ? [110, 220, 255] : [12, 62, 170];
     return [
-      new TripsLayer({ id: "driven", data: [this.data], getPath: (d) => d.lon.map((lon, k) => [lon, d.lat[k]]), getTimestamps: (d) => d.at,
+      new TripsLayer({ id: "driven", data: whole, getPath: (d) => d.lon.map((lon, k) => [lon, d.lat[k]]), getTimestamps: (d) => d.at,
         getColor: colour, widthMinPixels: 3, getWidth: 0.2, currentTime: this.second, trailLength: 1e7, fadeTrail: false, capRounded: true }),
-      way.length > 1 && new PathLayer({ id: "ordered", data: [[way.slice(0, released), [...colour, 200]], [way.slice(Math.max(released - 1, 0)), [...colour, 80]]],
-        getPath: ([path]) => path, getColor: ([, tone]) => tone, getWidth: 0.1, widthMinPixels: 2, capRounded: true }),
+      ordered && new PathLayer({ id: "ordered", data: ordered, getPath: (one) => one.path, getColor: (one) => [...colour, one.tone],
+        updateTriggers: { getColor: dark }, getWidth: 0.1, widthMinPixels: 2, capRounded: true }),
       places && new ScatterplotLayer({ id: "glow", data: finds, getPosition: (plant) => [places.lon[plant], places.lat[plant]],
         getRadius: 1.1, radiusMinPixels: 7, getFillColor: [...this.data.found, 70], stroked: true, getLineColor: dark ? [255, 255, 255] : [90, 0, 0],
         getLineWidth: 0.08, lineWidthMinPixels: 1.5 }),
       places && this.isNear(viewport) && this.columns(viewport),
       ...this.robot(metres),
     ];
+  }
+
+  // Return what layers are made of: the whole way, the way ordered, and the finds up to now.
+  parts() {
+    const { stops, way = [], released = 0 } = this.data, done = until(stops, this.second);
+    if (this.made?.of !== this.data) {
+      const ordered = way.length > 1 && [{ path: way.slice(0, released), tone: 200 }, { path: way.slice(Math.max(released - 1, 0)), tone: 80 }];
+      this.made = { of: this.data, whole: [this.data], ordered, finds: [] };
+    }
+    if (this.made.done !== done) {
+      const finds = stops.slice(0, done).filter((one) => one[2]).map((one) => one[1]);
+      Object.assign(this.made, { done, finds: finds.length === this.made.finds.length ? this.made.finds : finds });
+    }
+    return this.made;
   }
 
   isNear(viewport) {
@@ -262,16 +277,18 @@ export class Drive {
       material: { ambient: 0.55, diffuse: 0.6 } });
   }
 
+  // Return the robot's layers: boxes that are made once, and put where it stands.
   robot(metres) {
     const { lon, lat, heading } = poseAt(this.data, this.second), [long, wide] = this.data.size;
-    const grown = Math.max(1, (LEAST_PX * metres) / long), way = (heading * Math.PI) / 180;
-    const at = ([ahead, right]) => [
-      lon + (grown * (ahead * Math.sin(way) + right * Math.cos(way))) / (M_PER_DEGREE * Math.cos((lat * Math.PI) / 180)),
-      lat + (grown * (ahead * Math.cos(way) - right * Math.sin(way))) / M_PER_DEGREE];
-    const body = [[long / 2, -wide / 2], [long / 2, wide / 2], [-long / 2, wide / 2], [-long / 2, -wide / 2]].map(at);
-    const nose = [[long / 2, 0], [-long / 4, wide / 3], [-long / 4, -wide / 3]].map(at);
-    return [["robot", body, 0.5, [255, 210, 0]], ["nose", nose, 0.62, [20, 24, 28]]].map(([id, polygon, tall, colour]) =>
-      new PolygonLayer({ id, data: [polygon], getPolygon: (one) => one, extruded: true, getElevation: tall * grown, getFillColor: colour, material: { ambient: 0.7, diffuse: 0.5 } }));
+    const grown = Math.max(1, (LEAST_PX * metres) / long);
+    if (this.boxes?.of !== this.data.size) {
+      const body = [[-wide / 2, long / 2], [wide / 2, long / 2], [wide / 2, -long / 2], [-wide / 2, -long / 2]];
+      const nose = [[0, long / 2], [wide / 3, -long / 4], [-wide / 3, -long / 4]];
+      this.boxes = { of: this.data.size, each: [["robot", [body], 0.5, [255, 210, 0]], ["nose", [nose], 0.62, [20, 24, 28]]] };
+    }
+    return this.boxes.each.map(([id, data, tall, colour]) =>
+      new PolygonLayer({ id, data, getPolygon: (one) => one, coordinateSystem: COORDINATE_SYSTEM.METER_OFFSETS, coordinateOrigin: [lon, lat, 0],
+        modelMatrix: turned(heading, grown), extruded: true, getElevation: tall, getFillColor: colour, material: { ambient: 0.7, diffuse: 0.5 } }));
   }
 
   end() {
@@ -299,6 +316,12 @@ export function poseAt({ at, lon, lat, heading }, second) {
   const turned = ((heading[k] - heading[k - 1] + 540) % 360) - 180;
   return { lon: lon[k - 1] + share * (lon[k] - lon[k - 1]), lat: lat[k - 1] + share * (lat[k] - lat[k - 1]),
     heading: (heading[k - 1] + share * turned + 360) % 360 };
+}
+
+// Return the matrix, column by column, that turns what heads north by degrees clockwise, so many times as large.
+export function turned(heading, times) {
+  const way = (heading * Math.PI) / 180, cos = times * Math.cos(way), sin = times * Math.sin(way);
+  return [cos, -sin, 0, 0, sin, cos, 0, 0, 0, 0, times, 0, 0, 0, 0, 1];
 }
 
 function metresApart(a, b) {

@@ -5,6 +5,8 @@ import style from "./shape.css";
 
 // where a phone's sheet begins, and how far up a tap pulls it
 const HALF = 0.58, UP = 0.14;
+// a window made narrow has its list of pages a moment later
+const LATER_MS = 500;
 const KEY = "fieldmon panel";
 const page = document.documentElement;
 
@@ -64,6 +66,7 @@ export function keepShape(words) {
     page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
     measure();
+    setTimeout(listed, LATER_MS);
     const said = words() ?? {};
     fold.textContent = shape.folded ? "›" : "‹"; // mirrored by itself where one reads from the right
     fold.setAttribute("aria-label", (shape.folded ? said.unfold : said.fold) ?? "");

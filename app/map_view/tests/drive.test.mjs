@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Drive, nearest, poseAt, until } from "../src/drive.js";
+import { Drive, nearest, poseAt, turned, until } from "../src/drive.js";
 
 const DAY = {
   at: [0, 10, 40, 50], lon: [35, 35.001, 35.001, 35.001], lat: [30, 30, 30, 30.001], heading: [90, 90, 350, 10],
@@ -90,4 +90,22 @@ test("a day that is driven now is asked for until another one is shown", async (
   await new Promise((done) => setTimeout(done));
   drive.ask(null, true);
   assert.deepEqual(asked.at(-1), { heard: { standing: "away" } });
+});
+
+test("from picture to picture layers keep their data, or the whole way would be made anew each time", () => {
+  const drive = driving(10), { whole, finds } = drive.parts();
+  drive.second = 39;
+  assert.equal(drive.parts().whole, whole);
+  assert.equal(drive.parts().finds, finds);
+  drive.second = 45;
+  assert.equal(drive.parts().whole, whole);
+  assert.deepEqual(drive.parts().finds, [2]);
+  drive.data = { ...DAY, way: [[35, 30], [35.001, 30], [35.001, 30.001]], released: 2 };
+  assert.notEqual(drive.parts().whole, whole);
+  assert.deepEqual(drive.parts().ordered.map((one) => one.path.length), [2, 2]);
+});
+
+test("the robot's boxes are turned clockwise from north and grow", () => {
+  const [a, b, , , c, d] = turned(90, 2); // what lies ahead comes to lie in the east
+  assert.deepEqual([c, d, a, b].map((one) => Math.round(one)), [2, 0, 0, -2]);
 });

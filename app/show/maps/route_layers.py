@@ -54,6 +54,8 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     step = np.diff(line, axis=0)
     length = np.hypot(*step.T)
     way = np.append(0.0, np.cumsum(length))
+    if not way[-1]:  # the one stop is where the day begins: there is no way to point
+        return []
     at = (np.arange(_ARROWS) + 0.5) / _ARROWS * way[-1]
     leg = np.searchsorted(way, at, side="right") - 1
     ahead = step[leg] / length[leg][:, None]

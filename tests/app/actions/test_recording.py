@@ -1,13 +1,16 @@
 """What was found is recorded once, and undone."""
 
+import shutil
 from datetime import date
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
 from tests.app.driving import begun, go, metric, press, texts_of
+from tests.monitoring.test_outside_changes import outside
 
 
 def test_one_plant_is_recorded_and_undone(season_app, season):
@@ -62,6 +65,32 @@ def test_a_file_of_findings_is_recorded_once(season_app, season):
         season_app.button(key="record_file").click().run()
         assert says in season_app.success[0].value
     assert season().history.inspections.result.tolist() == [1, 0]
+
+
+def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
+    season_app, season, tmp_path
+):
+    record_clean(season(), date(2026, 11, 16), 4)
+    copy = shutil.copy(season().path, tmp_path / "copy.gpkg")
+    outside(copy, "UPDATE inspections SET result = 'found' WHERE fid = 1",
+            "DELETE FROM inspections WHERE fid = 2")  # fmt: skip
+    first, second = season().history.inspections.plant[:2].tolist()
+    go(season_app, "record")
+    data = Path(copy).read_bytes()
+    season_app.file_uploader(key="findings_file").upload("copy.gpkg", data).run()
+    season_app.button(key="record_file").click().run()
+    assert "must have an author" in season_app.error[0].value
+    assert len(season().history.inspections) == 4
+    for corrections in (2, 0):
+        season_app.text_input(key="corrected_by").set_value("Ann").run()
+        season_app.button(key="record_file").click().run()
+        assert f"{corrections} corrections taken" in season_app.success[0].value
+        assert "0 recorded, 2 known" in season_app.success[0].value
+    kept = season()
+    assert kept.history.inspections.plant.tolist().count(second) == 0
+    assert kept.history.states(0)[first] == FOUND
+    assert kept.batches()[0].who == "Ann"
+    assert kept.verify() == ()
 
 
 @pytest.mark.parametrize("data", [b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"])

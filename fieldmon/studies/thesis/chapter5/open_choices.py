@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.robot import Robot
+
+if TYPE_CHECKING:
+    from fieldmon.infestation.pest_in_weather import PestInWeather
 
 SCENARIOS = {"A": 1.0, "B": 5.0, "C": 10.0}
 """Hectares of the thesis's scenarios: 784, 4 096 and 8 281 plants."""
@@ -93,6 +96,9 @@ class OpenChoices:
         is infested any more; the visited share is the mean over the days worked.
     stop_s, row_change_s
         Turning to a plant and back at every stop; changing rows, beside the driving itself.
+    pest
+        The pest that lives on the plots instead of the thesis's rule, which `spread` and `sources`
+        say; None: that rule.
     """
 
     start: StartUp = field(default_factory=StartUp)
@@ -105,6 +111,7 @@ class OpenChoices:
     ends: Literal["season", "find"] = "find"
     stop_s: float = 25.0
     row_change_s: float = 25.0
+    pest: PestInWeather | None = None
 
     def __post_init__(self) -> None:
         for name, known in (
@@ -118,7 +125,10 @@ class OpenChoices:
     def robot(self, look_s: float = 40.0, detection: float | None = None) -> Robot:
         """Return the thesis's robot: 12 h a day at 2.5 km/h, detection by its viewpoint table."""
         robot = Robot(look_s=look_s, detection=detection).with_times("thesis")
-        return replace(robot, row_change_s=self.row_change_s, stop_s=self.stop_s)
+        robot = replace(robot, row_change_s=self.row_change_s, stop_s=self.stop_s)
+        if self.pest is None or detection is not None:
+            return robot
+        return self.pest.pest.seen_by(robot)
 
     def sentences(self) -> tuple[str, ...]:
         """Return each choice as ``name: value``, nested ones with their group's name."""
@@ -130,6 +140,8 @@ class OpenChoices:
                     f"{each.name} {inner.name}: {_plain(getattr(value, inner.name))}"
                     for inner in fields(value)
                 ]
+            elif each.name == "pest":
+                said += [] if self.pest is None else [f"pest: {self.pest.pest.name}"]
             else:
                 said.append(f"{each.name}: {_plain(value)}")
         return tuple(said)

@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.dispersal import dispersal_of
 from fieldmon.infestation.independent import learn, overnight
+from fieldmon.infestation.pest_in_weather import PestInWeather, kernel_of
 from fieldmon.infestation.spread import night
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers import kind_of, sampler
 from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.simulation.insects import PestInsects
 from fieldmon.studies.thesis.chapter5.open_choices import N_DAYS, OpenChoices
 from fieldmon.studies.thesis.chapter5.sites import first_morning
 
@@ -110,6 +113,7 @@ def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Fl
     last = np.full(len(infested), NEVER, np.int32)
     trail = np.empty(0, np.int32)
     new = count(infested)
+    living = None if choices.pest is None else PestInsects(site.grid, infested, choices.pest)
     for day in range(len(table)):
         here = count(infested)
         if here == 0 and choices.ends == "find":
@@ -117,7 +121,8 @@ def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Fl
             table[day:, EVER], table[day:, EVER_FOUND] = count(ever), count(ever_found)
             break
         scene = Scene(site.aisles, robot, belief, last, day, GATE, robot.day_s, trail)
-        plants, found, at_s = _inspect(trial, scene, infested, keys.inspect[day])
+        showing = infested if living is None else living.showing(day)
+        plants, found, at_s = _inspect(trial, scene, showing, keys.inspect[day])
         finds = plants[found]
         again = ever_found[finds]
         missed = np.zeros(len(infested), np.bool_)
@@ -131,9 +136,16 @@ def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Fl
         row[AT_LEVEL:] = _levels(table[: day + 1], choices, again, at_s[found] / robot.day_s)
         if kind_of(trial.sampler).reads_chance:
             evening = learn(belief, site.grid, plants, found, Learning(detection=robot.detects))
-            belief = _morning(site, choices, evening, (plants, found, missed))
-        after = _night(site, choices, infested, missed, keys.spread[day])
-        new = count(after) - count(infested)
+            if choices.pest is None:
+                belief = _morning(site, choices, evening, (plants, found, missed))
+            else:
+                belief = _morning_of_pest(site, choices.pest, evening, day)
+        if living is None:
+            after = _night(site, choices, infested, missed, keys.spread[day])
+        else:
+            living.pass_night(finds, day, keys.spread[day])
+            after = living.infested.copy()
+        new = count(after & ~infested)
         infested = after
         ever |= infested
         trail = plants if len(plants) else trail
@@ -205,6 +217,21 @@ def _morning(
     source[plants[found]] = 0.0
     spared = (1.0 - overnight(source, site.grid, choices.spread)) / (1.0 - source)
     return np.clip(1.0 - (1.0 - evening) * spared, 1e-6, _MOST)
+
+
+def _morning_of_pest(site: Site, living: PestInWeather, evening: Floats, day: int) -> Floats:
+    """Return the chance map of the next morning, plants taken as independent, as the thesis does.
+
+    By the pest's kernel, warmth and wind; nothing is known of what comes over the edge, nor of
+    what cannot be seen yet.
+    """
+    frame, movement = site.grid.frame, living.pest.movement
+    spread = living.spread(day, frame)
+    if movement.kernel == "adjacent":
+        return overnight(evening, site.grid, spread)
+    kernel = dispersal_of(site.grid, kernel_of(movement), spread.wind_m_s)
+    stays = np.exp(-kernel.landed(evening * spread.sends)) * (1.0 - spread.arrivals_per_day)
+    return np.clip(1.0 - (1.0 - evening) * stays, 1e-6, _MOST)
 
 
 def detection_pct(table: Floats, choices: OpenChoices) -> Floats:

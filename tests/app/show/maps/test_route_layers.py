@@ -1,5 +1,6 @@
 """A route on a map: driven in order, arrows along the way, played as it is timed."""
 
+from dataclasses import replace
 from datetime import datetime
 
 import numpy as np
@@ -61,6 +62,12 @@ def test_no_stop_is_no_layer_and_nothing_to_play(plot):
     assert len(empty) == 0
     assert route_layers.route(empty) == []
     assert route_layers.playback(empty, SIX) is None
+
+
+def test_a_stop_where_the_day_begins_has_no_arrow(route):
+    still = replace(route, line_m=np.repeat(route.line_m[:1], len(route.line_m), axis=0))
+    shown = {layer.id: layer for layer in route_layers.route(still)}
+    assert shown["arrows"].data == []
 
 
 def test_what_is_played_is_where_who_drives_is_at_which_second(route):

@@ -9,7 +9,9 @@ from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
+from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.travel import Aisles
@@ -235,3 +237,22 @@ def test_knowing_what_was_missed_finds_it_sooner():
         return np.sum(seasons, axis=0)[:, FOUND].sum()
 
     assert found(known=True) > found(known=False)
+
+
+@pytest.mark.parametrize("kernel", ["adjacent", "exponential"])
+@pytest.mark.parametrize("name", ["dynamic", "naive"])
+def test_a_pest_lives_on_the_plot_instead_of_the_thesiss_rule(name, kernel):
+    """A pest that does not spread brings nothing new; one that does, brings what its kernel has."""
+    quiet = Pest("quiet", movement=Movement(kernel, 0.0, reach_m=4.0))
+    rate = 0.9 if kernel == "adjacent" else 5.0
+    busy = Pest("busy", movement=Movement(kernel, rate, reach_m=4.0))
+    made = []
+    for pest in (quiet, busy):
+        choices = replace(PRODUCT, pest=PestInWeather(pest), ends="season")
+        table = play(square(1.0), PriorTrial(name, choices), SeedKeys.of(RandomStreams(5), 4))
+        assert (np.diff(table[:, EVER]) >= 0).all()
+        assert f"pest: {pest.name}" in choices.sentences()
+        made.append(table[1:, NEW].sum())
+    assert made[0] == 0
+    assert made[1] > 0
+    assert not any(said.startswith("pest") for said in PRODUCT.sentences())

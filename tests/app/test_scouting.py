@@ -7,6 +7,7 @@ import hashlib
 import os
 import random
 import shutil
+from datetime import date
 
 import pytest
 
@@ -16,6 +17,7 @@ from fieldmon.monitoring.day_ahead import route_ahead
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
 from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
+from tests.app.test_hostile_texts import EVIL, NAMES, hostile_season
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
 from tests.monitoring.telling import told
@@ -24,6 +26,8 @@ PLANTS = int(os.environ.get("FIELDMON_DAY", "12"))
 PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "3"))
 CUTS = int(os.environ.get("FIELDMON_CUTS", "12"))
 KILLS = int(os.environ.get("FIELDMON_KILLS", "2"))
+#: what a page would run, draw or follow if it were not text
+HARM = " ".join(NAMES[:5])
 SENT = "#sync[data-state=sent][data-left='0']"
 
 
@@ -346,3 +350,41 @@ def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone,
     page.locator("#close").click()
     clean, found = (page.locator(name).bounding_box()["x"] for name in ("#clean", "#found"))
     assert clean < found, "under the left thumb"
+
+
+def test_texts_that_do_harm_are_text_on_the_page_too(season, line, phone):
+    """The plot's name, the scout's, what a photo is asked for and a note: all of the page's DOM."""
+    season = hostile_season(season.path.parent / "Harm.gpkg")
+    page, asked = phone.page, []
+    page.on("request", lambda request: asked.append(request.url))
+    plant = int(route_ahead(season, date(2026, 11, 17)).plant[0])
+    ask_photo(season, plant, HARM)
+    key = scouts.let_in(season, HARM[:60])
+    page.goto(invitation(line.address, "Harm", key, "2026-11-17", "en"))
+    page.locator("#clean").wait_for(timeout=120_000)
+    _holds_texts_only(page)
+    page.locator("#open_menu").click()
+    _holds_texts_only(page)
+    page.keyboard.press("Escape")
+    page.locator("#asked").click()
+    page.locator(f"dialog [data-plant='{plant}']").click()
+    page.locator(f"#place[data-plant='{plant}'] .asked", has_text="<script>").wait_for()
+    page.locator("#note_button").click()
+    page.locator("#notes").fill(HARM)
+    page.locator("#ok").click()
+    _holds_texts_only(page)
+    told_now(page, "found", 2)
+    _holds_texts_only(page)
+    page.locator(SENT).wait_for(timeout=180_000)
+    assert any(plant == row[1] for row in told(Season(season.path))[1])
+    assert [url for url in asked if EVIL in url] == []
+
+
+def _holds_texts_only(page):
+    """Hold a page to elements and addresses of our own."""
+    assert page.evaluate("window.hit") is None
+    assert page.locator("body script, body iframe, [onerror]").count() == 0
+    sources = page.evaluate(
+        "[...document.querySelectorAll('[src], [href]')].map((e) => e.src || e.href)"
+    )
+    assert not [one for one in sources if EVIL in str(one) or str(one).endswith("/x")]

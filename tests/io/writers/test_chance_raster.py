@@ -149,7 +149,8 @@ def test_each_pixel_is_the_nearest_plants_on_whose_ground_it_lies_by_trying_all(
     rng = np.random.default_rng(seed)
     turn, shape, halves = rng.uniform(0.0, np.pi), (14, 17), np.array([1.4, 2.3])
     to_rows = 0.9 * np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-    places = rng.uniform(0.0, 1.0, (12, 2)) * [17.0, 14.0]
+    # every other plant is the other face of the one before
+    places = np.repeat(rng.uniform(0.0, 1.0, (6, 2)) * [17.0, 14.0], 2, axis=0)
     chance = rng.random(12).astype(np.float32)
     painted = np.full(shape, NODATA, np.float32)
     _paint(painted, places, chance, to_rows, halves)
@@ -160,7 +161,8 @@ def test_each_pixel_is_the_nearest_plants_on_whose_ground_it_lies_by_trying_all(
         if own:
             expected = max(chance[own])
         elif on_ground.size:
-            expected = chance[on_ground[np.argmin((away[on_ground] ** 2).sum(axis=1))]]
+            apart = (away[on_ground] ** 2).sum(axis=1)
+            expected = max(chance[on_ground[apart == apart.min()]])
         else:
             expected = NODATA
         assert painted[r, c] == np.float32(expected), (r, c)

@@ -58,4 +58,5 @@ def test_the_narrowest_of_a_rectangle_is_half_its_shorter_side_however_it_lies(
     flat = shapely.affinity.rotate(shapely.box(0.0, 0.0, long_m, wide_m), turned_deg)
     degrees = 111_320.0 * np.array([np.cos(np.radians(30.36)), 1.0])
     zone = shapely.transform(flat, lambda xy: xy / degrees + [35.15, 30.36])
-    assert narrowest_m([MultiPolygon([zone])]) == pytest.approx(wide_m / 2, rel=0.02)
+    wider = shapely.box(35.16, 30.36, 35.161, 30.361)
+    assert narrowest_m([MultiPolygon([zone, wider])]) == pytest.approx(wide_m / 2, rel=0.02)

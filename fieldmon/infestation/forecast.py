@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -121,11 +122,11 @@ def forecast(
     >>> bool(ahead.low[-1] < ahead.expected[-1] < ahead.high[-1])
     True
     """
-    mornings = [evening]
-    for spread in nights:
-        mornings.append(mornings[-1].overnight(spread))
-    expected = np.array([float(one.chance.sum()) for one in mornings])
-    inside = _from_inside(evening, nights, expected)
+    with ThreadPoolExecutor(1) as beside:
+        # but for what came from outside and its offspring
+        here = beside.submit(_numbers, _without_arrivals(evening), nights)
+        expected = _numbers(evening, nights)
+        inside = np.minimum(here.result(), expected)
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
     tonight = now or estimate_plot(grid, evening.chance, evening.pair_chance, doubt=evening.doubt)
     named = isinstance(evening, TracedPairs) and evening.pest is not None
@@ -135,17 +136,17 @@ def forecast(
     return Forecast(expected, np.floor(ends[0]), high, weather)
 
 
-def _from_inside(evening: Belief, nights: Sequence[Spread], expected: Floats) -> Floats:
-    """Return the expected number each morning, but for what came from outside and its offspring."""
-    if not isinstance(evening, TracedPairs):
-        return expected
-    belief = evening.without_arrivals
-    inside = [float(belief.chance.sum())]
+def _without_arrivals(evening: Belief) -> Belief:
+    return evening.without_arrivals if isinstance(evening, TracedPairs) else evening
+
+
+def _numbers(evening: Belief, nights: Sequence[Spread]) -> Floats:
+    """Return how many are expected to be infested this evening and after each night, ``(d,)``."""
+    numbers, belief = [float(evening.chance.sum())], evening
     for spread in nights:
         belief = belief.overnight(spread)
-        inside.append(float(belief.chance.sum()))
-    least: Floats = np.minimum(np.array(inside), expected)
-    return least
+        numbers.append(float(belief.chance.sum()))
+    return np.array(numbers)
 
 
 def _deviation(made: PlotEstimate) -> float:

@@ -119,20 +119,18 @@ def test_what_was_not_inspected_stays_unknown(season):
 
 
 def test_a_find_raises_its_neighbours_and_a_clean_look_lowers(season):
-    before = season.evening(BEGINS)
     grid, find, clean = season.plot.grid, 100, 300
-    on_day = np.datetime64(BEGINS, "D")
-    season.record(Inspections.of(np.array([find, clean]), np.array([FOUND, 0]), on_day), "x")
+    (start, plant), on_day = grid.adjacent, np.datetime64(BEGINS, "D")
+    beside_find, beside_clean = (plant[start[one] : start[one + 1]] for one in (find, clean))
+    before = season.evening(BEGINS)
+    season.record(Inspections.of(np.array([clean]), np.array([0]), on_day), "first")
+    between = season.evening(BEGINS)
+    assert between[clean] < before[clean]
+    assert (between[beside_clean] <= before[beside_clean]).all()
+    season.record(Inspections.of(np.array([find]), np.array([FOUND]), on_day), "second")
     after = season.evening(BEGINS)
-    start, plant = grid.adjacent
-    beside = plant[start[find] : start[find + 1]]
-    assert (after[beside] > 2 * before[beside]).all()
+    assert (after[beside_find] > 2 * between[beside_find]).all()
     assert after[find] < 1e-3  # treated
-    assert after[clean] < before[clean]
-    assert (
-        after[plant[start[clean] : start[clean + 1]]]
-        <= before[plant[start[clean] : start[clean + 1]]]
-    ).all()
 
 
 def test_undoing_a_batch_gives_back_the_state_before_and_deletes_nothing(season):

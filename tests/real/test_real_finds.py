@@ -7,14 +7,22 @@ from fieldmon.studies.samplers.mapped_plots import plots_in, table
 
 def test_on_mapped_plots_forty_percent_looks_find_about_what_dynamics_do_or_more(shared):
     plots = plots_in(shared / "plant_maps")
-    at_40 = {(row.name, row.who): row.per_look[-1] for row in table(plots)}
+    rows = {(row.name, row.who): row for row in table(plots)}
     names = [each.name for each in plots]
-    lead = np.array([at_40[name, "adaptive"] - at_40[name, "dynamic"] for name in names])
+    look, hour = (
+        {(name, who): getattr(row, per)[-1] for (name, who), row in rows.items()}
+        for per in ("per_look", "per_hour")
+    )
     assert len(names) == 9
-    # 216 trees of which a corner is infested: who begins there is ahead, see docs/strategies
-    assert lead.min() > -0.05
+    lead = np.array([look[name, "adaptive"] - look[name, "dynamic"] for name in names])
+    # 216 trees of which a corner is infested: who begins there is ahead, see docs/strategies;
+    # where many are infested Adaptive nearly sweeps: it finds less a look, and more an hour
+    assert lead.min() > -0.06
     assert (lead > 0.01).sum() >= 4
-    assert all(at_40[name, "adaptive"] > at_40[name, "random"] for name in names)
+    times = np.array([hour[name, "adaptive"] / hour[name, "dynamic"] for name in names])
+    assert times.min() > 0.93
+    assert (times > 1.02).sum() >= 5
+    assert all(look[name, "adaptive"] > look[name, "random"] for name in names)
 
 
 def test_the_maps_hold_as_many_infested_plants_as_their_papers_say(shared):

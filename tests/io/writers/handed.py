@@ -56,7 +56,7 @@ def crooked():
     )
     there = shapely.transform(shape, lambda xy: np.array([34.99, 29.95]) + xy / METRES)
     field = Field("L", MultiPolygon([there]))
-    return day(lay(field, Planting(faces=2, plant_spacing_m=2.0)), hours=2.0)
+    return day(lay(field, Planting(faces=2, plant_spacing_m=2.0)), hours=1.75)
 
 
 DAYS = {"usual": usual, "long": long, "empty": empty, "crooked": crooked}

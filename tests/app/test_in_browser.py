@@ -255,12 +255,7 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
     rest(page)
     page.get_by_text(texts.GROUND, exact=True).click()
     rest(page)
-    for _ in range(3):
-        page.get_by_role("combobox", name=texts.WEB_MAP, exact=True).click()
-        # the page may be drawn again between the two, and close the list
-        with suppress(PlaywrightTimeout):
-            page.get_by_role("option", name=texts.WEB_MAPS["other"]).click(timeout=20_000)
-            break
+    choose(page, texts.WEB_MAP, texts.WEB_MAPS["other"])
     box = page.get_by_role("textbox", name=texts.WEB_MAP_ADDRESS)
     box.fill(f"{url}/{{z}}/{{x}}/{{y}}.png")
     box.press("Enter")
@@ -592,18 +587,22 @@ def at_pixel(seen, place):
     return lon, float(np.rad2deg(2 * np.arctan(np.exp(y)) - np.pi / 2))
 
 
-def draw_by_click(page, what):
-    box = page.get_by_role("combobox", name="A click on the map sets")
+def choose(page, name, what):
+    """Choose in a list what is called so."""
+    box = page.get_by_role("combobox", name=name, exact=True)
     option = page.get_by_role("option", name=what)
     for _ in range(60):
-        # a list that opens while the panel still scrolls closes again
+        # the page may be drawn again, or its panel still scroll: then the list closes
         if box.get_attribute("aria-expanded") != "true":
             box.click()
         with suppress(PlaywrightTimeout):
             option.click(timeout=1_000)
-            break
-    else:
-        pytest.fail(f"{what!r} is not offered in the list")
+            return
+    pytest.fail(f"{what!r} is not offered in the list")
+
+
+def draw_by_click(page, what):
+    choose(page, "A click on the map sets", what)
     if what != "nothing":
         page.locator(f"{MAP}.drawing").wait_for(timeout=180_000)
     still(page)

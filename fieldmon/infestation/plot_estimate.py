@@ -102,7 +102,7 @@ def estimate_plot(
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     counts = drawn * (expected / max(float(drawn.mean()), 1e-9))
     if doubt > 0.0:
-        counts = counts * _doubted_widely(doubt)
+        counts = counts * doubted_widely(doubt)
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
@@ -114,7 +114,7 @@ def doubted(doubt: float) -> Floats:
     return factors
 
 
-def _doubted_widely(doubt: float) -> Floats:
+def doubted_widely(doubt: float) -> Floats:
     """Return the same where the doubt itself may be off: a logarithm with Student's tails.
 
     On mornings of seasons that no map was told of, the middle half is as wide as that of a gamma,

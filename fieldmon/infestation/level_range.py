@@ -74,12 +74,13 @@ def level_range(chance: Floats, doubt: float, sure: float = 0.9) -> LevelRange:
     share = float(np.mean(chance))
     if doubt <= 0.0 or not 0.0 < share < MOST_CHANCE:
         return LevelRange()
-    ends = np.quantile(doubted_widely(doubt), [0.5 - sure / 2, 0.5 + sure / 2])
+    by = np.quantile(doubted_widely(doubt), [0.5 - sure / 2, 0.5 + sure / 2])
+    ends = share * by / (1.0 + share * (by - 1.0))
     certain = float(np.mean(chance >= 1.0))
     possible = float(np.mean(chance > 0.0))
     # of the plants that can be infested no more than nearly all are, and no fewer than are for sure
     least, most = certain + 1e-3 * (share - certain), possible - 1e-3 * (possible - share)
-    low, high = (odds_ratio(chance, end) for end in np.clip(share * ends, least, most).tolist())
+    low, high = (odds_ratio(chance, end) for end in np.clip(ends, least, most).tolist())
     return LevelRange(low, high)
 
 

@@ -414,6 +414,23 @@ def test_the_zoom_stays_over_layers_days_and_rooms(page, address, served_seasons
         assert view(page) == seen, f"the zoom is lost in {name}"
 
 
+def test_hot_spots_bear_their_numbers_beside_those_of_stops(screen):
+    page = screen
+    hot, stops = (page.locator(f"{MAP} .label.{kind}:visible") for kind in ("hot", "leg"))
+    hot.first.wait_for()
+    numbers = [int(text) for text in hot.all_inner_texts()]
+    assert numbers == sorted(set(numbers))
+    assert numbers[0] == 1
+    rectangles = [
+        [box(r["x"], r["y"], r["x"] + r["width"], r["y"] + r["height"])
+         for r in (one.bounding_box() for one in some.all())]
+        for some in (hot, stops)
+    ]  # fmt: skip
+    assert not shapely.intersects(np.array(rectangles[0])[:, None], np.array(rectangles[1])).any()
+    switch(page, HOT, on=False)
+    hot.first.wait_for(state="hidden")
+
+
 def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
     page = screen
     switch(page, HOT, on=False)

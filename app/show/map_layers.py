@@ -137,14 +137,15 @@ def plants(choices: Choices) -> list:
 def _plants(choices: Choices) -> list:
     grid = choices.plot.grid
     chance, state = chosen_day.chance(choices), chosen_day.states(choices)
-    known = _known(choices, state)
+    known, level = _known(choices, state), chosen_day.level_range(choices)
     by_chance = colours.by_chance(chance, dark=choices.dark)
     ages = []
     if choices.season is not None:
         by_age = colours.by_age(chosen_day.ages(choices), dark=choices.dark)
         ages = [plant_layers.plants(grid, by_age, PlantNotes(known=known), "plants-age")]
+    notes = PlantNotes(chance, known=known, level=level)
     return [
-        plant_layers.plants(grid, by_chance, PlantNotes(chance, known=known), "plants-chance"),
+        plant_layers.plants(grid, by_chance, notes, "plants-chance"),
         *ages,
         *in_states(choices, state, known),
     ]

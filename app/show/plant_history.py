@@ -92,7 +92,10 @@ def show(choices: Choices) -> None:
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
     st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
-    st.caption(texts.HISTORY_CHANCE)
+    low, high = chosen_day.level_range(choices).of(now[[plant]])
+    if f"{low[0]:.1%}" != f"{high[0]:.1%}":
+        st.markdown(texts.HISTORY_BETWEEN.format(low=low[0], high=high[0]))
+        st.caption(texts.HISTORY_CHANCE)
     st.markdown(_on_route(choices, plant))
     if _taken_as_treated(choices, plant):
         st.caption(texts.HISTORY_TREATED)

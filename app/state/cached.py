@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.vda5050.wire import Broker, RobotName
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
@@ -349,6 +350,12 @@ def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> Hot
 def evening(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
     """Return the chance map of a day after what was recorded of it."""
     return _season.evening(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def level_range(path: str, revision: str, day: str, _season: Season) -> LevelRange:  # noqa: ARG001
+    """Return how far that chance map may be off as a whole."""
+    return _season.level_range(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)

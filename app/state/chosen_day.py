@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from fieldmon.infestation.inspections import FOUND, SKIPPED
+from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import DayFigures, Progress
     from fieldmon.planning.plan import DayPlan
@@ -28,6 +31,8 @@ if TYPE_CHECKING:
 
 #: when work starts where no season says it
 STARTS = time(6, 0)
+# plans are not changed once made
+_LEVELS: WeakKeyDictionary[DayPlan, LevelRange] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +80,16 @@ def chance(choices: Choices) -> cached.Array:
     if choices.season is None:
         return choices.plan().chance
     return cached.evening(choices.key, choices.revision, choices.day, choices.season)
+
+
+def level_range(choices: Choices) -> LevelRange:
+    """Return how far the chances of that day may be off together."""
+    if choices.season is None:
+        plan = choices.plan()
+        if plan not in _LEVELS:
+            _LEVELS[plan] = first_level_range(choices.plot.grid, plan.chance)
+        return _LEVELS[plan]
+    return cached.level_range(choices.key, choices.revision, choices.day, choices.season)
 
 
 def morning(choices: Choices, day: str) -> cached.Array:

@@ -21,6 +21,9 @@ def show(choices: Choices) -> None:
     """Show hot spots in words and a plant's history, of any day of the season."""
     plant_history.want(choices, map_layers.day_map(choices))
     st.markdown(f"### {texts.HOT_TITLE}")
-    said = hot_spot_meanings(choices.plot.grid, chosen_day.hot_spots(choices))
-    st.markdown("\n".join(f"- {in_words(meaning)}" for meaning in said))
+    spots = chosen_day.hot_spots(choices)
+    said = hot_spot_meanings(choices.plot.grid, spots)
+    # as their numbers on the map
+    signs = [f"{k}." if len(spots) else "-" for k in range(1, len(said) + 1)]
+    st.markdown("\n".join(f"{sign} {in_words(one)}" for sign, one in zip(signs, said, strict=True)))
     plant_history.show(choices)

@@ -423,11 +423,12 @@ TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start a
 TIP_ALONE, NEXT_ALONE = "plant {plant}{note}", "Plant {plant}"
 SCOUT_LAST_ALONE = "Last: plant {plant}: {result}"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
+TIP_CHANCE_BETWEEN = ": {chance} chance ({low} to {high})"
 TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
 TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
 TIP_LOOKS = Plural(", inspected {n} time", ", inspected {n} times")
 TIP_FINDS = Plural(", found {n} time", ", found {n} times")
-TIP_HOT = "hot spot: {found} found of {inspected} inspected"
+TIP_HOT = "hot spot {n}: {found} found of {inspected} inspected"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
 TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
 LABEL_GATE, LABEL_NO_GO, LABEL_BLOCK = "gate", "no-go", "block {n}"
@@ -569,9 +570,10 @@ HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
 HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
+HISTORY_BETWEEN = "If the plot had fewer or more than expected: {low:.1%} to {high:.1%}."
 HISTORY_CHANCE = (
-    "A chance says all that is believed of one plant, so it has no interval of its own; sums of "
-    "many plants have one, see Season."
+    "A chance says all that is believed of one plant. Its interval says what the chance would be "
+    "at the low and high end of what the plot as a whole may have (90 %)."
 )
 HISTORY_TREATED = (
     "It was found infested, and in this season plants found are taken as treated at once: from "

@@ -111,6 +111,26 @@ class PestOptions:
         return PestInWeather(pest, weather, begins)
 
 
+def living_of(name: str | None) -> PestInWeather | None:
+    """Return the pest that a study named, at the temperature of its figures; None: none was."""
+    from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
+
+    pest = PestOptions(name).named()
+    if pest is None:
+        return None
+    tell_pest(pest)
+    return PestInWeather(pest)
+
+
+def check_no_pest(name: str | None, study: str) -> None:
+    """Raise `SettingError` if a pest was named for a study of what was published."""
+    if name is not None:
+        raise SettingError(
+            f"{study} goes without --pest: it is held against figures that were published of the "
+            "thesis's own rule. For another pest take study prior, samplers or run."
+        )
+
+
 def prior_of(living: PestInWeather | None, on: date) -> PriorSettings:
     """Return how records become chances for a day, as the pest and its weather have it."""
     from fieldmon.infestation.pest_prior import prior_for  # noqa: PLC0415

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.pest_options import PestName, living_of
 from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.errors import SettingError
 
@@ -14,37 +15,49 @@ from fieldmon.errors import SettingError
 def beliefs(
     seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons a belief.")] = 10,
     scenario: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--scenario",
             "--cell",
-            help="How the name of the scenario begins (see `study samplers`).",
+            help="How the name of the scenario begins (see `study samplers`); clusters on 5 ha if "
+            "left out.",
         ),
-    ] = "B, spread 30% to one, clusters, prior none",
+    ] = None,
     sampler: Annotated[str, typer.Option(help="Who inspects meanwhile.")] = "adaptive",
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the report (HTML).")
     ] = Path(),
+    pest: PestName = None,
 ) -> None:
     """Compare chance maps by what came true: reliability, scores, intervals, cost.
+
+    With --pest, that of traced pairs alone: the others follow no pest.
 
     Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
     """
     from fieldmon.samplers import sampler as named  # noqa: PLC0415
     from fieldmon.studies.samplers.calibration import (  # noqa: PLC0415
         BELIEFS,
+        OF_PESTS,
         calibration,
         report_html,
     )
-    from fieldmon.studies.samplers.scenarios import all_scenarios, in_worlds  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
+        Scenario,
+        all_scenarios,
+        in_worlds,
+        with_pest,
+    )
 
     must_be_folder(output)
-    known = (*all_scenarios(), *in_worlds())
-    chosen = next((each for each in known if each.name.startswith(scenario)), None)
+    living = living_of(pest)
+    known = [Scenario(), *all_scenarios(), *in_worlds()]
+    known = known if living is None else with_pest(known, living)
+    chosen = next((each for each in known if each.name.startswith(scenario or "")), None)
     if chosen is None:
         raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
     made = {}
-    for name, believe in BELIEFS.items():
+    for name, believe in (BELIEFS if living is None else OF_PESTS).items():
         made[name] = c = calibration([chosen], named(sampler), believe, seeds)
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "

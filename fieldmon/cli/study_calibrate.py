@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.pest_options import PestName, check_no_pest
 from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import counting
 
@@ -14,30 +17,40 @@ if TYPE_CHECKING:
     from fieldmon.studies.thesis.chapter5.calibrate import FittedChoices
 
 
-def calibrate(
-    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 500,
-    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 20,
-    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 400,
-    seeds: Annotated[int, typer.Option(help="Paired seasons in the final comparison.")] = 20,
-    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1,
+@dataclass(frozen=True)
+class CalibrateOptions:
+    """What `fieldmon study calibrate` is told."""
+
+    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 500
+    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 20
+    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 400
+    seeds: Annotated[int, typer.Option(help="Paired seasons in the final comparison.")] = 20
+    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for tables and report.")
-    ] = Path(),
-) -> None:
+    ] = Path()
+    pest: PestName = None
+
+
+@with_options
+def calibrate(options: CalibrateOptions) -> None:
     """Search what the thesis leaves open for the best fit to its published figures.
 
     Tells the best joint fit, the best fit of each part alone, and which parts conflict. Takes
-    about half an hour on two cores; Ctrl-C keeps what was tried on everything.
+    about half an hour on two cores; Ctrl-C keeps what was tried on everything. It takes no --pest:
+    the figures are of the thesis's own rule.
     """
+    check_no_pest(options.pest, "study calibrate")
     from fieldmon.studies.thesis.chapter5.calibrate import Effort, candidates_csv  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.calibrate import calibrate as search  # noqa: PLC0415
 
-    must_be_folder(output)
-    effort = Effort(drawn=drawn, kept=kept, steps=steps, final_seeds=seeds)
+    must_be_folder(options.output)
+    tried = {"drawn": options.drawn, "kept": options.kept, "steps": options.steps}
+    effort = Effort(**tried, final_seeds=options.seeds)
     with counting("Searching") as count:
-        found = search(effort, seed, count)
+        found = search(effort, options.seed, count)
     _tell_fit(found)
-    write_all(output, {"prior_calibration.csv": candidates_csv(found.tried)})
+    write_all(options.output, {"prior_calibration.csv": candidates_csv(found.tried)})
 
 
 def _tell_fit(found: FittedChoices) -> None:

@@ -2,58 +2,72 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.pest_options import PestName, check_no_pest
 from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import FileProblem
 
 
-def no_prior(
+@dataclass(frozen=True)
+class NoPriorOptions:
+    """What `fieldmon study no-prior` is told."""
+
     table: Annotated[
         str,
         typer.Option(
             help="2, 3, 4, 5 or 2-5 (the printed tables), severity, bigger, trend, equal, "
             "everywhere, slips, or all."
         ),
-    ] = "2-5",
-    replicates: Annotated[int, typer.Option(help="Simulated seasons a row.")] = 400,
-    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1,
+    ] = "2-5"
+    replicates: Annotated[int, typer.Option(help="Simulated seasons a row.")] = 400
+    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
-    ] = Path(),
+    ] = Path()
     golden: Annotated[
         list[Path] | None,
         typer.Option(help="Compare with exact runs instead; exit code 1 where rows differ."),
-    ] = None,
+    ] = None
     night: Annotated[
         str | None,
         typer.Option(help="Which night the exact runs are of: published or corrected."),
-    ] = None,
-) -> None:
+    ] = None
+    pest: PestName = None
+
+
+@with_options
+def no_prior(options: NoPriorOptions) -> None:
     """Run the thesis's samplers without prior information beside its printed tables.
+
+    It takes no --pest: the tables are of the thesis's own rule.
 
     Example: fieldmon study no-prior --table 2 --replicates 400 -o study
     """
-    if golden:
-        _compare(golden, night)
+    check_no_pest(options.pest, "study no-prior")
+    if options.golden:
+        _compare(options.golden, options.night)
         return
     from fieldmon.studies.thesis.chapter4.report import report_html  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter4.study import run_no_prior  # noqa: PLC0415
     from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
-    must_be_folder(output)
+    must_be_folder(options.output)
     with counting("Simulating") as count:
-        made = run_no_prior(table, replicates, seed, count)
+        made = run_no_prior(options.table, options.replicates, options.seed, count)
     for part in made.tables:
         typer.echo(f"\n{part.title}")
         for sentence in part.summary:
             typer.echo(f"  {sentence}")
-    name = f"no_prior_{table}"
-    write_all(output, {f"{name}.csv": csv_text(made.cells), f"{name}.html": report_html(made)})
+    name = f"no_prior_{options.table}"
+    written = {f"{name}.csv": csv_text(made.cells), f"{name}.html": report_html(made)}
+    write_all(options.output, written)
 
 
 def _compare(files: list[Path], night: str | None) -> None:

@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.pest_options import PestName, tell_pest
+from fieldmon.cli.pest_options import PestName, living_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import counting
@@ -56,17 +56,13 @@ class PriorOptions:
         """Return what the thesis leaves open; with the pest that was named instead of its rule."""
         from dataclasses import replace  # noqa: PLC0415
 
-        from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
-        from fieldmon.io.readers.pest_file import pest_of  # noqa: PLC0415
         from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED  # noqa: PLC0415
 
         if self.pest is None:
             return CALIBRATED
         if self.maps is not None:
             raise SettingError("--pest goes without --maps: on mapped plants nothing spreads.")
-        named = pest_of(self.pest)
-        tell_pest(named)
-        return replace(CALIBRATED, pest=PestInWeather(named))
+        return replace(CALIBRATED, pest=living_of(self.pest))
 
 
 @with_options

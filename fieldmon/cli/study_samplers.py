@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.pest_options import PestName, living_of
 from fieldmon.cli.study_output import must_be_folder, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
@@ -14,34 +17,41 @@ from fieldmon.errors import SettingError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.studies.samplers.scenarios import Scenario
     from fieldmon.studies.samplers.seasons import SeasonOutcome
 
 
-def samplers(
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons a scenario.")] = 10,
-    *,
+@dataclass(frozen=True)
+class SamplersOptions:
+    """What `fieldmon study samplers` is told."""
+
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons a scenario.")] = 10
     full: Annotated[
         bool,
         typer.Option("--full", help="Every combination of plot, spread, start and prior (hours)."),
-    ] = False,
+    ] = False
     scenario: Annotated[
         list[str] | None,
         typer.Option(
             "--scenario", "--cell", help="Only scenarios whose name begins so; repeat for more."
         ),
-    ] = None,
+    ] = None
     maps: Annotated[
         Path | None,
         typer.Option(help="Folder with the public plant maps: finds per inspection on these."),
-    ] = None,
+    ] = None
     tune: Annotated[
         bool, typer.Option("--tune", help="Search Dynamic's open choices instead (ten minutes).")
-    ] = False,
+    ] = False
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
-    ] = Path(),
-) -> None:
+    ] = Path()
+    pest: PestName = None
+
+
+@with_options
+def samplers(options: SamplersOptions) -> None:
     """Compare samplers in scenarios A, B and C: infested plant-days, days to 50 and 80 %.
 
     A study that was stopped goes on where its table ends. With 10 seeds it takes about half an
@@ -50,6 +60,9 @@ def samplers(
     Scenarios named "world" are not among the usual ones: there the insects do what no chance map
     was told. --scenario "world, B, 12 h" --seeds 20 tells most ratios to a tenth.
 
+    With --pest that pest lives in all scenarios, at the temperature of its figures, and every
+    sampler knows it: "B, whitefly, clusters, prior none" is such a scenario.
+
     On mapped plots (`--maps`) no plant infects another: the share of inspections with a find.
 
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
@@ -57,33 +70,45 @@ def samplers(
     from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
     from fieldmon.studies.samplers.summary import ratio_lines, sentences  # noqa: PLC0415
 
-    must_be_folder(output)
-    if maps is not None:
-        _on_maps(maps, output)
+    must_be_folder(options.output)
+    if options.pest is not None and (options.tune or options.maps is not None):
+        raise SettingError(
+            "--pest goes without --maps, where nothing spreads, and without --tune, which searches "
+            "for the study's own insects."
+        )
+    if options.maps is not None:
+        _on_maps(options.maps, options.output)
         return
-    if tune:
+    if options.tune:
         _tune()
         return
-    table = output / "samplers.csv"
-    shown = _outcomes(_scenarios(scenario, full=full), seeds, table)
+    table = options.output / "samplers.csv"
+    meant = _scenarios(options.scenario, living_of(options.pest), full=options.full)
+    shown = _outcomes(meant, options.seeds, table)
     for sentence in (*ratio_lines(shown), *sentences(shown)):
         typer.echo(sentence)
     typer.echo(f"Written: {table}")
-    write_all(output, {"samplers.html": report_html(shown)})
+    write_all(options.output, {"samplers.html": report_html(shown)})
 
 
-def _scenarios(beginnings: list[str] | None, *, full: bool) -> list[Scenario]:
+def _scenarios(
+    beginnings: list[str] | None, living: PestInWeather | None, *, full: bool
+) -> list[Scenario]:
     """Return the scenarios that are meant."""
     from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
         all_scenarios,
         in_worlds,
         usual_scenarios,
+        with_pest,
     )
 
     scenarios = all_scenarios() if full else usual_scenarios()
+    if living is not None:
+        scenarios = with_pest(scenarios, living)
     if not beginnings:
         return scenarios
-    scenarios = [*scenarios, *in_worlds()]
+    if living is None:
+        scenarios = [*scenarios, *in_worlds()]
     meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
     if not meant:
         raise SettingError(f"A scenario must begin with {' or '.join(beginnings)}, but none does.")

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.pest_options import PestName, living_of
 from fieldmon.cli.study_output import must_be_folder
 from fieldmon.cli.waiting import counting
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from fieldmon.studies.samplers.scenarios import Scenario
     from fieldmon.studies.verdicts.treated_seasons import TreatedSeason
 
 _LOOKED_AT = (0.25, 0.5, 1.0)
@@ -26,12 +28,13 @@ def treatments(
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")
     ] = Path(),
+    pest: PestName = None,
 ) -> None:
     """Compare treating zones above the threshold with treating whole plots, and with nothing.
 
     By infested plant-days, hectares and money, over seasons of 25 days; and by the area of zones
     that leave about as many infested plants as treating the whole plot would. A study that was
-    stopped goes on where its table ends.
+    stopped goes on where its table ends. With --pest that pest lives there, and the map knows it.
 
     Example: fieldmon study treatments --seeds 5 --sampler adaptive -o study
     """
@@ -50,13 +53,14 @@ def treatments(
     names = tuple(sampler or known_samplers())
     for name in names:
         kind_of(name)
-    study = study_of_treatments(treated_scenarios(), range(seeds), names)
+    scenarios = treated_scenarios(living_of(pest))
+    study = study_of_treatments(scenarios, range(seeds), names)
     file = output / "treatments.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TreatedSeason)
     with counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     _tell(table.asked())
-    _tell_areas(seeds)
+    _tell_areas(scenarios, seeds)
     typer.echo(f"Written: {file}")
 
 
@@ -82,16 +86,13 @@ def _tell(made: Sequence[TreatedSeason]) -> None:
         )
 
 
-def _tell_areas(seeds: int) -> None:
+def _tell_areas(scenarios: Sequence[Scenario], seeds: int) -> None:
     """Print what zones spray where they leave about as much as the whole plot's treatment."""
-    from fieldmon.studies.verdicts.treated_seasons import (  # noqa: PLC0415
-        area_at_equal_left,
-        treated_scenarios,
-    )
+    from fieldmon.studies.verdicts.treated_seasons import area_at_equal_left  # noqa: PLC0415
 
     typer.echo("\nZones that leave about as many infested plants as treating the whole plot:")
     for share in _LOOKED_AT:
-        for scenario in treated_scenarios():
+        for scenario in scenarios:
             made = [area_at_equal_left(scenario, seed, share) for seed in range(seeds)]
             area, left = (
                 sum(getattr(one, name) for one in made) / seeds for name in ("share", "left")

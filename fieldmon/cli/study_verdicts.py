@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from fieldmon.cli.pest_options import PestName, living_of
 from fieldmon.cli.study_output import must_be_folder
 from fieldmon.cli.waiting import counting
 
@@ -19,11 +21,13 @@ def verdicts(
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")
     ] = Path(),
+    pest: PestName = None,
 ) -> None:
     """Compare Decide with a W walk, with Wald's test alone and with Adaptive.
 
     By looks until a verdict, and by how often it is right. A study that was stopped goes on where
-    its table ends; 100 seeds take some minutes.
+    its table ends; 100 seeds take some minutes. With --pest plants show as that pest does; a day
+    has no nights, so nothing spreads.
 
     Example: fieldmon study verdicts --seeds 20 -o study
     """
@@ -39,7 +43,9 @@ def verdicts(
     )
 
     must_be_folder(output)
+    living = living_of(pest)
     questions = usual_questions() + ([] if maps is None else real_questions(maps))
+    questions = [replace(each, living=living) for each in questions]
     study, file = study_of_verdicts(questions, range(seeds)), output / "verdicts.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], VerdictOutcome)
     with counting("Plots") as count, table, executor.threads() as workers:

@@ -6,18 +6,20 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.pest_options import PestName, tell_pest
+
 
 def weather(
     seeds: Annotated[int, typer.Option(min=1, help="Seasons of each, on the same insects.")] = 100,
     shape: Annotated[
         str, typer.Option(help="One shape of the weather, as 'heat wave'; empty: all of them.")
     ] = "",
-    pest: Annotated[
-        str, typer.Option(help="A pest's name or file; empty: a mite that the wind carries.")
-    ] = "",
+    pest: PestName = None,
     days: Annotated[int, typer.Option(min=1, help="Days of a season.")] = 20,
 ) -> None:
     """Compare Adaptive that knows temperature and wind with one that believes averages.
+
+    Without --pest the insects are a mite that the wind carries.
 
     Example: fieldmon study weather --seeds 20 --shape "steady wind"
     """
@@ -25,6 +27,8 @@ def weather(
     from fieldmon.studies.weather_known import CARRIED, SHAPES, worth_of_weather  # noqa: PLC0415
 
     lives = pest_of(pest) if pest else CARRIED
+    if pest:
+        tell_pest(lives)
     for name in [shape] if shape else SHAPES:
         for each in worth_of_weather(range(seeds), [name], lives, days):
             typer.echo(each.sentence())

@@ -100,9 +100,11 @@ def estimate_plot(
     clean = float(np.exp(np.log1p(-table[-1]).sum()))  # the same chain draws no infested plant
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
-    counts = drawn * (expected / max(float(drawn.mean()), 1e-9))
+    counts = (drawn * (expected / max(float(drawn.mean()), 1e-9))).clip(0.0, len(chance))
     if doubt > 0.0:
-        counts = counts * _doubted_widely(doubt)
+        # odds, as finds change a level by: never more than there are plants
+        factors = doubted_widely(doubt)
+        counts = counts * factors / (1.0 + counts / len(chance) * (factors - 1.0))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
@@ -114,7 +116,7 @@ def doubted(doubt: float) -> Floats:
     return factors
 
 
-def _doubted_widely(doubt: float) -> Floats:
+def doubted_widely(doubt: float) -> Floats:
     """Return the same where the doubt itself may be off: a logarithm with Student's tails.
 
     On mornings of seasons that no map was told of, the middle half is as wide as that of a gamma,

@@ -200,7 +200,24 @@ def scaled(chance: Floats, expected_share: float) -> Floats:
                 expected_share=expected_share,
             )
         )
-    odds = logit(chance[free])
+    after = chance.copy()
+    after[free] = expit(logit(chance[free]) + _odds_shift(chance[free], wanted))
+    return after
+
+
+def odds_ratio(chance: Floats, expected_share: float) -> float:
+    """Return what all odds of chances ``(n,)`` must be multiplied by for this mean.
+
+    Plants at exactly 0 or 1 stay there; the mean must leave room for that.
+    """
+    free = chance[(chance > 0.0) & (chance < 1.0)]
+    certain = np.count_nonzero(chance >= 1.0)
+    return float(np.exp(_odds_shift(free, expected_share * len(chance) - certain)))
+
+
+def _odds_shift(chance: Floats, wanted: float) -> float:
+    """Return what is added to all log-odds of chances within 0 and 1 for them to sum up to this."""
+    odds = logit(chance)
     share = wanted / len(odds)
 
     def excess(shift: float) -> float:
@@ -209,10 +226,7 @@ def scaled(chance: Floats, expected_share: float) -> Floats:
     from scipy.optimize import brentq  # noqa: PLC0415 - heavy, and seldom needed
 
     least, most = logit(share) - odds.max(), logit(share) - odds.min()
-    shift = brentq(excess, least - 1e-9, most + 1e-9, xtol=1e-13, rtol=1e-15)
-    after = chance.copy()
-    after[free] = expit(odds + shift)
-    return after
+    return float(brentq(excess, least - 1e-9, most + 1e-9, xtol=1e-13, rtol=1e-15))
 
 
 def start_infested(

@@ -16,6 +16,7 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from
+from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.pests.pest import Pest
@@ -266,10 +268,21 @@ class History:
         return {}
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
+        left = self._still_out(morning, day)
+        return estimate_plot(self.grid, left.chance, left.pair_chance, doubt=left.doubt)
+
+    def level_range(self, morning: Belief, day: int) -> LevelRange:
+        """Return how far the chances of plants not found yet may be off together, after a day."""
+        left = self._still_out(morning, day)
+        return level_range(left.chance, left.doubt)
+
+    def _still_out(self, morning: Belief, day: int) -> Belief:
+        """Return what is believed of plants not found yet."""
         evening = self.evening(morning, day)
-        if not self.belief.treated:  # what was found is known: it is not out there any more
-            evening = evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))
-        return estimate_plot(self.grid, evening.chance, evening.pair_chance, doubt=evening.doubt)
+        if self.belief.treated:
+            return evening
+        # what was found is known: it is not out there any more
+        return evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))
 
     def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""

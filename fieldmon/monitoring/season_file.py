@@ -86,6 +86,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.learnt import Learnt
+    from fieldmon.infestation.level_range import LevelRange
     from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.cautions import Caution
@@ -855,6 +856,13 @@ class Season:
             contents = self._now()
             day = contents.settings.day(on)
             return contents.history.evening(contents.morning(day), day).chance
+
+    def level_range(self, on: date) -> LevelRange:
+        """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.level_range(contents.morning(day), day)
 
     def verdict(
         self, on: date, level: float, sure: float = 0.9, plants: NDArray[np.bool_] | None = None

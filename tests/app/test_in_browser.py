@@ -22,6 +22,7 @@ from app.show.maps import colours
 from app.state import rooms
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
@@ -408,6 +409,23 @@ def test_the_zoom_stays_over_layers_days_and_rooms(page, address, served_seasons
         assert view(page) == seen, f"the zoom is lost in {name}"
 
 
+def test_hot_spots_bear_their_numbers_beside_those_of_stops(screen):
+    page = screen
+    hot, stops = (page.locator(f"{MAP} .label.{kind}:visible") for kind in ("hot", "leg"))
+    hot.first.wait_for()
+    numbers = [int(text) for text in hot.all_inner_texts()]
+    assert numbers == sorted(set(numbers))
+    assert numbers[0] == 1
+    rectangles = [
+        [box(r["x"], r["y"], r["x"] + r["width"], r["y"] + r["height"])
+         for r in (one.bounding_box() for one in some.all())]
+        for some in (hot, stops)
+    ]  # fmt: skip
+    assert not shapely.intersects(np.array(rectangles[0])[:, None], np.array(rectangles[1])).any()
+    switch(page, HOT, on=False)
+    hot.first.wait_for(state="hidden")
+
+
 def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
     page = screen
     switch(page, HOT, on=False)
@@ -422,7 +440,10 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
     tip.wait_for()
     said = f"row {label.line[0]}, plant {label.number[0]}"
     assert tip.inner_text().startswith(said)
-    assert f"{100 * today.chance[plant]:.1f} %" in tip.inner_text()
+    of_it = today.chance[[plant]]
+    low, high = first_level_range(plot.grid, today.chance).of(of_it)
+    between = f"{100 * of_it[0]:.1f} % chance ({100 * low[0]:.1f} to {100 * high[0]:.1f} %)"
+    assert between in tip.inner_text()
 
 
 def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(page, address):

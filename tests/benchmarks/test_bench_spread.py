@@ -13,6 +13,7 @@ from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.io.readers.pest_file import pest_of
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
 
@@ -30,6 +31,24 @@ def test_night_of_a_long_kernel_on_100_489_plants(benchmark, share):
     dispersal, sick = Dispersal.of(GRID, LONG), infested(share)
     after = benchmark(lambda: sick | dispersal.reached(np.flatnonzero(sick), 0.5, KEY))
     assert after.sum() > sick.sum()
+
+
+@pytest.mark.parametrize("share", [0.001, 0.01, 0.1])
+@pytest.mark.parametrize("by_hour", [False, True])
+def test_night_of_a_pest_that_goes_far_on_100_489_plants(benchmark, by_hour, share):
+    """A night of one that moves at night, or the 24 hours of whitefly."""
+    far = Pest("mite", movement=Movement("cauchy", 0.5, reach_m=15.0))
+    pest = pest_of("whitefly") if by_hour else far
+    living, before = PestInWeather(pest), Colonies.grown(GRID, pest, infested(share))
+    spells = living.hours(0, GRID.frame) if by_hour else [living.night(0, GRID.frame)]
+
+    def night():
+        colonies = before
+        for turn, spell in enumerate(spells):
+            colonies = colonies.after(spell, KEY, turn)
+        return colonies.infested
+
+    assert benchmark(night).sum() > before.infested.sum()
 
 
 @pytest.mark.parametrize("way", ["by_sum", "by_fft"])

@@ -14,3 +14,12 @@ def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", "beliefs", *words)
     assert (code, made) == (2, set())
     assert says in err
+
+
+def test_with_a_pest_the_map_that_follows_it_is_held_to_what_came_true(run):
+    words = ["--pest", "whitefly", "--scenario", "A, whitefly", "--seeds", 1]
+    code, out, err, made = run("study", "beliefs", *words)
+    assert code == 0, err
+    assert [line.split("  ")[0] for line in out.splitlines() if "Brier" in line] == ["traced pairs"]
+    (page,) = made
+    assert "A, whitefly, clusters, prior none" in page.read_text(encoding="utf-8")

@@ -1,5 +1,7 @@
 """`fieldmon study calibrate`, as a person runs it."""
 
+import pytest
+
 from tests.cli.estate import table
 
 
@@ -17,3 +19,11 @@ def test_a_folder_that_is_not_there_is_said_before_anything_is_searched(run):
     code, _, err, made = run("study", "calibrate", "-o", "none")
     assert (code, made) == (2, set())
     assert "must exist" in err
+
+
+@pytest.mark.parametrize("study", ["calibrate", "no-prior"])
+def test_a_study_of_printed_figures_says_why_it_takes_no_pest(run, study):
+    code, _, err, made = run("study", study, "--pest", "whitefly")
+    assert (code, made) == (2, set())
+    assert f"study {study} goes without --pest" in err
+    assert "the thesis's own rule" in err

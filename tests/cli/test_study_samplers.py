@@ -2,6 +2,9 @@
 
 import pytest
 
+from fieldmon.studies.samplers.contenders import OF_PESTS
+from tests.cli.estate import table
+
 
 @pytest.mark.parametrize(
     ("words", "says"),
@@ -9,9 +12,23 @@ import pytest
         (["-o", "none"], "must exist"),
         (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
         (["--maps", "."], "must hold one of"),
+        (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),
+        (["--pest", "whitefly", "--scenario", "world"], "must begin with world"),
     ],
 )
 def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", "samplers", *words)
     assert (code, made) == (2, set())
     assert says in err
+
+
+def test_with_a_pest_every_sampler_believes_the_one_map_that_follows_it(run, tmp_path):
+    words = ["--pest", "whitefly", "--scenario", "A, whitefly", "--seeds", 2]
+    code, out, err, made = run("study", "samplers", *words)
+    assert code == 0, err
+    assert "pest: Tobacco whitefly" in err
+    assert "A, whitefly, clusters, prior none" in out
+    assert {path.name for path in made} == {"samplers.csv", "samplers.html"}
+    rows = table(tmp_path / "samplers.csv")
+    assert {row["who"] for row in rows} == {each.name for each in OF_PESTS}
+    assert "nan" not in (tmp_path / "samplers.html").read_text(encoding="utf-8")

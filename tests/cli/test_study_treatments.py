@@ -5,7 +5,11 @@ import pytest
 
 @pytest.mark.parametrize(
     ("words", "said"),
-    [(["-o", "none"], "must exist"), (["--sampler", "rose"], "A sampler must be one of")],
+    [
+        (["-o", "none"], "must exist"),
+        (["--sampler", "rose"], "A sampler must be one of"),
+        (["--pest", "rose"], "rose"),
+    ],
 )
 def test_bad_words_are_a_sentence(run, words, said):
     code, _, err, made = run("study", "treatments", *words)

@@ -12,3 +12,9 @@ def test_a_table_that_is_another_studys_is_not_gone_on_with(run, tmp_path):
     code, _, err, _ = run("study", "verdicts", "--seeds", 2)
     assert code == 2
     assert "must be a table of this study" in err
+
+
+def test_a_pest_that_is_not_there_is_a_sentence(run):
+    code, _, err, made = run("study", "verdicts", "--pest", "rose")
+    assert (code, made) == (2, set())
+    assert "rose" in err

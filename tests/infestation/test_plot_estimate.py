@@ -95,3 +95,9 @@ def test_doubt_widens_the_interval_and_moves_nothing_else():
     sure, doubted = estimate_plot(grid, chance), estimate_plot(grid, chance, doubt=0.5)
     assert doubted.low < sure.low < sure.high < doubted.high
     assert (doubted.expected, doubted.chance_clean) == (sure.expected, sure.chance_clean)
+
+
+def test_no_doubt_makes_more_infested_plants_than_there_are():
+    grid = rectangle(20, 20)
+    many = estimate_plot(grid, np.full(400, 0.6), doubt=2.0)
+    assert 0 <= many.low < many.expected < many.high <= 400

@@ -8,8 +8,10 @@ import pytest
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.infestation.level_range import LevelRange
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE
@@ -73,6 +75,19 @@ def test_the_next_morning_comes_of_the_evening_by_the_spread_that_is_believed():
     history = History(PLOT.grid, BEGINS, MORNING, DONE, belief=BeliefSettings(spread))
     wanted = history.evening(MORNING, 0).overnight(spread)
     np.testing.assert_array_equal(history.night_after(MORNING, 0).chance, wanted.chance)
+
+
+def test_what_is_inspected_narrows_how_far_all_chances_may_be_off():
+    first = TracedPairs.of(PLOT.grid, MORNING.chance)
+    looked = np.arange(0, N, 3)
+    finds = np.where(looked % 30 == 0, FOUND, CLEAN)
+    done = Inspections.of(looked, finds, np.datetime64(BEGINS))
+    before = History(PLOT.grid, BEGINS, first).level_range(first, 0)
+    for treated in (True, False):
+        after = History(PLOT.grid, BEGINS, first, done, belief=BeliefSettings(treated=treated))
+        narrower = after.level_range(first, 0)
+        assert before.low < narrower.low < 1.0 < narrower.high < before.high
+    assert HISTORY.level_range(MORNING, 0) == LevelRange(), "pairs alone do not know"
 
 
 def test_finds_left_alone_are_known_and_so_no_longer_counted_as_out_there():

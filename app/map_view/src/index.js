@@ -11,7 +11,7 @@ import { Drawing } from "./draw.js";
 import { Drive, PITCH } from "./drive.js";
 import { Frames } from "./frames.js";
 import { asked, moved } from "./keys.js";
-import { Labels } from "./labels.js";
+import { Labels, withHot } from "./labels.js";
 import { layersOf } from "./layers.js";
 import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
@@ -23,6 +23,7 @@ import style from "./style.css";
 import { fitted, metresPerPixel } from "./view.js";
 
 const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600, TURN_MS = 300;
+const NONE = [];
 const DARK = matchMedia("(prefers-color-scheme: dark)");
 // a GIF of more pixels is too large to be sent; more plants at once are no selection
 const FILM_PX = 1100, MOST_PICKED = 20000;
@@ -198,7 +199,7 @@ class MapPage {
     const viewport = this.viewport();
     if (!viewport) return;
     this.scale.draw(viewport, { lengths: this.data.lengths, alt: this.data.words.scale });
-    this.labels.draw(this.data.labels ?? [], viewport, new Set(this.off()));
+    this.labels.draw(withHot(this.data.labels ?? NONE, this.frames.of(this.jsons)), viewport, new Set(this.off()));
     if (!this.cross.hidden) this.pointAtMiddle();
     const { longitude, latitude, zoom, width, height } = viewport;
     this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, width, height });

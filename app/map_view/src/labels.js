@@ -1,9 +1,26 @@
 // Words and numbers on the map, as the page's own text: any script, any direction, never crowded.
 
 // which switch a kind of label belongs to
-const SWITCH = { leg: "numbers", stop: "numbers", row: "rows", place: "plan", block: "rows" };
+const SWITCH = { hot: "hot", leg: "numbers", stop: "numbers", row: "rows", place: "plan", block: "rows" };
 
-// `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row}, the most important first.
+const NUMBERS = new Set(["leg", "stop"]);
+const numbered = new WeakMap();
+
+// Return the labels with the numbers of the hot spots that are shown: after those of stops, which
+// they never cover, before all other words.
+export function withHot(labels, jsons) {
+  const hot = jsons.find((json) => json.id === "hot");
+  if (!hot) return labels;
+  const known = numbered.get(hot);
+  if (known?.labels === labels) return known.made;
+  const own = hot.data.flatMap(({ number }) => (number ? [{ p: number.at[0], at: number.at, t: number.t, k: "hot" }] : []));
+  const made = [...labels.filter(({ k }) => NUMBERS.has(k)), ...own, ...labels.filter(({ k }) => !NUMBERS.has(k))];
+  numbered.set(hot, { labels, made });
+  return made;
+}
+
+// `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row, at}, the most important first;
+// `at` are the places to be tried where it may stand at several.
 export class Labels {
   constructor(place) {
     this.place = place;
@@ -14,14 +31,16 @@ export class Labels {
   draw(labels, viewport, hidden) {
     const boxes = [];
     this.placed = [];
-    for (const { p, t, k, from, to, row } of labels) {
+    for (const { p, t, k, from, to, row, at } of labels) {
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99)) continue;
-      const [x, y] = viewport.project(p);
-      if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) continue;
       const lines = t.split("\n"), half = 4 * Math.max(...lines.map((one) => one.length)) + 7, tall = 10 * lines.length;
-      const box = [x - half, y - tall, x + half, y + tall];
-      if (boxes.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1])) continue;
-      boxes.push(box);
+      const place = (at ?? [p]).map((one) => viewport.project(one)).find(([x, y]) => {
+        if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) return false;
+        return !boxes.some((b) => x - half < b[2] && x + half > b[0] && y - tall < b[3] && y + tall > b[1]);
+      });
+      if (!place) continue;
+      const [x, y] = place;
+      boxes.push([x - half, y - tall, x + half, y + tall]);
       const one = (this.shown[this.placed.length] ??= this.place.appendChild(document.createElement("span")));
       this.placed.push({ x, y, t, k });
       if (one.textContent !== t) one.textContent = t;

@@ -68,8 +68,17 @@ export function rowUnder(rows, here, reachM) {
 
 // Return what is said of a plant: where it stands, what is believed of it, and what is known of it.
 export function tipOf({ places, ranks, values, notes, tips }, k) {
-  const note = tips.values ? tips.values.replace("{chance}", `${(100 * values[k]).toFixed(1)} %`) : tips.ranks?.[ranks[k]] ?? "";
+  const note = tips.values ? chanceOf(tips, values[k]) : tips.ranks?.[ranks[k]] ?? "";
   const known = { row: places.row[k], plant: places.number[k], note };
   const said = tips.text.replace(/\{(\w+)\}/g, (_, name) => known[name]);
   return notes && tips.notes?.[notes[k]] ? `${said}\n${tips.notes[notes[k]]}` : said;
+}
+
+// Return a chance in words, with its interval where the level of all chances may be off: `tips.odds`
+// is what every plant's odds are multiplied by at the ends of it.
+function chanceOf({ values, between, odds }, chance) {
+  const said = (share) => (100 * share).toFixed(1);
+  const [low, high] = (odds ?? [1, 1]).map((by) => said((chance * by) / (1 - chance + chance * by)));
+  const text = between && low !== high ? between : values;
+  return text.replace("{chance}", `${said(chance)} %`).replace("{low}", low).replace("{high}", `${high} %`);
 }

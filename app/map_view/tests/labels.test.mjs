@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Labels } from "../src/labels.js";
+import { Labels, withHot } from "../src/labels.js";
 import { flatView, random } from "./plots.mjs";
 
 // stands for the page: what is shown, and where
@@ -60,4 +60,25 @@ test("what is out of view is not shown, and what was shown goes when the view mo
   assert.equal(place.made[0].hidden, true);
   drawn.draw(labels, view, new Set());
   assert.equal(place.made.length, 1, "labels are used again");
+});
+
+const hotAt = (...spots) => ({ id: "hot", data: spots.map((at, k) => ({ p: [], number: { t: `${k + 1}`, at } })) });
+
+test("a hot spot's number stands in its middle, or on its edge where a stop's number does", () => {
+  const stop = { p: [0.2, -0.2], t: "17", k: "stop" }, row = { p: [0.5, -0.5], t: "3", k: "row" };
+  const hot = hotAt([[0.4, -0.4], [0.45, -0.4]], [[0.2, -0.2], [0.205, -0.2], [0.3, -0.2]], [[0.5, -0.5]]);
+  const made = shown(withHot([stop, row], [{ id: "plants" }, hot]), view);
+  const of = (kind) => made.filter(({ k }) => k === kind).map(({ t, x, y }) => [t, x, y]);
+  assert.deepEqual(of("stop"), [["17", 200, 200]], "no stop's number gives way");
+  assert.deepEqual(of("hot"), [["1", 400, 400], ["2", 300, 200], ["3", 500, 500]]);
+  assert.deepEqual(of("row"), [], "a row's number does");
+});
+
+test("hot spots' numbers are those of the day that is shown, and go with the hot spots", () => {
+  const labels = [{ p: [0.2, -0.2], t: "3", k: "row" }], hot = hotAt([[0.4, -0.4]]), other = hotAt();
+  assert.equal(withHot(labels, []), labels);
+  assert.deepEqual(shown(withHot(labels, [hot]), view).map(({ k }) => k), ["hot", "row"]);
+  assert.deepEqual(shown(withHot(labels, [other]), view).map(({ k }) => k), ["row"]);
+  assert.deepEqual(shown(withHot(labels, [hot]), view, new Set(["hot"])).map(({ k }) => k), ["row"]);
+  assert.equal(withHot(labels, [hot]), withHot(labels, [hot]), "made once");
 });

@@ -28,6 +28,7 @@ export function page() {
   globalThis.document = {
     body: made.body, documentElement: made.documentElement,
     createElement: (kind) => new Node_(kind), createElementNS: (_, kind) => new Node_(kind),
+    querySelectorAll: () => [],
     querySelector: () => made.panel && { getBoundingClientRect: () => made.panel },
   };
   globalThis.window = { addEventListener() {}, removeEventListener() {}, dispatchEvent() {} };

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
     from .colours import Colour
 
+# so many places on a hot spot's edge are tried for its number where its middle is taken
+_ALONG_EDGE = 12
+
 
 def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
     """Return the hot spots, if there are any: their tint, and their outlines."""
@@ -33,8 +36,9 @@ def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
     for k, outline_m in enumerate(outlines_m(grid, spots)):
         shape = grid.frame.geometry_lonlat(outline_m)
         corners = np.round(shapely.get_coordinates(shape.exterior), 7).tolist()
-        text = texts.TIP_HOT.format(found=spots.found[k], inspected=spots.inspected[k])
-        rows.append({"p": corners, "t": text})
+        text = texts.TIP_HOT.format(n=k + 1, found=spots.found[k], inspected=spots.inspected[k])
+        number = {"t": f"{k + 1}", "at": _for_number(grid, shape, spots.centre_m[k])}
+        rows.append({"p": corners, "t": text, "number": number})
     colour = HOT_IN_DARK if dark else HOT
     return [
         Layer("PolygonLayer", rows, id="hot", get_polygon="p", get_fill_color=[*colour, 20],
@@ -42,6 +46,18 @@ def hot(grid: PlantGrid, spots: HotSpots, *, dark: bool = False) -> list[Layer]:
         Layer("PathLayer", rows, id="hot-edge", get_path="p", get_color=list(colour),
               width_min_pixels=3, get_width=0.4),
     ]  # fmt: skip
+
+
+def _for_number(
+    grid: PlantGrid, shape: shapely.Polygon, centre_m: NDArray[np.float64]
+) -> list[list[float]]:
+    """Return where a hot spot's number may stand, lon/lat: its middle, else along its edge."""
+    middle = shapely.Point(grid.frame.lonlat(centre_m[None])[0])
+    inside = middle if shape.contains(middle) else shapely.point_on_surface(shape)
+    along = shapely.line_interpolate_point(
+        shape.exterior, np.arange(_ALONG_EDGE) / _ALONG_EDGE, normalized=True
+    )
+    return np.round(shapely.get_coordinates([inside, *along]), 7).tolist()
 
 
 def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:

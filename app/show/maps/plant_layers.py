@@ -18,6 +18,7 @@ from .deck import ArraysLayer
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.level_range import LevelRange
     from fieldmon.plot.grid import PlantGrid
 
     from .colours import Colour, Shade
@@ -39,11 +40,15 @@ class PlantNotes:
         A sentence for each rank of the shade; none: nothing is said.
     known
         What is known of plants, in sentences, and which of them holds for each plant ``(n,)``.
+    level
+        How far all chances may be off together, or None; each plant's interval is worked out
+        where it is shown.
     """
 
     chance: NDArray[np.float64] | None = None
     by_rank: tuple[str, ...] = ()
     known: tuple[tuple[str, ...], NDArray[np.integer]] | None = None
+    level: LevelRange | None = None
 
 
 def plants(
@@ -56,6 +61,9 @@ def plants(
     if notes.chance is not None:
         arrays["values"] = notes.chance.astype("<f4").tobytes()
         tips["values"] = texts.TIP_CHANCE
+        if notes.level is not None and notes.level.low < notes.level.high:
+            tips["between"] = texts.TIP_CHANCE_BETWEEN
+            tips["odds"] = [float(f"{end:.5g}") for end in (notes.level.low, notes.level.high)]
     elif notes.by_rank:
         tips["ranks"] = list(notes.by_rank)
     if notes.known is not None:

@@ -42,6 +42,8 @@ BELIEFS: dict[str, Believe] = {
     "pairs, clustering known": partial(PairApproximation.of, clustering=0.65),
     "ensemble": Ensemble.of,
 }
+# the one belief that follows a pest's kernel, warmth and stages
+OF_PESTS = {"traced pairs": BELIEFS["traced pairs"]}
 EDGES = (0.0, 0.001, 0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0)
 CLEAN_EDGES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 # the thesis knows only suspicious plants and others: this from a chance map, in chances
@@ -167,8 +169,11 @@ def _mornings(
     seconds: list[float] = []
 
     def watched(grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
-        believed.append(believe(grid, chance))
-        return _Watched(believed[0], believed, seconds)
+        first = believe(grid, chance)
+        if scenario.living is not None and isinstance(first, TracedPairs):
+            first = first.of_pest(scenario.living.pest)
+        believed.append(first)
+        return _Watched(first, believed, seconds)
 
     settings = replace(scenario.settings, n_days=n_days, believe=watched)
     start, streams = scenario.draw_start(RandomStreams(seed)), RandomStreams(seed)

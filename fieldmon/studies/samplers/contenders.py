@@ -68,6 +68,12 @@ CONTENDERS = (
     Contender("bouncy", Bouncy(), IndependentPlants),
     Contender(NO_TRAVEL, Adaptive(), TracedPairs.of, drives=False, every=SOME),
 )
+# of the maps only that of traced pairs follows a pest: all are given it, each sampler once
+OF_PESTS = tuple(
+    replace(each, believe=TracedPairs.of)
+    for each in CONTENDERS
+    if each.name != PAIRS and not each.name.endswith("independent plants")
+)
 NAMES = (*(contender.name for contender in CONTENDERS), CLAIRVOYANT)
 
 

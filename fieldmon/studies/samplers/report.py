@@ -28,12 +28,13 @@ _WORDS = {
 
 def report_html(outcomes: Sequence[SeasonOutcome]) -> str:
     """Return the whole report as one HTML document."""
+    took_part = {outcome.contender for outcome in outcomes}
     return page(
         "fieldmon/studies/samplers/report.html.j2",
         seeds=len({outcome.seed for outcome in outcomes}),
         sentences=sentences(outcomes),
-        charts=[_chart(outcomes, other) for other in OTHERS],
-        names=NAMES,
+        charts=[_chart(outcomes, other) for other in OTHERS if other in took_part],
+        names=tuple(name for name in NAMES if name in took_part),
         tables=[(_WORDS[measure], by_name) for measure, by_name in means(outcomes).items()],
     )
 

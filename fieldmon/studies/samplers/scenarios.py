@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.random_streams import RandomStreams
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.grid import PlantGrid
 
 # the thesis's plots, plants a side: 1, 5 and 10 ha
@@ -39,6 +41,7 @@ _GPS_M = 5.0
 _TRIES = 200
 _POOR_DETECTION = 0.5
 _BELIEVED_RATE = {0.3: 0.8, 0.5: 0.1, 0.8: 0.3}
+_DIGITS = 6
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,10 @@ class Scenario:
         it. Empty: they do as is believed.
     hours
         The working day.
+    living
+        The pest in its weather, which has nights of its own and is known to the belief; then
+        `spread` is not read, and there is neither a world nor a wrong spread. None: as `spread` has
+        it.
     """
 
     plot: str = "B"
@@ -76,6 +83,7 @@ class Scenario:
     flaw: str = ""
     world: str = ""
     hours: float = 12.0
+    living: PestInWeather | None = None
 
     def __post_init__(self) -> None:
         known: dict[str, Iterable[str]] = {
@@ -87,15 +95,21 @@ class Scenario:
                     f"The {name} must be one of {', '.join(map(repr, values))}, "
                     f"but it is {getattr(self, name)!r}."
                 )
+        if self.living is not None and (self.world or self.flaw == "spread"):
+            raise SettingError("A pest has nights of its own: it goes without a world or spread.")
 
     @property
     def name(self) -> str:
         """Return the scenario in words, unique."""
         if self.world:
             return f"world, {self.plot}, {self.hours:g} h, {self.world}"
-        rate = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
-        words = f"{self.plot}, {rate}, {self.start}, prior {self.prior}"
-        return f"{words}, {self.flaw} wrong" if self.flaw else words
+        nights = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
+        if self.living is not None:
+            nights = self.living.pest.name
+        words = f"{self.plot}, {nights}, {self.start}, prior {self.prior}"
+        words = f"{words}, {self.flaw} wrong" if self.flaw else words
+        # two files may give a pest the same name
+        return words if self.living is None else f"{words}, {of_pest(self.living)}"
 
     @property
     def aisles(self) -> Aisles:
@@ -105,8 +119,13 @@ class Scenario:
     @property
     def robot(self) -> Robot:
         """Return who inspects, as it is: charged the thesis's times."""
-        detection = _POOR_DETECTION if self.flaw == "detection" else None
-        return Robot(detection=detection, hours=self.hours).with_times("thesis")
+        robot = replace(self.believed_robot, hours=self.hours).with_times("thesis")
+        return replace(robot, detection=_POOR_DETECTION) if self.flaw == "detection" else robot
+
+    @property
+    def believed_robot(self) -> Robot:
+        """Return who inspects, with the chance of detection that is believed."""
+        return Robot() if self.living is None else self.living.pest.seen_by(Robot())
 
     @property
     def settings(self) -> SeasonSettings:
@@ -115,8 +134,10 @@ class Scenario:
         if self.flaw == "spread":
             rate = _BELIEVED_RATE.get(self.spread.rate_per_day, 0.3)
             believed = Spread(rate, self.spread.to)
-        learning = Learning(detection=Robot().detects)
-        settings = SeasonSettings(spread=self.spread, believed_spread=believed, learning=learning)
+        learning = Learning(detection=self.believed_robot.detects)
+        settings = SeasonSettings(
+            spread=self.spread, believed_spread=believed, learning=learning, pest=self.living
+        )
         if not self.world:
             return settings
         world = WORLDS[self.world]
@@ -170,6 +191,25 @@ def all_scenarios() -> list[Scenario]:
         for prior in PRIORS
     ]
     return list(dict.fromkeys([*usual_scenarios(), *crossed]))
+
+
+def with_pest(scenarios: Iterable[Scenario], living: PestInWeather) -> list[Scenario]:
+    """Return scenarios with a pest instead of a rate of spread, each once.
+
+    Worlds and a wrong rate are left out: a pest has nights of its own.
+    """
+    return list(
+        dict.fromkeys(
+            replace(each, spread=Scenario().spread, living=living)
+            for each in scenarios
+            if not each.world and each.flaw != "spread"
+        )
+    )
+
+
+def of_pest(living: PestInWeather) -> str:
+    """Return digits that tell a pest in its weather from any other."""
+    return digest(*living.told, length=_DIGITS)
 
 
 def infested_at_start(
@@ -247,10 +287,11 @@ def known_chance(
         return flat
     looked_at = 0.05 if scenario.prior == "records 5 %" else 0.01
     at = rng.choice(len(grid), round(looked_at * len(grid)), replace=False)
-    found = infested[at] & (rng.random(len(at)) < Robot().detects)
+    detects = scenario.believed_robot.detects
+    found = infested[at] & (rng.random(len(at)) < detects)
     if scenario.flaw == "records":
         away = grid.xy_m[at] + rng.normal(0.0, _GPS_M, (len(at), 2))
         at = np.array([int(np.argmin(((grid.xy_m - xy) ** 2).sum(axis=1))) for xy in away])
     plants = at.astype(np.int32)
-    learning = Learning(detection=Robot().detects, treated=False)
+    learning = Learning(detection=detects, treated=False)
     return PairApproximation.of(grid, flat).learn(plants, found, learning).chance

@@ -12,6 +12,7 @@ from fieldmon.simulation.season import simulated_days
 from fieldmon.studies.samplers.contenders import (
     CLAIRVOYANT,
     CONTENDERS,
+    OF_PESTS,
     SOME,
     Misinformed,
     Oracle,
@@ -72,15 +73,18 @@ def study_of(
 
 
 def outcomes(scenario: Scenario, seed: int) -> list[SeasonOutcome]:
-    """Return what a season comes to for every contender and the clairvoyant."""
+    """Return what a season comes to for every contender and the clairvoyant.
+
+    With a pest, for those whose map follows it, and without the clairvoyant.
+    """
     streams = RandomStreams(seed)
     start = scenario.draw_start(streams)
     made = [
         _outcome(scenario, seed, each.name, season_metrics(season(scenario, each, start, streams)))
-        for each in CONTENDERS
+        for each in (CONTENDERS if scenario.living is None else OF_PESTS)
         if seed % each.every == 0
     ]
-    if seed % SOME:
+    if seed % SOME or scenario.living is not None:
         return made
     seen = season_metrics(_clairvoyant(scenario, start, streams))
     return [*made, _outcome(scenario, seed, CLAIRVOYANT, seen)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,14 +18,18 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.layout import rectangle
-from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.samplers.decide import Decide
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.studies.samplers.mapped_plots import DatedMap, plots_in
-from fieldmon.studies.samplers.scenarios import Scenario, infested_at_start, known_chance
+from fieldmon.studies.samplers.scenarios import (
+    Scenario,
+    infested_at_start,
+    known_chance,
+    of_pest,
+)
 from fieldmon.studies.verdicts.walks import random_walk, w_walk
 
 if TYPE_CHECKING:
@@ -34,6 +38,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
     Looks = tuple[NDArray[np.int32], NDArray[np.bool_]]
@@ -68,16 +74,22 @@ class Question:
         believed to be as many as the threshold has it.
     real
         The real map; None: drawn.
+    living
+        The pest, which is detected as its file says; None: as the thesis's table has it.
     """
 
     start: str
     prior: str = "none"
     real: DatedMap | None = None
+    living: PestInWeather | None = None
 
     @property
     def name(self) -> str:
         """Return it in words, unique."""
-        return self.start if self.real is not None else f"{self.start}, prior {self.prior}"
+        words = self.start if self.real is not None else f"{self.start}, prior {self.prior}"
+        if self.living is None:
+            return words
+        return f"{words}, {self.living.pest.name}, {of_pest(self.living)}"
 
 
 @dataclass(frozen=True)
@@ -175,9 +187,9 @@ def _drawn(question: Question, streams: RandomStreams) -> _Plot:
     else:
         aisles, infested = question.real.aisles, question.real.infested
         level = float(np.clip(infested.mean() / apart, 0.002, 0.45))
-    robot = Robot(returns=False, hours=24.0).with_times("thesis")
+    known = Scenario(prior=question.prior, living=question.living)
+    robot = replace(known.believed_robot, returns=False, hours=24.0).with_times("thesis")
     shows = infested & (rng.random(len(infested)) < robot.detects)
-    known = Scenario(prior=question.prior)
     morning = known_chance(aisles.grid, known, infested, streams.of("records"), level)
     return _Plot(aisles, level, infested, shows, morning, robot)
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.pest_in_weather import PestInWeather
 
 NOTHING = "nothing"
 RULES = (NOTHING, WHOLE, ZONES)
@@ -61,9 +62,10 @@ class TreatedSeason:
         return self.scenario, self.seed
 
 
-def treated_scenarios() -> list[Scenario]:
+def treated_scenarios(living: PestInWeather | None = None) -> list[Scenario]:
     """Return 5 ha with clusters, with infested edges, and with scattered infested plants."""
-    return [Scenario("B", start=start, hours=_HOURS) for start in ("clusters", "edge", "scattered")]
+    starts = ("clusters", "edge", "scattered")
+    return [Scenario("B", start=start, hours=_HOURS, living=living) for start in starts]
 
 
 def study_of_treatments(

@@ -38,6 +38,16 @@ def test_plants_by_chance_have_the_colours_of_their_chances_and_say_them(choices
     assert shown.chance == pytest.approx(chance, abs=1e-7)
 
 
+def test_each_chance_is_said_with_the_interval_that_the_season_believes(choices, season):
+    for shown in (choices, in_season(season, BEGINS)):
+        layer = of_name(map_layers.plants(shown), "plants-chance")
+        level = chosen_day.level_range(shown)
+        assert layer.tips["odds"] == pytest.approx([level.low, level.high], rel=1e-4)
+        assert level.low < 1.0 < level.high
+        assert layer.tips["between"] == ": {chance} chance ({low} to {high})"
+    assert chosen_day.level_range(in_season(season, BEGINS)) == season.level_range(BEGINS)
+
+
 def test_plants_by_state_say_it_and_finds_have_rings(choices):
     layers = map_layers.plants(choices)
     by_state = of_name(layers, "plants-state")

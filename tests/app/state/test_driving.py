@@ -5,6 +5,7 @@ import pytest
 from app.state.driving import DayInTime, DriveRun
 from fieldmon.drive.simulated import MadeUp
 from fieldmon.errors import FieldmonError
+from fieldmon.planning.workday import plan_work
 from fieldmon.samplers import sampler
 from tests.app.chosen import a_plot, chosen
 
@@ -15,17 +16,19 @@ def planned():
     return choices.plot, choices.plan()
 
 
-def run_of(planned, kind="charged", share=1e-9):
+def run_of(planned, kind="charged", share=1e-9, by="adaptive"):
     plot, plan = planned
-    return DriveRun(kind, plot, plan.scene, sampler("adaptive"), MadeUp(share))
+    return DriveRun(kind, plot, plan.scene, sampler(by), MadeUp(share))
 
 
 def test_where_nothing_is_found_the_day_is_the_planned_one(planned):
-    run = run_of(planned)
+    # of a sampler that learns of finds only: Adaptive learns of what is clean too
+    run = run_of(planned, by="dynamic")
     run.start()
     run.wait(180)
     assert run.problem is None
-    assert [one.plant for one in run.day.trace.stops] == planned[1].work.plant.tolist()
+    work = plan_work(planned[1].scene, sampler("dynamic"))
+    assert [one.plant for one in run.day.trace.stops] == work.plant.tolist()
     assert 0.9 < run.share <= 1.0
     assert run.day.believed[-1][0] == run.day.trace.stops[-1].done_s
 

@@ -1,6 +1,7 @@
 """Plants and hot spots: what is known of plants, and of very many of them."""
 
 import json
+import re
 
 import numpy as np
 
@@ -23,11 +24,12 @@ def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(ap
     assert "must be one of 1 to" in app.error[0].value
 
 
-def test_hot_spots_are_told_in_words(app):
+def test_hot_spots_are_told_in_words_under_their_numbers_on_the_map(app):
     go(app, "field")
-    outlined = len(layer(app, "hot")["data"])
-    said = [line for line in texts_of(app).splitlines() if line.startswith("- ")]
-    assert outlined == len(said) > 0
+    numbers = [row["number"]["t"] for row in layer(app, "hot")["data"]]
+    said = re.findall(r"^(\d+)\. ", texts_of(app), re.MULTILINE)
+    assert numbers == said
+    assert said
 
 
 def test_a_plot_of_many_plants_is_sent_as_a_few_bytes_a_plant(app, tmp_path):

@@ -161,3 +161,133 @@ def test_names_are_cut_and_cleaned_and_the_same_map_is_the_same_file():
 def test_there_is_no_version_five():
     with pytest.raises(SettingError, match="version 3 or 4"):
         isoxml_taskdata("a", PLOT, ZONES, 1.0, "", version=5)
+
+
+LONG, BYTE, WHOLE = (-(2**31), 2**31 - 1), (0, 254), (0, 2**32 - 2)
+NAME = 32  # letters at most
+NORTH, EAST = (-90.0, 90.0), (-180.0, 180.0)
+CELL, ALL = (0.0, 1.0), (0, 2**32 - 1)
+# facts read in the standard's schema of version 3.3: of each element what it may hold, how often
+# at least, and each attribute, upper case where it is required: letters at most, limits, a pattern
+VERSION_3 = {
+    "ISO11783_TaskData": (
+        {"PDT": 0, "PFD": 0, "TSK": 0, "VPN": 0},
+        {
+            "VersionMajor!": "3", "VersionMinor!": "3", "ManagementSoftwareManufacturer!": NAME,
+            "ManagementSoftwareVersion!": NAME, "DataTransferOrigin!": "1|2",
+        },
+    ),
+    "PDT": ({}, {"A!": r"PDT-?\d+", "B!": NAME}),
+    "PFD": ({"PLN": 0}, {"A!": r"PFD-?\d+", "B": NAME, "C!": NAME, "D!": WHOLE}),
+    "PLN": ({"LSG": 1}, {"A!": "[1-8]", "B": NAME, "C": WHOLE, "D": BYTE}),
+    "LSG": ({"PNT": 2}, {"A!": "[1-8]", "B": NAME, "C": WHOLE, "D": WHOLE, "E": BYTE}),
+    "PNT": ({}, {"A!": "1|2", "B": NAME, "C!": NORTH, "D!": EAST, "E": LONG, "F": BYTE}),
+    "TSK": (
+        {"TZN": 0, "GRD": 0},
+        {
+            "A!": r"TSK-?\d+", "B": NAME, "E": r"PFD-?\d+", "G!": "[1-4]",
+            "H": BYTE, "I": BYTE, "J": BYTE,
+        },
+    ),
+    "TZN": ({"PLN": 0, "PDV": 0}, {"A!": BYTE, "B": NAME, "C": BYTE}),
+    "PDV": ({}, {"A!": "[0-9A-F]{4}", "B!": LONG, "C": r"PDT-?\d+", "E": r"VPN-?\d+"}),
+    "GRD": (
+        {},
+        {
+            "A!": NORTH, "B!": EAST, "C!": CELL, "D!": CELL, "E!": ALL, "F!": ALL,
+            "G!": r"GRD\d{5}", "H": WHOLE, "I!": "1|2", "J": BYTE,
+        },
+    ),
+    "VPN": (
+        {},
+        {"A!": r"VPN-?\d+", "B!": LONG, "C!": (1e-9, 1e8), "D!": (0, 7), "E": NAME},
+    ),
+}  # fmt: skip
+REFERS = re.compile(r"(PDT|PFD|VPN)-?\d+")
+
+
+def offends(text, rule):
+    """Return whether an attribute breaks its rule: letters, a pattern, limits as whole or not."""
+    if isinstance(rule, int):
+        return len(text) > rule
+    if isinstance(rule, str):
+        identifies = REFERS.fullmatch(text) is not None
+        return re.fullmatch(rule, text) is None or (identifies and not 4 <= len(text) <= 14)
+    plain = r"-?\d+" if isinstance(rule[0], int) else r"-?\d+(\.\d+)?"
+    return re.fullmatch(plain, text) is None or not rule[0] <= Decimal(text) <= rule[1]
+
+
+def breaches_of_version_3(root):
+    """Yield what of a document the schema of version 3.3 forbids, in the elements that we use."""
+    identified = {one.get("A") for one in root}
+    for element in root.iter():
+        if element.tag not in VERSION_3:
+            yield f"{element.tag} is not known"
+            continue
+        parts, rules = VERSION_3[element.tag]
+        held = [part.tag for part in element]
+        yield from (f"{element.tag} holds {tag}" for tag in set(held) - set(parts))
+        yield from (
+            f"{element.tag} lacks {t}" for t, least in parts.items() if held.count(t) < least
+        )
+        known = {name.rstrip("!"): rule for name, rule in rules.items()}
+        wanted = {name[:-1] for name in rules if name.endswith("!")}
+        yield from (f"{element.tag} lacks {name}" for name in wanted - set(element.attrib))
+        for name, text in element.attrib.items():
+            if name not in known or offends(text, known[name]):
+                yield f"{element.tag}/{name} is {text!r}"
+            elif REFERS.fullmatch(text) and text not in identified:
+                yield f"{element.tag}/{name} refers to {text}, which is not there"
+
+
+def task_data_3(zones, rate=99_999.0):
+    """Return the document of version 3."""
+    made = isoxml_taskdata("x" * 60, PLOT, zones, rate, "y" * 60, version=3)
+    with zipfile.ZipFile(io.BytesIO(made)) as archive:
+        return etree.fromstring(archive.read("TASKDATA/TASKDATA.XML"))
+
+
+@pytest.mark.parametrize("kind", [None, 1, 2])
+def test_version_3_keeps_what_the_standards_own_schema_of_it_says(kind):
+    root = task_data_3(ZONES if kind is None else zone_cells(PLOT, ZONES, 4.0, kind))
+    assert list(breaches_of_version_3(root)) == []
+    used = {element.tag for element in root.iter()}
+    assert used == set(VERSION_3) - ({"GRD"} if kind is None else set())
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "value", "said"),
+    [
+        ("PFD", "C", "z" * 33, "PFD/C is"),
+        ("PFD", "D", None, "PFD lacks D"),
+        ("PFD", "Z", "1", "PFD/Z is"),
+        ("TSK", "E", "PFD9", "refers to PFD9"),
+        ("TSK", "A", "T1", "TSK/A is 'T1'"),
+        ("TSK/TZN", "A", "255", "TZN/A is '255'"),
+        ("TSK/TZN/PDV", "B", "1.5", "PDV/B is '1.5'"),
+        ("TSK/TZN/PDV", "A", "1", "PDV/A is '1'"),
+        ("PFD/PLN/LSG/PNT", "C", "90.1", "PNT/C is '90.1'"),
+        ("VPN", "C", "1e-4", "VPN/C is '1e-4'"),
+        (".", "VersionMinor", "0", "VersionMinor is '0'"),
+    ],
+)
+def test_a_breach_of_version_3_would_be_seen(path, name, value, said):
+    root = task_data_3(ZONES)
+    element = root.find(path)
+    if value is None:
+        del element.attrib[name]
+    else:
+        element.set(name, value)
+    (breach,) = breaches_of_version_3(root)
+    assert said in breach
+
+
+def test_a_line_of_one_point_or_an_element_of_version_4_would_be_seen_in_version_3():
+    root = task_data_3(ZONES)
+    line = root.find("PFD/PLN/LSG")
+    for point in list(line)[1:]:
+        line.remove(point)
+    etree.SubElement(root, "AFE")
+    assert set(breaches_of_version_3(root)) == {
+        "LSG lacks PNT", "ISO11783_TaskData holds AFE", "AFE is not known"
+    }  # fmt: skip

@@ -7,7 +7,9 @@ from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
+from fieldmon.pests.pest import Pest
 from fieldmon.plot.robot import Robot
 from fieldmon.studies.samplers.scenarios import (
     PRIORS,
@@ -17,6 +19,7 @@ from fieldmon.studies.samplers.scenarios import (
     all_scenarios,
     in_worlds,
     usual_scenarios,
+    with_pest,
 )
 
 
@@ -109,3 +112,16 @@ def test_what_is_believed_in_a_world_is_what_is_believed_elsewhere():
     world, usual = Scenario(world="Cauchy").settings, Scenario().settings
     assert (world.spread, world.learning) == (usual.spread, usual.learning)
     assert world.pests is not None
+
+
+def test_a_pest_takes_the_place_of_each_rate_and_keeps_the_rest():
+    living = PestInWeather(Pest("mite", detection=0.5))
+    made = with_pest([*all_scenarios(), *in_worlds()], living)
+    names = [each.name for each in made]
+    assert len(set(names)) == len(names) == 3 * len(STARTS) * len(PRIORS) + 2
+    assert all(each.living is living and not each.world for each in made)
+    assert {each.robot.detects for each in made} == {0.5}
+    assert all(each.settings.pest is living for each in made)
+    assert Scenario(living=PestInWeather(Pest("mite"))).name not in names
+    with pytest.raises(SettingError, match="goes without a world"):
+        Scenario(flaw="spread", living=living)

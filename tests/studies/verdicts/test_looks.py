@@ -4,6 +4,8 @@ import pytest
 
 from fieldmon.decisions.sequential import WaldPlan
 from fieldmon.errors import SettingError
+from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.pests.pest import Pest
 from fieldmon.studies.verdicts.looks import (
     CONTENDERS,
     DECIDE,
@@ -48,3 +50,15 @@ def test_sums_are_means_over_seeds_and_over_the_whole_w(answered):
     assert of[DECIDE].looks == pytest.approx(sum(mine) / 3)
     with pytest.raises(SettingError, match="an outcome or more"):
         summaries([])
+
+
+def test_a_pest_is_asked_about_as_it_is_seen(answered):
+    """One seen as by the thesis's table changes no answer; a whole W is longer for a shy one."""
+    alike = answers(Question("clusters", living=PestInWeather(Pest("alike"))), 1)
+    assert [(a.looks, a.verdict) for a in alike] == [
+        (a.looks, a.verdict) for a in answered if a.seed == 1
+    ]
+    (shy, *_) = answers(Question("clusters", living=PestInWeather(Pest("shy", detection=0.3))), 1)
+    assert "shy" in shy.question
+    assert shy.contender == alike[0].contender == W_FIXED
+    assert shy.looks > alike[0].looks

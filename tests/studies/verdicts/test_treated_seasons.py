@@ -2,7 +2,10 @@
 
 import pytest
 
+from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
+from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.pests.pest import Movement, Pest
 from fieldmon.simulation.treating import WHOLE
 from fieldmon.studies.samplers.scenarios import Scenario
 from fieldmon.studies.verdicts.treated_seasons import (
@@ -44,3 +47,12 @@ def test_once_all_was_looked_at_zones_spray_at_least_60_percent_less(scenario):
     made = [area_at_equal_left(scenario, seed, looked_at=1.0) for seed in range(2)]
     assert max(one.share for one in made) < 0.4
     assert max(one.left for one in made) < 3.0
+
+
+def test_a_pest_lives_in_a_treated_season_by_its_own_nights():
+    """One that goes nowhere and is never found stays where it is, day by day."""
+    still = Pest("still", movement=Movement(per_day=0.0), detection=0.0)
+    scenario = Scenario("A", hours=0.4, living=PestInWeather(still))
+    nothing = treated_seasons(scenario, 1, ["naive"], n_days=5)[0]
+    infested = scenario.draw_start(RandomStreams(1)).infested
+    assert nothing.plant_days == 5 * infested.sum()

@@ -33,8 +33,22 @@ def test_a_hot_spot_holds_its_plants_and_not_the_others_far_off(plot, spots):
     inside = shapely.contains_xy(area, lonlat)
     assert inside[spots.of_plant == 0].all()
     assert inside.sum() < 1.5 * (spots.of_plant == 0).sum()
-    assert row["t"] == f"hot spot: {spots.found[0]} found of {spots.inspected[0]} inspected"
+    assert row["t"] == f"hot spot 1: {spots.found[0]} found of {spots.inspected[0]} inspected"
     assert edge.data == tint.data
+
+
+def test_a_hot_spot_s_number_is_that_of_the_list_and_stands_in_it_or_on_its_edge(plot):
+    away = [np.hypot(*(plot.grid.xy_m - plot.grid.xy_m[k]).T) < 9 for k in (40, -40)]
+    two = hot_spots(plot.grid, np.logical_or(*away).astype(np.int8))
+    assert len(two) == 2
+    for k, row in enumerate(marks.hot(plot.grid, two)[0].data):
+        assert row["number"]["t"] == str(k + 1)
+        middle, *edge = shapely.points(row["number"]["at"])
+        area = shapely.Polygon(row["p"])
+        assert area.contains(middle)
+        assert shapely.distance(edge, area.exterior) == pytest.approx(0.0, abs=1e-6)
+        own = plot.grid.lonlat(np.flatnonzero(two.of_plant == k)).mean(axis=0)
+        assert middle.distance(shapely.Point(own)) < 1e-4
 
 
 def test_no_hot_spot_is_no_layer(plot):

@@ -341,7 +341,9 @@ class MapPage {
   whole() {
     this.moved = false;
     this.drive.release({ isPanning: true });
-    this.deck?.setProps({ initialViewState: { ...this.fit(), maxZoom: 24, transitionDuration: 300 } });
+    // deck.gl goes nowhere for a view that equals the one last wished for, wherever the wheel went since
+    this.odd = !this.odd;
+    this.deck?.setProps({ initialViewState: { ...this.fit(), maxZoom: 24, transitionDuration: this.odd ? 300 : 301 } });
   }
 
   showGround({ ground, words }) {

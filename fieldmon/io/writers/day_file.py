@@ -201,7 +201,6 @@ class HandoffPlan:
         route = self.route
         label = row_label(self.grid, route.plant)
         lonlat = route.stops_lonlat().round(DECIMALS)
-        arrive_s = np.round(route.arrive_s, 3).tolist()
         columns = zip(
             range(1, len(route) + 1),
             route.plant.tolist(),
@@ -210,8 +209,8 @@ class HandoffPlan:
             faces(self.grid, route.plant).tolist(),
             lonlat[:, 0].tolist(),
             lonlat[:, 1].tolist(),
-            [self.clock(s) for s in arrive_s],
-            arrive_s,
+            [self.clock(s) for s in route.arrive_s.tolist()],
+            np.round(route.arrive_s, 3).tolist(),
             np.round(route.leave_s - route.arrive_s, 3).tolist(),
             np.round(route.chance, 6).tolist(),
             route.line_stop.tolist(),

@@ -982,8 +982,8 @@ class Season:
     def other_maps(self, *, whole: bool = True) -> tuple[str, ...]:
         """Return a sentence for each day whose chance map is not the one that was used then."""
         with self._lock:
-            contents = self._now()
-            with self.store.reading() as db:
+            with self.store.reading() as db:  # both at one moment: others may write between
+                contents = self._read(db)
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
             since = 0 if whole else contents.mornings.last_until(kept[-1][0])
             return tuple(

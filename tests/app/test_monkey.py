@@ -58,6 +58,7 @@ FILES = {
     "rows_file": [("r.geojson", b"{}"), ("r.csv", b"\xff")],
     "blocks_file": [("b.geojson", b"[]"), ("b.kml", b"<kml/>")],
     "findings_file": [("f.csv", b"row,plant,found\n1,1,yes\n"), ("f.geojson", b"[1]")],
+    "thresholds_file": [("t.csv", b"pest,crop,threshold\nmites,dates,0.1\n"), ("t.csv", b"\xff")],
     "labels_file": [("l.csv", b"product,pest\nOil,mites\n"), ("l.csv", b"\xff")],
     "pest_file": [("p.toml", b"name = 'x'"), ("p.toml", b"\xff")],
     "weather_file": [("w.csv", b"date,tmin,tmax\n2026-11-01,10,25\n"), ("w.csv", b"\xff")],
@@ -93,7 +94,8 @@ def poke(rng, kind, widget):
         widget.click()
         return f"click {key}"
     if kind == "file_uploader":
-        value = rng.choice(FILES.get(key, DRIVES))
+        # a box takes only files of the kinds that it names, as in a browser
+        value = rng.choice(FILES[widget.key] if widget.key else DRIVES)
         widget.upload(*value)
         return f"upload {key} {value[0]}"
     if kind == "selectbox" and key not in CHOICES:

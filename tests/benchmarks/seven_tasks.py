@@ -3,7 +3,8 @@
 The system's Chromium does what a grower does, in the app of this tree or, with ``--tree``, in that
 of another one: where the other is from before the map became the page, by the way that led there
 then (``--before``). A click is a press, a key, a number typed or a file chosen. Seconds are from
-the first click until what was wanted is there, with nobody thinking in between.
+the first click until what was wanted is there, with nobody thinking in between. Beside them stands
+the processor time of the server and of the browser, which hardly depends on what else runs.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from playwright.sync_api import sync_playwright
 
-from tests.benchmarks.first_screen import IDLE, ROOT, answers, served
+from tests.benchmarks.first_screen import IDLE, ROOT, answers, processor_s, served
 from tests.conftest import CHROMIUM, FLAGS
 
 if TYPE_CHECKING:
@@ -249,12 +250,29 @@ def begin(hand: Hand) -> str:
     return "Gate 2026"
 
 
-def measured(hand: Hand, task: Callable[[Hand], None], path: str) -> tuple[int, float]:
-    """Return the clicks and the seconds of a task, done from a page at rest."""
+class Taken(NamedTuple):
+    """What a task took: clicks, seconds, processor time of the server and of the browser."""
+
+    clicks: int
+    seconds: float
+    server_s: float
+    browser_s: float
+
+    def line(self, name: str) -> str:
+        """Say it."""
+        return (
+            f"{name:34s}{self.clicks:3d} clicks{self.seconds:8.1f} s"
+            f"{self.server_s:8.1f} s server{self.browser_s:8.1f} s browser\n"
+        )
+
+
+def measured(hand: Hand, task: Callable[[Hand], None], path: str) -> Taken:
+    """Return what a task took, done from a page at rest."""
     hand.open(path)
-    hand.clicks, began = 0, time.perf_counter()
+    hand.clicks, before, began = 0, processor_s(), time.perf_counter()
     task(hand)
-    return hand.clicks, time.perf_counter() - began
+    seconds, after = time.perf_counter() - began, processor_s()
+    return Taken(hand.clicks, seconds, *(after[who] - before[who] for who in ("server", "browser")))
 
 
 def main() -> None:
@@ -274,17 +292,20 @@ def main() -> None:
         hand = Hand(chromium.new_page(viewport={"width": 1440, "height": 900}), address)
         season = begin(hand)
         sys.stdout.write(f"load of this machine {os.getloadavg()[0]:.1f}\n")
+        done: list[Taken] = []
         for name, (now, before, kept) in TASKS.items():
             if told.only and told.only not in name:
                 continue
             path = f"?season={season.replace(' ', '+')}" if kept else ""
             try:
-                clicks, seconds = measured(hand, before if told.before else now, path)
-                sys.stdout.write(f"{name:34s}{clicks:3d} clicks{seconds:8.1f} s\n")
+                done.append(measured(hand, before if told.before else now, path))
+                sys.stdout.write(done[-1].line(name))
             except Exception as error:  # noqa: BLE001 - the others still count
                 sys.stdout.write(f"{name:34s}not done: {str(error)[:300]!r}\n")
                 hand.page.screenshot(path=f"{tempfile.gettempdir()}/{name}.png")
             sys.stdout.flush()
+        if done:
+            sys.stdout.write(Taken(*map(sum, zip(*done, strict=True))).line("all"))
         chromium.close()
 
 

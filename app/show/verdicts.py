@@ -31,6 +31,8 @@ def sentence(ranked: list[Outcome]) -> str:
         return ""
     best, second = ranked[0], ranked[1]
     names = {"best": name(best.strategy), "second": name(second.strategy)}
+    if isnan(second.behind.low):
+        return texts.VERDICT_ONE.format(**names)
     if not second.behind.low > 0:
         return texts.VERDICT_TIED.format(**names)
     return texts.VERDICT.format(

@@ -843,6 +843,9 @@ VERDICT = (
     "**{best}** is best: {loss:,.0f} infested plant-days, {percent:.0f} % less than {second} "
     "({low:,.0f} to {high:,.0f} fewer, 95 % interval)."
 )
+VERDICT_ONE = (
+    "After one season **{best}** is ahead of {second}. One season tells little; more would tell."
+)
 VERDICT_TIED = (
     "**{best}** comes out best, but not clearly better than {second}: the 95 % interval of the "
     "difference holds 0. More seasons would tell."

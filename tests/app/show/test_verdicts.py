@@ -50,6 +50,14 @@ def test_one_season_has_no_interval():
     assert table["infested plant-days"].tolist() == ["100", "130"]
 
 
+def test_of_one_season_no_interval_is_said():
+    said = verdicts.sentence(
+        [outcome(BEST, [100.0], found=(50.0,)), outcome(SECOND, [140.0], [40.0], found=(50.0,))]
+    )
+    assert said.startswith("After one season **Dynamic · 12 h · 40 s** is ahead of Naive")
+    assert "interval" not in said
+
+
 def test_the_table_says_by_how_much_in_percent_of_the_best():
     row = verdicts.table(ranked([40.0, 41.0, 42.0])).iloc[1]
     assert row["strategy"] == "Naive · 12 h · 40 s"

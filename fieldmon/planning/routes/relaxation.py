@@ -102,11 +102,12 @@ class Ladders:
 
     def __init__(self, aisles: Aisles) -> None:
         self.aisles, self.rungs = aisles, rungs_of(aisles)
+        self._made: dict[object, Ladder] = {}
 
     def of(self, rungs: Rungs) -> Ladders:
         """Return ladders of other rungs, as where parts of the plot are one place."""
         other = copy(self)
-        other.rungs = rungs
+        other.rungs, other._made = rungs, {}
         return other
 
     def whole(self, *, hanging: bool) -> Ladder:
@@ -116,11 +117,17 @@ class Ladders:
         return self.among(every, (to_gate, float(self.aisles.gate_m[1])), hanging=hanging)
 
     def among(self, members: Int, gate: tuple[Float, float], *, hanging: bool) -> Ladder:
-        """Return a ladder of some aisles.
+        """Return a ladder of some aisles, made once.
 
         ``gate``: metres ``(2, k)`` from the left and right ends of the members to a gate, and its
         y.
         """
+        asked = members.tobytes(), gate[0].tobytes(), gate[1], hanging
+        if asked not in self._made:
+            self._made[asked] = self._among(members, gate, hanging=hanging)
+        return self._made[asked]
+
+    def _among(self, members: Int, gate: tuple[Float, float], *, hanging: bool) -> Ladder:
         rungs = self.rungs
         up, low = rungs.up[members], rungs.low[members]
         order = np.lexsort((low, np.round(up, 3)))

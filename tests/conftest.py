@@ -74,7 +74,7 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_sessionstart(session):
-    """Let each of several workers begin with other files: what one makes into bytecode others read."""
+    """Let each worker begin with other files: others read the bytecode that it makes of them."""
     config = session.config
     told = getattr(config, "workerinput", None)
     if told is None or config.args_source is not pytest.Config.ArgsSource.TESTPATHS:

@@ -10,7 +10,6 @@ around holes and between parts, a cross link is put in.
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -100,15 +99,13 @@ def ladder_below(aisles: Aisles) -> Ladder:
 class Ladders:
     """Ladders below a plot, or below some of its aisles, on which no way is longer than true."""
 
-    def __init__(self, aisles: Aisles) -> None:
-        self.aisles, self.rungs = aisles, rungs_of(aisles)
+    def __init__(self, aisles: Aisles, rungs: Rungs | None = None) -> None:
+        self.aisles, self.rungs = aisles, rungs_of(aisles) if rungs is None else rungs
         self._made: dict[object, Ladder] = {}
 
     def of(self, rungs: Rungs) -> Ladders:
         """Return ladders of other rungs, as where parts of the plot are one place."""
-        other = copy(self)
-        other.rungs, other._made = rungs, {}
-        return other
+        return Ladders(self.aisles, rungs)
 
     def whole(self, *, hanging: bool) -> Ladder:
         """Return a ladder of all aisles with the plot's gate; short ones beside others may hang."""

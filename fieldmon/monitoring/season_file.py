@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -29,6 +29,7 @@ from fieldmon.monitoring import (
     day_figures,
     derived_layers,
     drafts,
+    first_morning,
     inspection_lots,
     inspection_table,
     label_table,
@@ -49,7 +50,7 @@ from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
 from fieldmon.monitoring.merging import Merged
-from fieldmon.monitoring.mornings import Mornings
+from fieldmon.monitoring.mornings import Mornings, is_behind
 from fieldmon.monitoring.mornings import keep as keep_mornings
 from fieldmon.monitoring.mornings import take as take_mornings
 from fieldmon.monitoring.recorded_before import (
@@ -73,7 +74,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -125,6 +126,14 @@ class _Revision(NamedTuple):
         return cls(*(int(value or 0) for value in kept))
 
 
+class _Prior(NamedTuple):
+    """The chance map of the first morning ``(n,)``, and from which choices and causes it is."""
+
+    key: tuple[object, object]
+    causes: str
+    chance: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class _Contents:
     """What the file said when it was read last."""
@@ -136,6 +145,17 @@ class _Contents:
 
     def morning(self, day: int) -> Belief:
         return self.mornings.of(day)
+
+    def still_counts(
+        self, revision: _Revision, settings: MonitoringSettings, treated: Sequence[Treatment]
+    ) -> bool:
+        """Tell whether all that the mornings follow from is still what it was."""
+        return (
+            self.revision.inspections == revision.inspections
+            and as_json(self.settings) == as_json(settings)
+            and len(self.history.treatments) == len(treated)
+            and all(map(_same_treatment, self.history.treatments, treated))
+        )
 
 
 class SeasonChange:
@@ -174,7 +194,7 @@ class Season:
         self._lock = threading.RLock()
         self._last: _Contents | None = None
         self._written: _Contents | None = None
-        self._prior: tuple[object, Floats] | None = None
+        self._prior: _Prior | None = None
         self._aisles: dict[tuple[float, float], Aisles] = {}
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
@@ -365,8 +385,10 @@ class Season:
             if len(today.route)
         ]
         with self.store.reading() as db:
-            if all(routes.is_kept(db, today, who) for today, who in named):
-                return
+            is_kept = all(routes.is_kept(db, today, who) for today, who in named)
+        if is_kept:
+            self._keep_what_was_worked_out()
+            return
         with self._writing() as db:
             before = self._read(db)
             kept = [
@@ -378,6 +400,22 @@ class Season:
                 season_log.append(db, "planned", who, **routes.in_words(settings, today))
             if kept:
                 self._refresh(db, named[0][0].scene.day, before)
+
+    def _keep_what_was_worked_out(self) -> None:
+        """Keep mornings that another version of fieldmon left to us; wait for nobody."""
+        now = self._now()
+        with self.store.reading() as db:
+            newest = _newest(db)
+            if not is_behind(db, now.mornings, newest):
+                return
+        with suppress(FileProblem), self.store.writing(patience_s=0.0) as db:
+            if _Revision.of(db) == now.revision:
+                self._keep_mornings(db, now.mornings, newest)
+
+    def _keep_mornings(self, db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
+        keep_mornings(db, mornings, newest)
+        if self._prior is not None:
+            first_morning.keep(db, self._prior.causes, self._prior.chance)
 
     def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
         begins = routes.begins(settings, today, who)
@@ -923,7 +961,8 @@ class Season:
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            return contents.history.forecast(contents.morning(day), day)
+            morning = contents.morning(day)
+        return contents.history.forecast(morning, day)  # others may plan meanwhile
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
@@ -966,8 +1005,7 @@ class Season:
     def last_date(self) -> date:
         """Return the last day on which anything was planned or recorded; at first the first."""
         with self.store.reading() as db:
-            (day,) = db.execute("SELECT max(day) FROM days").fetchone()
-            return _settings(db).date(int(day))
+            return _settings(db).date(_newest(db))
 
     def verify(self, *, whole: bool = True) -> tuple[str, ...]:
         """Hold the file to its digests; return a sentence for each thing that differs.
@@ -1027,8 +1065,11 @@ class Season:
         outside_changes.refuse(db)
         revision = _Revision.of(db)
         if self._last is None or self._last.revision != revision:
-            settings = _settings(db)
-            prior = self._first_morning(settings)
+            settings, treated = _settings(db), treatments.load(db, self._inside)
+            if before is not None and before.still_counts(revision, settings, treated):
+                self._last = replace(before, revision=revision)
+                return self._last
+            prior = self._first_morning(db, settings)
             if before is not None and before.revision.inspections == revision.inspections:
                 inspections = before.history.inspections
             else:
@@ -1036,7 +1077,7 @@ class Season:
             history = replace(
                 _nothing_yet(self.plot, settings, prior, self.observations),
                 inspections=inspections,
-                treatments=treatments.load(db, self._inside),
+                treatments=treated,
             )
             if before is None:
                 mornings = Mornings(history)
@@ -1046,14 +1087,18 @@ class Season:
             self._last = _Contents(revision, settings, history, mornings)
         return self._last
 
-    def _first_morning(self, settings: MonitoringSettings) -> Floats:
+    def _first_morning(self, db: sqlite3.Connection, settings: MonitoringSettings) -> Floats:
         key = (settings.begins, settings.prior)
-        if self._prior is None or self._prior[0] != key:
-            begins = np.datetime64(settings.begins, "D")
-            plot, records = self.plot, self.observations
-            chance = prior_chance(plot.grid, plot.field, records, begins, settings.prior, self.risk)
-            self._prior = (key, chance)
-        return self._prior[1]
+        if self._prior is None or self._prior.key != key:
+            causes = first_morning.causes(db, *key)
+            chance = first_morning.take(db, causes)
+            if chance is None:
+                begins, plot = np.datetime64(settings.begins, "D"), self.plot
+                chance = prior_chance(
+                    plot.grid, plot.field, self.observations, begins, settings.prior, self.risk
+                )
+            self._prior = _Prior(key, causes, chance)
+        return self._prior.chance
 
     def _inside(self, area: shapely.Geometry) -> NDArray[np.bool_]:
         ground = self.plot.grid.frame.geometry_m(area)
@@ -1072,7 +1117,7 @@ class Season:
         self._last = None
         now = self._read(db, before, since)
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
-        keep_mornings(db, now.mornings, newest)
+        self._keep_mornings(db, now.mornings, newest)
         inspection_lots.keep(db)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
@@ -1095,6 +1140,16 @@ def _nothing_yet(
         detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
         living=settings.living(),
     )
+
+
+def _newest(db: sqlite3.Connection) -> int:
+    (day,) = db.execute("SELECT max(day) FROM days").fetchone()
+    return int(day)
+
+
+def _same_treatment(one: Treatment, other: Treatment) -> bool:
+    same_time = (one.day, one.efficacy) == (other.day, other.efficacy)
+    return same_time and np.array_equal(one.plants, other.plants)
 
 
 def _names(settings: MonitoringSettings) -> tuple[str, ...]:

@@ -50,7 +50,9 @@ async def click(line, page):
 async def person(port, number, clicks, pages=None):
     rng = random.Random(number)
     address = f"ws://127.0.0.1:{port}/_stcore/stream"
-    async with websockets.connect(address, subprotocols=["streamlit"], max_size=None) as line:
+    async with websockets.connect(
+        address, subprotocols=["streamlit"], max_size=None, ping_interval=None
+    ) as line:
         first = await click(line, "")
         taken = []
         for page in pages or rng.choices(PAGES, k=clicks):
@@ -65,7 +67,9 @@ async def hurried(port, number, until):
     while time.monotonic() < until:
         address = f"ws://127.0.0.1:{port}/_stcore/stream"
         rng, visit = random.Random(f"{number} {visit}"), visit + 1
-        async with websockets.connect(address, subprotocols=["streamlit"], max_size=None) as line:
+        async with websockets.connect(
+            address, subprotocols=["streamlit"], max_size=None, ping_interval=None
+        ) as line:
             for page in ["", *rng.choices(PAGES, k=PAGES_A_VISIT - 1)]:
                 await click(line, page)
                 turned += 1
@@ -84,10 +88,8 @@ async def compressed(port, server, people, minutes):
     quarters = np.array_split(await watch, 4)
     hours = turned / people * PAGE_EACH_S / 3600
     lines = [
-        (
-            f"{turned} pages turned by {people} in {minutes:.0f} minutes: as many as in {hours:.1f} h "
-            f"with a page each {PAGE_EACH_S:.0f} s"
-        ),
+        f"{turned} pages turned by {people} in {minutes:.0f} minutes",
+        f"as many as in {hours:.1f} h with a page each {PAGE_EACH_S:.0f} s",
         *quarters_said(quarters),
     ]
     await asyncio.sleep(10.0)

@@ -472,26 +472,30 @@ class Season:
         Of a team it is that of the one named, or of the first.
         """
         with self._lock:
-            contents = self._now()
-            settings, day = contents.settings, contents.settings.day(on)
-            now_s = None if now is None else seconds(now)
-            morning = contents.morning(day)
-            if not settings.team:
-                shift = self._shift(settings, settings.robot)
-                return contents.history.scene(shift, day, morning, now_s)
-            member = settings.member(who) if who else settings.team[0]
-            shift = self._shift(settings, member.robot, member)
-            return contents.history.scene(shift, day, morning, now_s, member.name)
+            return self._scene(self._now(), on, now, who)
+
+    def _scene(
+        self, contents: _Contents, on: date, now: time | None = None, who: str = ""
+    ) -> Scene:
+        settings, day = contents.settings, contents.settings.day(on)
+        now_s = None if now is None else seconds(now)
+        morning = contents.morning(day)
+        if not settings.team:
+            shift = self._shift(settings, settings.robot)
+            return contents.history.scene(shift, day, morning, now_s)
+        member = settings.member(who) if who else settings.team[0]
+        shift = self._shift(settings, member.robot, member)
+        return contents.history.scene(shift, day, morning, now_s, member.name)
 
     def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none.
 
         Of a team it is that of the one named, or of the first.
         """
-        settings = self.settings
-        if settings.team:
-            who = settings.member(who).name if who else settings.team[0].name
-        with self.store.reading() as db:
+        with self._lock, self.store.reading() as db:
+            settings = self._read(db).settings
+            if settings.team:
+                who = settings.member(who).name if who else settings.team[0].name
             return routes.plants(db, settings.day(on), who)
 
     def contradictions(self, inspections: Inspections) -> Contradictions:
@@ -679,8 +683,11 @@ class Season:
     def treatments(self) -> tuple[KeptTreatment, ...]:
         """Return the treatments that count, in the order in which they ended."""
         with self._lock, self.store.reading() as db:
-            outside_changes.refuse(db)
-            return treatments.kept(db, self._inside, local_clock(self.plot.field))
+            return self._treatments(db)
+
+    def _treatments(self, db: sqlite3.Connection) -> tuple[KeptTreatment, ...]:
+        outside_changes.refuse(db)
+        return treatments.kept(db, self._inside, local_clock(self.plot.field))
 
     def keep_labels(self, labels: Iterable[ProductLabel], source: str = "", who: str = "") -> int:
         """Let these be what labels allow, instead of those before; return how many there are."""
@@ -701,35 +708,39 @@ class Season:
 
     def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow."""
-        settings = self.settings
-        rules = cautions.RulesToKeep(self.labels(), settings.harvest, settings.starts)
+        with self._lock, self.store.reading() as db:  # all of one moment
+            settings, labels = self._read(db).settings, label_table.read(db)
+            done = self._treatments(db)
+        rules = cautions.RulesToKeep(labels, settings.harvest, settings.starts)
         if units is not None:
             rules = replace(rules, units=units)
-        return cautions.cautions(self.treatments(), rules, on)
+        return cautions.cautions(done, rules, on)
 
     def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
         """Return the first day of harvest that treatments up to a day allow, and which one waits.
 
         None: no treatment is known to need a wait.
         """
-        done = [one for one in self.treatments() if one.on <= on]
-        return cautions.harvest_from(done, self.labels())
+        with self._lock, self.store.reading() as db:  # both of one moment
+            done = [one for one in self._treatments(db) if one.on <= on]
+            labels = label_table.read(db)
+        return cautions.harvest_from(done, labels)
 
     def effects(self, on: date, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
         """Return what inspections up to the evening of a day tell of each treatment before it."""
-        now = self._now()
+        with self._lock, self.store.reading() as db:  # both of one moment
+            now, done = self._read(db), self._treatments(db)
         day = now.settings.day(on)
-        return treatment_effect.effects(self.treatments(), now.history, day, units)
+        return treatment_effect.effects(done, now.history, day, units)
 
     def advise(self, on: date, said: str, who: str = "") -> None:
         """Write into the log what was advised for a day, unless that was written last of it."""
         with self._lock, self.store.reading() as db:
-            of_day = [one for one in season_log.entries(db) if one.kind == "advised"]
-        told = [one.what["said"] for one in of_day if one.what["date"] == str(on)]
-        if told[-1:] == [said]:
-            return
+            if _advised(db, on)[-1:] == [said]:
+                return
         with self._lock, self.store.writing() as db:
-            season_log.append(db, "advised", who, date=str(on), said=said)
+            if _advised(db, on)[-1:] != [said]:  # nor has anybody else written it meanwhile
+                season_log.append(db, "advised", who, date=str(on), said=said)
 
     def log(self) -> tuple[LogEntry, ...]:
         """Return the log, the first entry first.
@@ -864,11 +875,11 @@ class Season:
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
         with self._lock, self.store.writing() as db:
-            contradict = contradictions(
-                other.history.inspections, self._read(db).history.inspections
-            )
             before, was = inspection_table.n_counting(db), season_log.states(db)
-            with other.store.reading() as theirs:
+            with other._lock, other.store.reading() as theirs:
+                contradict = contradictions(
+                    other._read(theirs).history.inspections, self._read(db).history.inspections
+                )
                 told = season_log.taken_in(db, theirs)
                 chosen = merging.merge(db, theirs)
             self._refresh(db)
@@ -929,10 +940,9 @@ class Season:
         asked
             The threshold, the sprayer and the costs; None: the defaults.
         """
-        scene = self.scene(on)
         with self._lock:
             contents = self._now()
-            day = contents.settings.day(on)
+            scene, day = self._scene(contents, on), contents.settings.day(on)
             evening = contents.history.evening(contents.morning(day), day)
         return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
 
@@ -942,7 +952,7 @@ class Season:
             contents = self._now()
             day = contents.settings.day(on)
             now = Status.of(contents.history, contents.morning(day), day)
-        return replace(now, development=self.development(on))
+        return replace(now, development=_development(contents, on))
 
     def development(self, on: date) -> Development | None:
         """Return how far the pest has come on a day, counted from its first find.
@@ -950,11 +960,7 @@ class Season:
         Until there is one, from the season's first day. None: no pest or weather was given, or
         its development is not known.
         """
-        now = self._now()
-        pest, weather = now.settings.pest, now.settings.weather
-        if pest is None or weather is None:
-            return None
-        return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
+        return _development(self._now(), on)
 
     def forecast(self, on: date) -> Forecast:
         """Return how many plants are infested on the mornings after a day, nobody inspecting."""
@@ -1142,9 +1148,22 @@ def _nothing_yet(
     )
 
 
+def _development(now: _Contents, on: date) -> Development | None:
+    pest, weather = now.settings.pest, now.settings.weather
+    if pest is None or weather is None:
+        return None
+    return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
+
+
 def _newest(db: sqlite3.Connection) -> int:
     (day,) = db.execute("SELECT max(day) FROM days").fetchone()
     return int(day)
+
+
+def _advised(db: sqlite3.Connection, on: date) -> list[str]:
+    """Return what was advised for a day, in order."""
+    advised = (one.what for one in season_log.entries(db) if one.kind == "advised")
+    return [str(one["said"]) for one in advised if one["date"] == str(on)]
 
 
 def _same_treatment(one: Treatment, other: Treatment) -> bool:

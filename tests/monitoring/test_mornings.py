@@ -3,14 +3,12 @@
 import shutil
 import sqlite3
 from contextlib import closing
-from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.prior import PriorSettings
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.mornings import Mornings
 from tests.monitoring.seasons import BEGINS
@@ -129,31 +127,6 @@ def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, damage
     change(path, damage)
     season = Season(path)
     assert the_same(of_day(season, LAST), all_over(season)[LAST])
-
-
-@pytest.mark.parametrize("damage", ["SET chances = X'00'", "SET content = ''", "SET causes = ''"])
-def test_the_first_morning_is_the_same_from_the_file_and_from_what_it_follows(path, damage):
-    kept_one = Season(path).history.first_morning
-    change(path, f"UPDATE mornings {damage}")
-    assert the_same(Season(path).history.first_morning, kept_one)
-
-
-def test_the_first_morning_is_worked_out_once_for_each_choice(path, monkeypatch):
-    from fieldmon.monitoring import season_file
-
-    season = Season(path)
-    chosen = replace(season.settings, prior=PriorSettings(edge_chance=0.3))
-    asked, prior_chance = [], season_file.prior_chance
-    monkeypatch.setattr(
-        season_file, "prior_chance", lambda *of: asked.append(of) or prior_chance(*of)
-    )
-    before = Season(path).history.first_morning
-    assert asked == []
-    Season(path).change(chosen, season.settings)
-    assert len(asked) == 1
-    after = Season(path).history.first_morning
-    assert len(asked) == 1
-    assert (after.chance > before.chance).any()
 
 
 def test_a_plan_that_is_kept_already_keeps_the_mornings_of_a_new_version(path, monkeypatch):

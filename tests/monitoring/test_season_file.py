@@ -12,6 +12,7 @@ from fieldmon.errors import FileProblem, ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.transactions import Store
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
@@ -377,3 +378,33 @@ def test_findings_that_come_late_change_every_day_after_them(season):
     with season.store.reading() as db:
         rows = db.execute("SELECT day, inspected, found FROM days ORDER BY day").fetchall()
     assert rows == [(0, 5, 0), (1, 3, 1), (2, 5, 0), (4, 5, 0)]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        lambda season, on: season.advice(on),
+        lambda season, _: season.assumed(),
+        lambda season, on: season.cautions(on),
+        lambda season, on: season.contradicting(on),
+        lambda season, on: season.effects(on),
+        lambda season, on: season.forecast(on),
+        lambda season, on: season.harvest_from(on),
+        lambda season, on: season.kept_route(on),
+        lambda season, _: season.last_date(),
+        lambda season, on: season.learnt(on),
+        lambda season, _: season.other_maps(),
+        lambda season, on: season.progress(on),
+        lambda season, on: season.scene(on),
+        lambda season, on: season.status(on),
+        lambda season, on: season.verdict(on, 0.1),
+    ],
+)
+def test_what_a_season_answers_is_of_one_moment_others_may_write_between_two(
+    recorded, monkeypatch, asked
+):
+    season, moments = Season(recorded), []
+    reading = Store.reading
+    monkeypatch.setattr(Store, "reading", lambda self: moments.append(self) or reading(self))
+    asked(season, BEGINS)
+    assert len(moments) == 1

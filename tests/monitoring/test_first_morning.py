@@ -10,7 +10,7 @@ import pytest
 
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.monitoring import Season, first_morning
-from fieldmon.monitoring import season_file as in_season
+from fieldmon.monitoring import open_season as in_season
 
 
 @pytest.fixture

@@ -310,19 +310,37 @@ def _cross_links(
     # the gate's own ways are its stubs
     asked[gate], asked[:, gate] = np.inf, np.inf
     links: dict[int, float] = {}
+    over = _from_left_to_right(left, right, cross) - asked
     for _ in range(_ROUNDS * 10):
-        over = _from_left_to_right(left, right, cross) - asked
-        if over.max() <= _EXACT_M:
-            return sorted(links.items())
         a, b = (int(k) for k in np.unravel_index(np.argmax(over), over.shape))
+        if over[a, b] <= _EXACT_M:
+            return sorted(links.items())
         room = asked[a, b] - np.abs(left - left[a]) - np.abs(right - right[b])
         room[gate] = -np.inf
         best = int(np.argmax(room))
         if room[best] < 0.0:
             return None
         links[best] = min(links.get(best, np.inf), float(room[best]))
-        cross[best] = min(cross[best], links[best])
+        if links[best] < cross[best]:
+            cross[best] = links[best]
+            _take_crossing(over, (left, right), (best, cross[best]), asked)
     return None
+
+
+def _take_crossing(
+    over: Float, places: tuple[Float, Float], crossing: tuple[int, float], asked: Float
+) -> None:
+    """Let ways from left to right take one more crossing, or a shorter one.
+
+    To the last bit what `_from_left_to_right` gives with it: the smaller of two numbers is it
+    after the same is added to both, too.
+    """
+    (left, right), (k, metres) = places, crossing
+    to = np.abs(left - left[k]) + metres
+    up = (to - right[k])[:, None] + right[k:] - asked[:, k:]
+    np.minimum(over[:, k:], up, out=over[:, k:])
+    down = (to + right[k])[:, None] - right[: k + 1] - asked[:, : k + 1]
+    np.minimum(over[:, : k + 1], down, out=over[:, : k + 1])
 
 
 def _from_left_to_right(left: Float, right: Float, cross: Float) -> Float:

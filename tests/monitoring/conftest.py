@@ -27,6 +27,12 @@ def path(recorded, tmp_path):
 
 
 @pytest.fixture
+def season(tmp_path):
+    """Give a season in which nothing was done yet."""
+    return a_season(tmp_path / "season.gpkg")
+
+
+@pytest.fixture
 def db():
     """Give an empty season in memory: its tables, and nothing in them."""
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:

@@ -21,6 +21,11 @@ BEGINS = date(2026, 4, 6)
 ROBOT = Robot(hours=1.5)
 
 
+def on(day):
+    """Return the date of a day of the season."""
+    return BEGINS + timedelta(days=day)
+
+
 def a_plot(width=0.0008, height=0.0007, **planting):
     hole = box(35.1503, 30.3603, 35.1504, 30.3604)
     boundary = MultiPolygon([box(35.15, 30.36, 35.15 + width, 30.36 + height).difference(hole)])

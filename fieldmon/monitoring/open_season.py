@@ -1,0 +1,313 @@
+"""The file of a season as it is read: what it says now, and the transactions that change it."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.hotspots import record_states
+from fieldmon.infestation.observations import Observations, usable
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.monitoring import (
+    derived_layers,
+    first_morning,
+    inspection_lots,
+    outside_changes,
+    qgis_project,
+    schema,
+    settings_log,
+    tables,
+    treatments,
+)
+from fieldmon.monitoring.history import History, Shift
+from fieldmon.monitoring.mornings import Mornings
+from fieldmon.monitoring.mornings import keep as keep_mornings
+from fieldmon.monitoring.mornings import take as take_mornings
+from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.monitoring.transactions import Store, get_meta
+from fieldmon.plot.grid import RowLabel, row_label
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Iterator, Sequence
+    from datetime import date, time
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.monitoring.history import Treatment
+    from fieldmon.planning.members import TeamMember
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.travel import Aisles
+    from fieldmon.samplers.base import Scene
+
+    Floats = NDArray[np.float64]
+
+
+class FileRevision(NamedTuple):
+    """What changes when anything that counts does, whoever changed it.
+
+    Parameters
+    ----------
+    changes
+        How often the file was changed by us.
+    inspections
+        How often a row of the inspections was changed, by whomever.
+    """
+
+    changes: int
+    inspections: int
+
+    @classmethod
+    def of(cls, db: sqlite3.Connection) -> FileRevision:
+        """Return what the file says of itself."""
+        kept = (get_meta(db, name) for name in ("revision", schema.INSPECTIONS_CHANGED))
+        return cls(*(int(value or 0) for value in kept))
+
+
+@dataclass(frozen=True, eq=False)
+class SeasonContents:
+    """What the file said when it was read last."""
+
+    revision: FileRevision
+    settings: MonitoringSettings
+    history: History
+    mornings: Mornings
+
+    def morning(self, day: int) -> Belief:
+        """Return what is believed on the morning of a day."""
+        return self.mornings.of(day)
+
+    def still_counts(
+        self, revision: FileRevision, settings: MonitoringSettings, treated: Sequence[Treatment]
+    ) -> bool:
+        """Tell whether all that the mornings follow from is still what it was."""
+        return (
+            self.revision.inspections == revision.inspections
+            and as_json(self.settings) == as_json(settings)
+            and len(self.history.treatments) == len(treated)
+            and all(map(_same_treatment, self.history.treatments, treated))
+        )
+
+
+class _Prior(NamedTuple):
+    """The chance map of the first morning ``(n,)``, and from which choices and causes it is."""
+
+    key: tuple[object, object]
+    causes: str
+    chance: Floats
+
+
+class OpenSeason:
+    """A season's file, read anew whenever it changed; see `fieldmon.monitoring.Season`."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.store = Store(path)
+        self._lock = threading.RLock()
+        self._last: SeasonContents | None = None
+        self._written: SeasonContents | None = None
+        self._prior: _Prior | None = None
+        self._aisles: dict[tuple[float, float], Aisles] = {}
+        with self.store.reading() as db:
+            self.plot: Plot = tables.read_plot(db)
+            self.observations: Observations = tables.read_observations(db)
+            self.risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
+
+    @property
+    def path(self) -> Path:
+        """Return the file."""
+        return self.store.path
+
+    @property
+    def revision(self) -> str:
+        """Return what changes when anything that counts does, whoever changed it."""
+        with self.store.reading() as db:
+            return repr(tuple(FileRevision.of(db)))
+
+    @property
+    def settings(self) -> MonitoringSettings:
+        """Return what is chosen for the season."""
+        return self._now().settings
+
+    @property
+    def history(self) -> History:
+        """Return all that happened so far."""
+        return self._now().history
+
+    def last_date(self) -> date:
+        """Return the last day on which anything was planned or recorded; at first the first."""
+        with self.store.reading() as db:
+            return settings_of(db).date(newest_day(db))
+
+    @cached_property
+    def label(self) -> RowLabel:
+        """Row and number of every plant, as people count."""
+        return row_label(self.plot.grid)
+
+    def scene(self, on: date, now: time | None = None, who: str = "") -> Scene:
+        """Return a day as it stands after what was recorded of it; `now` as in `plan`.
+
+        Of a team it is that of the one named, or of the first.
+        """
+        with self._lock:
+            return self._scene(self._now(), on, now, who)
+
+    def _scene(
+        self, contents: SeasonContents, on: date, now: time | None = None, who: str = ""
+    ) -> Scene:
+        settings, day = contents.settings, contents.settings.day(on)
+        now_s = None if now is None else seconds(now)
+        morning = contents.morning(day)
+        if not settings.team:
+            shift = self._shift(settings, settings.robot)
+            return contents.history.scene(shift, day, morning, now_s)
+        member = settings.member(who) if who else settings.team[0]
+        shift = self._shift(settings, member.robot, member)
+        return contents.history.scene(shift, day, morning, now_s, member.name)
+
+    def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:
+        """Return the ways on the plot with another gate; None: its own."""
+        if gate is None:
+            return self.plot.aisles
+        if gate not in self._aisles:
+            self._aisles[gate] = self.plot.with_gate(gate).aisles
+        return self._aisles[gate]
+
+    def _shift(
+        self, settings: MonitoringSettings, robot: Robot, member: TeamMember | None = None
+    ) -> Shift:
+        starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
+        if member is None:
+            return Shift(self.plot.aisles, robot, starts_s, streams)
+        return Shift(self.aisles_from(member.gate), robot, starts_s + member.starts_s, streams)
+
+    def _now(self) -> SeasonContents:
+        with self._lock, self.store.reading() as db:
+            return self._read(db)
+
+    @contextmanager
+    def _writing(self) -> Iterator[sqlite3.Connection]:
+        """Give the file for one transaction; what it wrote is known once it is kept."""
+        with self._lock:
+            self._written = None
+            with self.store.writing() as db:
+                yield db
+            self._last, self._written = self._written or self._last, None
+
+    def _read(
+        self, db: sqlite3.Connection, before: SeasonContents | None = None, since: int = 0
+    ) -> SeasonContents:
+        """Return what the file says; nothing is read again that did not change.
+
+        What the same transaction read `before` its changes, which reach back to the day `since`,
+        need not be read and worked out again.
+        """
+        outside_changes.refuse(db)
+        revision = FileRevision.of(db)
+        if self._last is None or self._last.revision != revision:
+            settings, treated = settings_of(db), treatments.load(db, self._inside)
+            if before is not None and before.still_counts(revision, settings, treated):
+                self._last = replace(before, revision=revision)
+                return self._last
+            prior = self._first_morning(db, settings)
+            if before is not None and before.revision.inspections == revision.inspections:
+                inspections = before.history.inspections
+            else:
+                inspections = inspection_lots.load(db, settings.begins)
+            history = replace(
+                nothing_yet(self.plot, settings, prior, self.observations),
+                inspections=inspections,
+                treatments=treated,
+            )
+            if before is None:
+                mornings = Mornings(history)
+                take_mornings(db, mornings)
+            else:
+                mornings = before.mornings.after_change(history, since)
+            self._last = SeasonContents(revision, settings, history, mornings)
+        return self._last
+
+    def _first_morning(self, db: sqlite3.Connection, settings: MonitoringSettings) -> Floats:
+        key = (settings.begins, settings.prior)
+        if self._prior is None or self._prior.key != key:
+            causes = first_morning.causes(db, *key)
+            chance = first_morning.take(db, causes)
+            if chance is None:
+                begins, plot = np.datetime64(settings.begins, "D"), self.plot
+                chance = prior_chance(
+                    plot.grid, plot.field, self.observations, begins, settings.prior, self.risk
+                )
+            self._prior = _Prior(key, causes, chance)
+        return self._prior.chance
+
+    def _inside(self, area: shapely.Geometry) -> NDArray[np.bool_]:
+        ground = self.plot.grid.frame.geometry_m(area)
+        shapely.prepare(ground)
+        inside: NDArray[np.bool_] = shapely.intersects_xy(ground, self.plot.grid.xy_m)
+        return inside
+
+    def _refresh(
+        self, db: sqlite3.Connection, since: int = 0, before: SeasonContents | None = None
+    ) -> None:
+        """Write what follows from the causes, within the transaction that changes them.
+
+        Nothing before `since` has changed; what the transaction read `before` its changes saves
+        working those mornings out again.
+        """
+        self._last = None
+        now = self._read(db, before, since)
+        newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
+        self._keep_mornings(db, now.mornings, newest)
+        inspection_lots.keep(db)
+        qgis_project.keep(db, self.path.name)
+        self._last = None  # the transaction may yet fail
+        kept = now.revision._replace(changes=now.revision.changes + 1)
+        self._written = replace(now, revision=kept)
+
+    def _keep_mornings(self, db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
+        keep_mornings(db, mornings, newest)
+        if self._prior is not None:
+            first_morning.keep(db, self._prior.causes, self._prior.chance)
+
+
+def nothing_yet(
+    plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
+) -> History:
+    """Return the history of a season in which nothing was found or treated."""
+    belief = settings.belief.first_morning(plot.grid, prior, settings.pest)
+    known = usable(records, np.datetime64(settings.begins, "D")).observations
+    return History(
+        plot.grid,
+        settings.begins,
+        belief,
+        belief=settings.belief,
+        detection=settings.robot.detects,
+        recorded=record_states(plot.grid, known) if len(known) else None,
+        detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
+        living=settings.living(),
+    )
+
+
+def settings_of(db: sqlite3.Connection) -> MonitoringSettings:
+    """Return what is chosen for a season, as a transaction sees it."""
+    return from_json(settings_log.now(db))
+
+
+def newest_day(db: sqlite3.Connection) -> int:
+    """Return the last day of which the file keeps figures."""
+    (day,) = db.execute("SELECT max(day) FROM days").fetchone()
+    return int(day)
+
+
+def _same_treatment(one: Treatment, other: Treatment) -> bool:
+    same_time = (one.day, one.efficacy) == (other.day, other.efficacy)
+    return same_time and np.array_equal(one.plants, other.plants)

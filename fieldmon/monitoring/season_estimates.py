@@ -1,0 +1,148 @@
+"""What a season knows: chances, counts, forecasts and advice for a day."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.monitoring import (
+    day_figures,
+)
+from fieldmon.monitoring.advice import AdviceSettings, advice
+from fieldmon.monitoring.day_figures import DayFigures, Progress
+from fieldmon.monitoring.open_season import OpenSeason
+from fieldmon.monitoring.status import Status
+from fieldmon.pests.development import development
+
+if TYPE_CHECKING:
+    from datetime import date
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.decisions.map_verdict import MapVerdict
+    from fieldmon.infestation.forecast import Forecast
+    from fieldmon.infestation.learnt import Learnt
+    from fieldmon.infestation.level_range import LevelRange
+    from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.open_season import SeasonContents
+    from fieldmon.pests.development import Development
+
+    Floats = NDArray[np.float64]
+
+
+class SeasonEstimates(OpenSeason):
+    """What follows on each day from all that was recorded before."""
+
+    def morning(self, on: date) -> Floats:
+        """Return the chance map ``(n,)`` of a morning."""
+        with self._lock:
+            contents = self._now()
+            return contents.morning(contents.settings.day(on)).chance
+
+    def evening(self, on: date) -> Floats:
+        """Return the chance map ``(n,)`` of a day, after what was recorded of it so far."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.evening(contents.morning(day), day).chance
+
+    def level_range(self, on: date) -> LevelRange:
+        """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.level_range(contents.morning(day), day)
+
+    def verdict(
+        self, on: date, level: float, sure: float = 0.9, plants: NDArray[np.bool_] | None = None
+    ) -> MapVerdict:
+        """Return whether treating pays after a day's work; see `fieldmon.decisions`.
+
+        Plants that were found and not treated count: they are infested. `plants` ``(n,)`` is the
+        part of the plot that is asked about; None: all.
+        """
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            evening = contents.history.evening(contents.morning(day), day)
+        return map_verdict(
+            contents.history.grid, evening.chance, level, evening.pair_chance,
+            plants=plants, sure=sure, doubt=evening.doubt,
+        )  # fmt: skip
+
+    def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:
+        """Return whether to treat after a day's work, where, and how many looks decide.
+
+        Parameters
+        ----------
+        on
+            The day.
+        asked
+            The threshold, the sprayer and the costs; None: the defaults.
+        """
+        with self._lock:
+            contents = self._now()
+            scene, day = self._scene(contents, on), contents.settings.day(on)
+            evening = contents.history.evening(contents.morning(day), day)
+        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
+
+    def status(self, on: date) -> Status:
+        """Return where the season stands on a day."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            now = Status.of(contents.history, contents.morning(day), day)
+        return replace(now, development=_development(contents, on))
+
+    def development(self, on: date) -> Development | None:
+        """Return how far the pest has come on a day, counted from its first find.
+
+        Until there is one, from the season's first day. None: no pest or weather was given, or
+        its development is not known.
+        """
+        return _development(self._now(), on)
+
+    def forecast(self, on: date) -> Forecast:
+        """Return how many plants are infested on the mornings after a day, nobody inspecting."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            morning = contents.morning(day)
+        return contents.history.forecast(morning, day)  # others may plan meanwhile
+
+    def learnt(self, on: date) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            return contents.history.learnt(contents.morning(day), day)
+
+    def progress(self, on: date) -> Progress:
+        """Return how far the inspections are after a day's work; nothing is estimated for it."""
+        now = self._now()
+        return Progress.of(now.history, now.settings.day(on))
+
+    def day_figures(self, on: date) -> DayFigures:
+        """Return a day in figures: those kept with it, or else worked out, which takes seconds."""
+        for kept in self.days():
+            if kept.on == on:
+                return kept
+        with self._lock:
+            now = self._now()
+            day = now.settings.day(on)
+            estimate = now.history.estimate(now.morning(day), day)
+        return DayFigures.of(on, Progress.of(now.history, day), estimate)
+
+    def days(self) -> tuple[DayFigures, ...]:
+        """Return the figures of the days on which anything was planned or recorded, in order."""
+        with self.store.reading() as db:
+            return day_figures.kept(db)
+
+
+def _development(now: SeasonContents, on: date) -> Development | None:
+    pest, weather = now.settings.pest, now.settings.weather
+    if pest is None or weather is None:
+        return None
+    return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)

@@ -1,0 +1,247 @@
+"""What was found in a season: recorded, corrected, merged and taken back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.monitoring import (
+    batches,
+    copy_corrections,
+    drafts,
+    inspection_table,
+    merging,
+    outside_changes,
+    season_log,
+    tables,
+)
+from fieldmon.monitoring.batches import Recorded
+from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.open_season import OpenSeason, settings_of
+from fieldmon.monitoring.recorded_before import (
+    Contradictions,
+    contradicting,
+    contradictions,
+    said_before,
+)
+from fieldmon.monitoring.transactions import Store
+
+if TYPE_CHECKING:
+    import sqlite3
+    from datetime import date
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring.batches import Batch
+    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.monitoring.tables import KeptMessage
+
+    Floats = NDArray[np.float64]
+
+
+class SeasonRecords(OpenSeason):
+    """The inspections of a season, whoever brings them; each batch can be undone."""
+
+    def contradictions(self, inspections: Inspections) -> Contradictions:
+        """Return those that say otherwise than what is recorded of the same plant and day."""
+        return contradictions(inspections, self.history.inspections)
+
+    def contradicting(self, on: date) -> Inspections:
+        """Return a day's inspections of plants that were both clean and found on it."""
+        return contradicting(self.history.inspections.on(on))
+
+    def record(
+        self,
+        inspections: Inspections,
+        source: str = "",
+        who: str = "",
+        *,
+        confirmed: bool = False,
+        into: int | None = None,
+    ) -> Recorded:
+        """Add inspections; those that the season holds already change nothing.
+
+        Parameters
+        ----------
+        inspections
+            What was found where and when.
+        source, who
+            File or screen it comes from; the person, where the inspections name none.
+        confirmed
+            Whether results count that contradict what is recorded of the same plant and day.
+        into
+            Batch to add them to, as `Recorded` numbers it; None: a new one.
+
+        Raises
+        ------
+        ContradictionError
+            If there are such results and nobody confirmed them.
+        ObservationError
+            If a plant is not on this plot, or a result has no date or an impossible one.
+        SettingError
+            If a date is not of this season.
+        """
+        with self._writing() as db:
+            before = self._read(db)
+            held = before.history.inspections
+            if not confirmed:
+                contradictions(inspections, held).refuse(self.label)
+            news = inspections.take(~said_before(inspections, held))
+            batch = batches.begin(db, "findings", source, who) if into is None else into
+            if into is not None:
+                batches.must_count(db, into)
+            made = inspection_table.rows(
+                news, self.plot.grid, self.label, settings_of(db), (batch, who)
+            )
+            new = inspection_table.store(db, made)
+            batches.end(db, batch, new, grows=into is not None)
+            if new:
+                self._log_seen(db, news, (batch, source, who))
+                first = settings_of(db).day(inspections.date.min().item())
+                self._refresh(db, first, before)
+        return Recorded(batch if new else None, new, len(inspections) - new)
+
+    def _log_seen(
+        self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str]
+    ) -> None:
+        batch, source, who = said
+        names = {str(name) for name in news.who} - {""}
+        season_log.append(
+            db, "seen", who or ", ".join(sorted(names)), states=season_log.states(db, [batch]),
+            batch=batch, source=source, **inspection_table.in_words(news.result, news.date),
+        )  # fmt: skip
+
+    def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
+        """Take a batch back (None: the last one), or one inspection; nothing is deleted.
+
+        Return a sentence that says what was undone. Raise `SettingError` if there is nothing.
+        """
+        with self._lock, self.store.writing() as db:
+            if inspection is None:
+                number, said = batches.undo(db, batch)
+            else:
+                number, said = batches.undo_one(db, inspection)
+            states = season_log.states(db, [number])
+            season_log.append(db, "undone", who, states=states, batch=number, said=said)
+            self._refresh(db)
+        return said
+
+    def correct(self, who: str) -> int:
+        """Take what another program changed of inspections as corrections; return how many.
+
+        They are a batch of their own, of this person; undoing it takes the corrected rows out.
+        Raise `FileProblem` if more than inspections was changed, or what makes no sense.
+        """
+        with self._lock, self.store.writing() as db:
+            outside_changes.refuse_more(db)
+            settings, plot = settings_of(db), (self.plot.grid, self.label)
+            n = outside_changes.correct(db, plot, settings, who)
+            if n:
+                season_log.append(db, "corrected", who, states=season_log.states(db), rows=n)
+                self._refresh(db)
+        return n
+
+    def take_drafts(self) -> tuple[str, ...]:
+        """Let findings count that another program added to the file itself.
+
+        They are a batch of their own. Return a sentence for each that does not count, and why; it
+        stays as it is. Where more was changed, nothing is taken before that is settled.
+        """
+        plot = self.plot.grid, self.label
+        with self._lock, self.store.reading() as db:
+            if not drafts.any_waiting(db) or outside_changes.waiting(db):
+                return ()
+            known = self._read(db)
+            found = drafts.read(db, plot, known.settings, known.history.inspections)
+        if any(one.inspection is not None for one in found):
+            try:
+                with self._writing() as db:
+                    before = self._read(db)
+                    found = drafts.read(db, plot, before.settings, before.history.inspections)
+                    good = [one for one in found if one.inspection is not None]
+                    self._take_drafts(db, good, before.settings)
+            except FileProblem as error:  # who may only read it reads it without them
+                return (str(error),)
+        return tuple(one.sentence for one in found if one.inspection is None)
+
+    def _take_drafts(
+        self, db: sqlite3.Connection, taken: list[drafts.Draft], settings: MonitoringSettings
+    ) -> None:
+        batch = batches.begin(db, "findings", drafts.SOURCE, "")
+        said = (self.plot.grid, self.label), settings, batch
+        news = drafts.keep(db, taken, *said)
+        batches.end(db, batch, len(taken))
+        self._log_seen(db, news, (batch, drafts.SOURCE, ""))
+        # there are as many rows as before: all is read again
+        self._refresh(db, settings.day(news.date.min().item()))
+
+    def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
+        """Return what another program changed of inspections in a copy of this season.
+
+        A file that is no copy of it has none.
+        """
+        with self.store.reading() as db, Store(copy).reading() as theirs:
+            try:
+                merging.refuse_strangers(db, theirs)
+            except FileProblem:
+                return ()
+            return copy_corrections.waiting(theirs)
+
+    def take_corrections(self, copy: Path, name: str, who: str) -> int:
+        """Take what was corrected or deleted in a copy of this season; return how many were new.
+
+        They are a batch of their own, of this person. Raise `FileProblem` if a changed row makes no
+        sense or is not here, and `SettingError` if nobody is named.
+        """
+        if not who.strip():
+            raise SettingError(
+                worded(
+                    "Corrections must have an author, but {name} was changed by another program "
+                    "and nobody says who did. Give --who NAME.",
+                    name=name,
+                )
+            )
+        with self._lock, self.store.writing() as db, Store(copy).reading() as theirs:
+            plot = self.plot.grid, self.label
+            n = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who.strip()))
+            if n:
+                states = season_log.states(db)
+                season_log.append(db, "corrected", who.strip(), states=states, rows=n)
+                self._refresh(db)
+        return n
+
+    def merge(self, other: OpenSeason) -> Merged:
+        """Take in what another copy of this season holds: all that is in either, once each.
+
+        The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
+        """
+        with self._lock, self.store.writing() as db:
+            before, was = inspection_table.n_counting(db), season_log.states(db)
+            held = self._read(db).history.inspections
+            with other.store.reading() as theirs:
+                told = season_log.taken_in(db, theirs)
+                # nobody writes there from here on
+                contradict = contradictions(other.history.inspections, held)
+                chosen = merging.merge(db, theirs)
+            self._refresh(db)
+            new = inspection_table.n_counting(db) - before
+            if told or season_log.states(db) != was:
+                season_log.append(
+                    db, "merged", states=season_log.states(db), new=new, entries=len(told),
+                    theirs=told,
+                )  # fmt: skip
+        return Merged(new, (*contradict.sentences(self.label), *chosen))
+
+    def batches(self) -> tuple[Batch, ...]:
+        """Return everything recorded, the last one first."""
+        with self.store.reading() as db:
+            return batches.all_of(db)
+
+    def messages(self) -> tuple[KeptMessage, ...]:
+        """Return what the imports had to say."""
+        with self.store.reading() as db:
+            return tables.read_messages(db)

@@ -1,0 +1,202 @@
+"""What was treated in a season, whether it worked, and what to beware of since."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from fieldmon.compute.wording import worded
+from fieldmon.decisions.labels import label_for
+from fieldmon.decisions.zones import outline_of
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import (
+    batches,
+    cautions,
+    label_table,
+    outside_changes,
+    season_log,
+    treatment_effect,
+    treatments,
+)
+from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.batches import Recorded
+from fieldmon.monitoring.history import Treatment
+from fieldmon.monitoring.open_season import OpenSeason, settings_of
+from fieldmon.monitoring.treatments import TreatedPlace
+from fieldmon.plot.local_clock import local_clock
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Iterable
+    from datetime import date
+
+    from numpy.typing import NDArray
+    from shapely import MultiPolygon
+
+    from fieldmon.compute.units import Units
+    from fieldmon.decisions.labels import ProductLabel
+    from fieldmon.monitoring.cautions import Caution
+    from fieldmon.monitoring.treatment_effect import TreatmentEffect
+    from fieldmon.monitoring.treatments import KeptTreatment
+
+    Floats = NDArray[np.float64]
+
+
+class SeasonTreatments(OpenSeason):
+    """The treatments of a season, and the labels of what was used."""
+
+    def treat(
+        self, on: date, efficacy: float | None = None, area: MultiPolygon | None = None,
+        product: str = "", *, application: Application | None = None,
+        plants: NDArray[np.bool_] | None = None,
+    ) -> Recorded:  # fmt: skip
+        """Note that a part of the plot was treated, after the day's work.
+
+        Parameters
+        ----------
+        on
+            The day.
+        efficacy
+            Chance that an infested plant is clean afterwards; None: what the season learnt of this
+            product, see `effects`.
+        area
+            Outline, lon/lat; None: the whole plot, unless `plants` are given.
+        product
+            What was used, where nothing else is said of it.
+        application
+            What was applied and how. What it does not say of waiting periods and of the
+            mode-of-action group comes from the product's label, where the season has one.
+        plants
+            ``(n,)`` the plants that were treated one by one, instead of an area.
+
+        Raises
+        ------
+        SettingError
+            If no plant was treated, or nothing tells how well it works.
+        """
+        said = Application(product) if application is None else application
+        if area is not None and plants is not None:
+            raise SettingError(
+                worded("A treatment is of an area or of plants, but both were given.")
+            )
+        place = self._treated(area) if plants is None else self._treated_one_by_one(plants)
+        if not place.plants.any():
+            raise SettingError(
+                worded(
+                    "The area treated must hold plants of this plot, but it holds none. Check its "
+                    "coordinates."
+                )
+            )
+        works = self._efficacy(said.product) if efficacy is None else efficacy
+        with self._writing() as db:
+            before = self._read(db)
+            day = settings_of(db).day(on)
+            said = said.by_label(
+                label_for(label_table.read(db), said.product, said.crop, said.pest)
+            )
+            treatment = Treatment(day, place.plants, works)  # or raise
+            batch = batches.begin(db, "treatment", said.product, said.operator)
+            new = treatments.store(
+                db, treatment, (place, on, said), batch, local_clock(self.plot.field)
+            )
+            batches.end(db, batch, new)
+            if new:
+                season_log.append(
+                    db, "treated", said.operator, states=season_log.states(db, [batch]),
+                    batch=batch, date=str(on), said=treatments.in_words(place, said),
+                    efficacy=works, **said.said(),
+                )  # fmt: skip
+                self._refresh(db, day, before)
+        return Recorded(batch if new else None, new, 1 - new)
+
+    def _treated(self, area: MultiPolygon | None) -> TreatedPlace:
+        boundary = self.plot.field.boundary
+        ground = boundary if area is None else area
+        frame = self.plot.grid.frame
+        on_plot = shapely.intersection(frame.geometry_m(ground), frame.geometry_m(boundary))
+        return TreatedPlace(ground, self._inside(ground), float(on_plot.area) / 1e4)
+
+    def _treated_one_by_one(self, plants: NDArray[np.bool_]) -> TreatedPlace:
+        grid = self.plot.grid
+        if plants.shape != (len(grid),):
+            raise SettingError(
+                worded(
+                    "Whether it was treated must be said of each of the {n} plants, but it is of "
+                    "{size}.",
+                    n=len(grid),
+                    size=plants.size,
+                )
+            )
+        outline = outline_of(grid, np.asarray(plants, bool))
+        area_ha = float(grid.frame.geometry_m(outline).area) / 1e4
+        return TreatedPlace(outline, np.asarray(plants, bool), area_ha, by_plant=True)
+
+    def _efficacy(self, product: str) -> float:
+        """Return how well a product works, as the season learnt it."""
+        known = treatment_effect.learnt_efficacy(self.effects(self.last_date()), product)
+        if known is None:
+            raise SettingError(
+                worded(
+                    "How well a treatment works must be said (efficacy, 0 to 1), for this season "
+                    "has not learnt it: no plant was inspected before and after a treatment with "
+                    "{product}.",
+                    product=product or worded("a product that nobody named"),
+                )
+            )
+        return known.efficacy
+
+    def treatments(self) -> tuple[KeptTreatment, ...]:
+        """Return the treatments that count, in the order in which they ended."""
+        with self._lock, self.store.reading() as db:
+            return self._treatments(db)
+
+    def _treatments(self, db: sqlite3.Connection) -> tuple[KeptTreatment, ...]:
+        outside_changes.refuse(db)
+        return treatments.kept(db, self._inside, local_clock(self.plot.field))
+
+    def keep_labels(self, labels: Iterable[ProductLabel], source: str = "", who: str = "") -> int:
+        """Let these be what labels allow, instead of those before; return how many there are."""
+        kept = tuple(labels)
+        with self._lock, self.store.writing() as db:
+            if kept != label_table.read(db):
+                label_table.write(db, kept)
+                season_log.append(
+                    db, "labels", who, states={"labels": season_log.labels_state(db)},
+                    labels=len(kept), source=source,
+                )  # fmt: skip
+        return len(kept)
+
+    def labels(self) -> tuple[ProductLabel, ...]:
+        """Return what the labels of products allow, as the user's own table says."""
+        with self.store.reading() as db:
+            return label_table.read(db)
+
+    def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
+        """Return what to beware of on a day: harvest, entry, resistance, what labels allow."""
+        with self._lock, self.store.reading() as db:  # all of one moment
+            settings, labels = self._read(db).settings, label_table.read(db)
+            done = self._treatments(db)
+        rules = cautions.RulesToKeep(labels, settings.harvest, settings.starts)
+        if units is not None:
+            rules = replace(rules, units=units)
+        return cautions.cautions(done, rules, on)
+
+    def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
+        """Return the first day of harvest that treatments up to a day allow, and which one waits.
+
+        None: no treatment is known to need a wait.
+        """
+        with self._lock, self.store.reading() as db:  # both of one moment
+            done = [one for one in self._treatments(db) if one.on <= on]
+            labels = label_table.read(db)
+        return cautions.harvest_from(done, labels)
+
+    def effects(self, on: date, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
+        """Return what inspections up to the evening of a day tell of each treatment before it."""
+        with self._lock, self.store.reading() as db:  # both of one moment
+            now, done = self._read(db), self._treatments(db)
+        day = now.settings.day(on)
+        return treatment_effect.effects(done, now.history, day, units)

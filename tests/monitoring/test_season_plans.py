@@ -1,0 +1,67 @@
+"""A season's days are planned from all that is known, and their routes are kept."""
+
+from datetime import date, time
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import SKIPPED, Inspections
+from tests.monitoring.seasons import (
+    BEGINS,
+    ROBOT,
+    some_results,
+)
+
+
+def test_planning_half_way_starts_where_the_robot_stands_with_the_hours_that_are_left(season):
+    whole = season.plan(BEGINS)
+    results = some_results(season, n=8)
+    season.record(results, "the morning")
+    rest = season.plan(BEGINS)
+    assert rest.scene.at == results.plant[-1]
+    gone_s = whole.route.arrive_s[7] + ROBOT.visit_s
+    assert rest.scene.seconds_left == pytest.approx(ROBOT.day_s - gone_s, abs=1e-6)
+    assert not np.isin(rest.route.plant, results.plant).any()
+    later = season.plan(BEGINS, time(7, 15))
+    assert later.scene.seconds_left == ROBOT.day_s - 75 * 60
+    assert len(later.route) < len(rest.route)
+    with season.store.reading() as db:
+        kept = db.execute("SELECT day, revision, starts FROM routes ORDER BY fid").fetchall()
+    assert [(day, revision) for day, revision, _ in kept] == [(0, 1), (0, 2), (0, 3)]
+    assert kept[2][2] == "2026-04-06T07:15:00"
+
+
+def test_the_time_of_the_last_result_is_the_time_of_day(season):
+    results = some_results(season, n=3)
+    timed = Inspections.of(
+        results.plant, results.result, results.date[0], second=np.array([22000.0, 21700.0, 21900.0])
+    )
+    season.record(timed, "phone")
+    rest = season.plan(BEGINS)
+    assert rest.scene.at == results.plant[0]  # the one inspected last, not the one listed last
+    assert rest.scene.seconds_left == ROBOT.day_s - 400.0
+
+
+def test_a_plant_that_could_not_be_inspected_is_left_alone_today_and_comes_back(season):
+    results = some_results(season, n=2)
+    season.record(Inspections.of(results.plant[:1], np.array([0]), results.date[0]), "phone")
+    before = season.evening(BEGINS)[results.plant[1]]
+    season.record(Inspections.of(results.plant[1:], np.array([SKIPPED]), results.date[0]), "phone")
+    assert season.evening(BEGINS)[results.plant[1]] == before
+    assert season.history.states(0)[results.plant[1]] == -1
+    assert results.plant[1] not in season.plan(BEGINS).route.plant
+    assert season.history.last_inspected(0)[results.plant[1]] == -1
+
+
+def test_planning_twice_keeps_one_route(season):
+    one, other = season.plan(BEGINS), season.plan(BEGINS)
+    assert np.array_equal(one.route.plant, other.route.plant)
+    assert np.array_equal(season.kept_route(BEGINS), one.route.plant)
+    with season.store.reading() as db:
+        assert db.execute("SELECT count(*) FROM routes").fetchone() == (1,)
+
+
+def test_a_date_of_no_season_is_a_sentence(season):
+    with pytest.raises(SettingError, match="began on 2026-04-06"):
+        season.plan(date(2026, 4, 1))

@@ -1,0 +1,94 @@
+"""What was found is recorded once, and can be taken back."""
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.inspections import Inspections
+from tests.monitoring.seasons import (
+    BEGINS,
+    some_results,
+)
+
+
+def test_the_same_results_twice_change_nothing(season):
+    results = some_results(season, found=[1])
+    first = season.record(results, "monday.csv", "Ann")
+    before = season.path.read_bytes()
+    again = season.record(results, "monday.csv", "Ann")
+    assert (first.new, first.known) == (5, 0)
+    assert (again.new, again.known, again.batch) == (0, 5, None)
+    assert len(season.history.inspections) == 5
+    assert len(season.batches()) == 1
+    assert len(season.path.read_bytes()) == len(before)
+
+
+def test_what_was_not_inspected_stays_unknown(season):
+    results = some_results(season)
+    season.record(results, "half a day")
+    states = season.history.states(0)
+    assert (states[results.plant] == 0).all()
+    assert (np.delete(states, results.plant) == -1).all()
+
+
+def test_undoing_a_batch_gives_back_the_state_before_and_deletes_nothing(season):
+    season.record(some_results(season), "first")
+    before, plan_before = season.evening(BEGINS), season.plan(BEGINS, keep=False).route.plant
+    season.record(some_results(season, found=[0, 2]), "second", "Ann")
+    assert not np.array_equal(season.evening(BEGINS), before)
+    assert "5 findings from second" in season.undo()
+    assert np.array_equal(season.evening(BEGINS), before)
+    assert np.array_equal(season.plan(BEGINS, keep=False).route.plant, plan_before)
+    with season.store.reading() as db:
+        assert db.execute("SELECT count(*) FROM inspections").fetchone() == (10,)
+    assert [batch.undone for batch in season.batches()] == [True, False]
+
+
+def test_what_was_undone_can_be_recorded_again(season):
+    results = some_results(season, found=[3])
+    season.record(results, "x")
+    season.undo()
+    assert season.record(results, "x").new == 5
+
+
+def test_one_inspection_can_be_undone(season):
+    results = some_results(season, found=[0])
+    season.record(results, "x")
+    with season.store.reading() as db:
+        (fid,) = db.execute("SELECT fid FROM inspections WHERE result = 'found'").fetchone()
+    assert "found" in season.undo(inspection=fid)
+    assert len(season.history.inspections) == 4
+    assert season.status(BEGINS).found == 0
+
+
+def test_there_must_be_something_to_undo(season):
+    with pytest.raises(SettingError, match="nothing"):
+        season.undo()
+    with pytest.raises(SettingError, match="inspection 7"):
+        season.undo(inspection=7)
+
+
+@pytest.mark.parametrize(
+    ("plant", "result", "day", "columns", "says"),
+    [
+        (99_999, 0, "2026-04-06", {}, "from another plot"),
+        (-1, 0, "2026-04-06", {}, "from another plot"),
+        (3, 7, "2026-04-06", {}, "clean, found, skipped"),
+        (3, 0, "NaT", {}, "must have a date"),
+        (3, 0, "2026-04-05", {}, "began on 2026-04-06"),
+        (3, 0, "2036-04-05", {}, "lasts"),
+        (3, 0, "2026-04-06", {"count": np.array([-2.0])}, "0 or more"),
+        (3, 0, "2026-04-06", {"second": np.array([90_000.0])}, "within its day"),
+        (3, 0, "2026-04-06", {"count": np.array([1.0, 2.0])}, "must have 1 entries"),
+    ],
+)
+def test_results_that_do_not_fit_are_a_sentence_and_leave_no_trace(
+    season, plant, result, day, columns, says
+):
+    with pytest.raises((ObservationError, SettingError), match=says):
+        season.record(
+            Inspections.of(np.array([plant]), np.array([result]), np.datetime64(day), **columns),
+            "x",
+        )
+    assert season.batches() == ()
+    assert len(season.history.inspections) == 0

@@ -13,6 +13,7 @@ from fieldmon.infestation.belief import (
     MOST_CHANCE,
     bounded_chance,
     bounded_pair_chance,
+    greater,
     lesser,
 )
 from fieldmon.infestation.clustering import (
@@ -34,6 +35,8 @@ _0 = np.int64(0)
 _1 = np.uint64(1)
 # an inspection teaches about plants up to three away, as long as it changes a chance by this
 _RINGS, _LEAST_CHANGE = 3, 1e-6
+# the ring of the plants beside the one inspected
+_BESIDE = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,16 +114,22 @@ class Neighbourhood(NamedTuple):
 
     `plant` ``(n,)`` lists them; `ring` ``(n,)`` is how many steps each plant is away, from 1, and
     0 where nothing has reached it; `after` ``(n,)`` is what is believed of it then.
+
+    `alone` ``(n,)`` is each plant's chance by its own inspections of the day, without what others
+    told of it. With it a find is one way more in which the plants beside it may be infested;
+    empty, several finds are independent signs of the plant between them.
     """
 
     plant: NDArray[np.int64]
     ring: NDArray[np.int64]
     after: NDArray[np.float64]
+    alone: NDArray[np.float64]
 
     @classmethod
-    def of(cls, n: int) -> Neighbourhood:
-        """Return room for `n` plants."""
-        return cls(np.empty(n, np.int64), np.zeros(n, np.int64), np.empty(n))
+    def of(cls, n: int, morning: NDArray[np.float64] | None = None) -> Neighbourhood:
+        """Return room for `n` plants; with the chances of a `morning` a find is one way more."""
+        alone = np.empty(0) if morning is None else morning.copy()
+        return cls(np.empty(n, np.int64), np.zeros(n, np.int64), np.empty(n), alone)
 
 
 @part
@@ -144,6 +153,9 @@ def update_neighbourhood(
     p = chance[i]
     after = MOST_CHANCE if found else p * (1.0 - detection) / (1.0 - p * detection)
     reached.plant[0], reached.ring[i], reached.after[i] = i, 1, bounded_chance(after)
+    if not found and reached.alone.size > 0:
+        own = reached.alone[i]
+        reached.alone[i] = bounded_chance(own * (1.0 - detection) / (1.0 - own * detection))
     # unsigned, here and below: an index that may be negative is checked for it
     n, first = np.uint64(1), np.uint64(0)
     for ring in range(2, _RINGS + 2):
@@ -188,6 +200,11 @@ def _propagate(
         elif its_ring != ring:
             continue
         conditional = _conditional(p, q, pair_chance[e], after)
+        if ring == _BESIDE and after > p and reached.alone.size > 0:
+            by_itself = pair_chance[e] / q * reached.alone[k] / reached.alone[j]
+            # never less than was believed already, never more than the find's own news
+            ways = greater(1.0 - (1.0 - q) * (1.0 - lesser(by_itself, 1.0)), q)
+            conditional = lesser(conditional, ways)
         if conditional < q:
             own *= conditional / q
         else:

@@ -217,7 +217,7 @@ class TracedPairs:
         day = _Day(shares, believed[0].copy(), *none, *nothing)
         traces = self.traces.own()
         each = self.reach.kernels * self.beyond[:, None, None]
-        room = _Room(each, Neighbourhood.of(n), Raised.of(n))
+        room = _Room(each, Neighbourhood.of(n, believed[0]), Raised.of(n))
         rule = learning.treated, jumps
         # of what a clean inspection leaves, so much was hidden, and the rest overlooked
         hidden = (told - shown) / np.maximum(told * (1.0 - shown), LEAST_CHANCE)

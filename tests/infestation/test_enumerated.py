@@ -12,7 +12,11 @@ from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.origins import JUMPED
-from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pairs import (
+    Neighbourhood,
+    PairApproximation,
+    update_neighbourhood,
+)
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.layout import rectangle
@@ -218,3 +222,19 @@ def test_jumps_on_top_of_neighbours_are_what_a_pencil_says():
     assert chance_within(both[0], 2)[0] == pytest.approx(np.exp(-0.2) * 0.7)
     morning = Enumerated.of([1.0, 0.0]).overnight(both, np.array([0.0, 0.1]))
     assert morning.chance == pytest.approx([1.0, 1.0 - np.exp(-0.2) * 0.7 * 0.9])
+
+
+@pytest.mark.parametrize("rate", [0.2, 0.4])
+@pytest.mark.parametrize("looks", [(3, 5, -4), (3, -4, 5), (-4, 3, 5)])
+def test_finds_say_of_the_plant_between_them_that_it_had_so_many_ways_and_no_more(looks, rate):
+    """Each find infested it or not: no two finds are two signs of one thing that made them."""
+    grid, spread = rectangle(1, 9), Spread(rate, "each")
+    first = np.where(np.arange(9) == 4, 0.0, 0.05)
+    truth = Enumerated.of(first).overnight(by_adjacency(grid, spread))
+    believed = truth.chance, truth.pair_chance(grid)
+    near = Neighbourhood.of(9, truth.chance)
+    for look in looks:
+        result = abs(look), look > 0
+        truth = truth.inspected(*result, 0.84)
+        update_neighbourhood.py_func(believed, grid.linked, result, (0.84, False), near)
+        assert believed[0][4] == pytest.approx(truth.chance[4], abs=0.035)

@@ -1,10 +1,12 @@
 """A belief that learns how insects spread: in worlds that were made without it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.origins import ANYWHERE, BY_EDGE, OVERLOOKED
+from fieldmon.infestation.origins import ANYWHERE, AT_START, BY_EDGE, JUMPED, OVERLOOKED
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
@@ -94,3 +96,25 @@ def test_a_plot_of_one_plant_is_believed_in_too():
     belief = TracedPairs.of(rectangle(1, 1), np.array([0.1]))
     after = belief.learn(np.array([0], np.int32), np.array([True]), LEARNING).overnight(QUIET)
     assert 0.0 < after.chance[0] < 0.1
+
+
+def test_a_day_moves_the_chance_of_jumping_as_bayes_rule_does_and_counts_it_once():
+    """Two ways to stand are as good as out of the question, so the rule fits on a line."""
+    row, looked_at = rectangle(1, 40), np.array([5, 4, 6], np.int32)
+    told = TracedPairs.of(row, np.full(40, 0.02))
+    shares = np.zeros_like(told.shares)
+    shares[:, [AT_START, JUMPED]] = 0.6, 0.4
+    told = replace(told, shares=shares, evidence=np.array([0.0, -60.0, -60.0, 0.0]))
+    after = told.learn(looked_at, np.array([True, False, False]), LEARNING)
+    # two plants beside a find are clean; side by side half of those that others did not infest
+    # would be, apart 15 % (the pair knows 98 % of that), and each counts half
+    clean = [1.0 - 0.84 * (0.02 + 0.98**2 * each) for each in (0.5, 0.15)]
+    # and nothing is settled for good: the other two keep exp(-6) of the likeliest
+    others = 0.24 * np.exp(-6.0) * clean[1]
+    jumps = 0.12 * clean[1] / (0.64 * clean[0] + 0.12 * clean[1] + others)
+    assert told.jumps == pytest.approx(0.12 / 0.76)
+    assert after.jumps == pytest.approx(jumps)
+    # no find is traced so far: of its chance 0.6 stays, and 0.4 goes with the chance of jumping
+    scale = after.counts.scale / told.counts.scale
+    wanted = 0.02 * (0.6 * scale[AT_START] + 0.4 * scale[JUMPED] * jumps / told.jumps)
+    assert after.chance[39] == pytest.approx(wanted, rel=2e-3)

@@ -99,7 +99,7 @@ class Adaptive(Sampler):
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
             np.zeros(n),
-            Neighbourhood.of(n),
+            Neighbourhood.of(n, None if scene.traces is None else scene.chance),
             np.full(n, NOWHERE),
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),

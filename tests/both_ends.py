@@ -6,6 +6,9 @@ from xdist.scheduler import LoadFileScheduling
 PLAIN = ("tests/app/words/", "tests/docs/", "tests/io/parse/", "tests/io/sandbox/",
          "tests/test_floors.py", "tests/test_rooms.py", "tests/test_words.py")  # fmt: skip
 
+#: whose files share what takes long to make: one worker runs them all
+TOGETHER = ("tests/studies/thesis/chapter4/",)
+
 
 def in_order(items):
     """Sort tests, file by file: first those with a browser, which wait; last those of `PLAIN`."""
@@ -21,6 +24,10 @@ class BothEnds(LoadFileScheduling):
 
     A test that crashes its worker fails once, and the others of its file are run by another.
     """
+
+    def _split_scope(self, nodeid):
+        room = next((one for one in TOGETHER if nodeid.startswith(one)), None)
+        return room or super()._split_scope(nodeid)
 
     def _assign_work_unit(self, node):
         if node.gateway.id != "gw0":

@@ -5,6 +5,8 @@ import os
 import shutil
 import sys
 import tempfile
+from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 
 import psutil
@@ -71,6 +73,20 @@ def pytest_xdist_make_scheduler(config, log):
     return BothEnds(config, log) if config.getoption("dist") == "loadfile" else None
 
 
+def pytest_sessionstart(session):
+    """Let each worker begin with other files: others read the bytecode that it makes of them."""
+    config = session.config
+    told = getattr(config, "workerinput", None)
+    if told is None or config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+        return
+    files = sorted(Path(__file__).parent.rglob("test_*.py"))
+    begins = int(told["workerid"][2:]) * len(files) // told["workercount"]
+    for file in files[begins:] + files[:begins]:
+        name = file.relative_to(config.rootpath).with_suffix("").parts
+        with suppress(Exception, pytest.skip.Exception):  # it is said when it is collected
+            import_module(".".join(name))
+
+
 def pytest_collection_modifyitems(items):
     in_order(items)
     if EXAMPLES:
@@ -88,10 +104,10 @@ def pytest_collection_finish():
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 # software drawing: Mesa's, which keeps compiled shaders, or else the browser's own, some seconds
-# slower for every map; and no name in the world but this machine's
+# slower for every map, and for maps alone; and no name in the world but this machine's
 FLAGS = [
     *["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
-    *["--enable-unsafe-swiftshader", "--disable-smooth-scrolling"],
+    *["--enable-unsafe-swiftshader", "--disable-gpu-rasterization", "--disable-smooth-scrolling"],
     *["--disable-background-networking", "--disable-component-update", "--no-first-run"],
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ]

@@ -29,6 +29,7 @@ import sys
 import tempfile
 import time
 import traceback
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -299,9 +300,19 @@ def mutant_function(mutant):
     return name
 
 
+def _begin_session():
+    """Begin a session of its own, that gives way to other programs as this one does."""
+    told = Path("/proc/self/autogroup")  # where Linux shares time out by sessions
+    gives_way = told.read_text().split()[-1] if told.is_file() else ""
+    os.setsid()
+    if gives_way:
+        with suppress(OSError):  # nobody may ask for more than before
+            told.write_text(gives_way)
+
+
 def _tests_in(log, tests, copied):
     """Run tests in this process, a child that ends with their exit code."""
-    os.setsid()
+    _begin_session()
     os.chdir(copied)
     sys.path.insert(0, str(copied))
     sys.dont_write_bytecode = True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass, field
 from datetime import timedelta
 from functools import cached_property
@@ -251,17 +252,22 @@ class History:
 
     def estimate(self, morning: Belief, day: int) -> PlotEstimate:
         """Return how many plants are infested and not found yet, after a day's work."""
-        last = self._last_estimate.get(day)
-        if last is not None and last[0] is morning:  # hundreds of fields are drawn for it
-            return last[1]
-        estimate = self._estimate(morning, day)
-        self.remember(morning, day, estimate)
+        with self._estimating:  # hundreds of fields are drawn for it: once for all who ask
+            last = self._last_estimate.get(day)
+            if last is not None and last[0] is morning:
+                return last[1]
+            estimate = self._estimate(morning, day)
+            self.remember(morning, day, estimate)
         return estimate
 
     def remember(self, morning: Belief, day: int, estimate: PlotEstimate) -> None:
         """Take this for what is estimated of a day: it was worked out from the same before."""
         self._last_estimate.clear()
         self._last_estimate[day] = morning, estimate
+
+    @cached_property
+    def _estimating(self) -> threading.Lock:
+        return threading.Lock()
 
     @cached_property
     def _last_estimate(self) -> dict[int, tuple[Belief, PlotEstimate]]:

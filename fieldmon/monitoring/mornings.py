@@ -110,7 +110,8 @@ def take(db: sqlite3.Connection, mornings: Mornings) -> None:
     """Add the mornings that the file keeps, and the estimate of its last day."""
     if mornings.history.living is not None:
         return
-    for day, *kept in db.execute("SELECT day, causes, content, chances FROM mornings"):
+    late = "SELECT day, causes, content, chances FROM mornings WHERE day > 0"
+    for day, *kept in db.execute(late):
         mornings.kept[day] = _KeptMorning(*kept)
     rows = db.execute(
         "SELECT day, expected_left, low, high, chance_clean, causes FROM days "
@@ -140,7 +141,7 @@ def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
         eighths = range(newest - newest % _EVERY, 0, -_EVERY)[:_IN_FILE]
         wanted = {day for day in (*eighths, newest) if day > 0}
     causes = {day: _causes(mornings.history, day) for day in wanted}
-    for day, of_kept in db.execute("SELECT day, causes FROM mornings").fetchall():
+    for day, of_kept in db.execute("SELECT day, causes FROM mornings WHERE day > 0").fetchall():
         if causes.get(day) == of_kept:
             wanted.discard(day)
         else:
@@ -149,6 +150,17 @@ def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
         chances = _packed(mornings.known[day])
         if chances is not None:
             insert(db, schema.MORNINGS, [(day, causes[day], digest(chances), chances)])
+
+
+def is_behind(db: sqlite3.Connection, mornings: Mornings, newest: int) -> bool:
+    """Tell whether the newest morning was worked out that the file does not keep, or not so.
+
+    As after a new version of fieldmon: who only reads works it out again each time.
+    """
+    if mornings.history.living is not None or newest not in mornings.known or newest == 0:
+        return False
+    row = db.execute("SELECT causes FROM mornings WHERE day = ?", (newest,)).fetchone()
+    return row is None or row[0] != _causes(mornings.history, newest)
 
 
 def _causes(history: History, day: int) -> str:
@@ -181,7 +193,8 @@ def _packed(morning: Belief) -> bytes | None:
         return None
     file = io.BytesIO()
     np.savez(file, allow_pickle=False, **arrays)
-    return zlib.compress(file.getvalue(), 1)
+    # pressed it would be two thirds of that, and each command would wait ten times as long
+    return zlib.compress(file.getvalue(), 0)
 
 
 def _arrays(morning: Belief) -> Arrays | None:

@@ -17,6 +17,7 @@ from fieldmon.infestation.observations import Observations, usable
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     derived_layers,
+    first_morning,
     inspection_lots,
     outside_changes,
     qgis_project,
@@ -29,19 +30,20 @@ from fieldmon.monitoring.history import History, Shift
 from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
 from fieldmon.monitoring.mornings import take as take_mornings
-from fieldmon.monitoring.settings import MonitoringSettings, from_json, seconds
+from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.transactions import Store, get_meta
 from fieldmon.plot.grid import RowLabel, row_label
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from datetime import date, time
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.monitoring.history import Treatment
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
@@ -85,6 +87,25 @@ class SeasonContents:
         """Return what is believed on the morning of a day."""
         return self.mornings.of(day)
 
+    def still_counts(
+        self, revision: FileRevision, settings: MonitoringSettings, treated: Sequence[Treatment]
+    ) -> bool:
+        """Tell whether all that the mornings follow from is still what it was."""
+        return (
+            self.revision.inspections == revision.inspections
+            and as_json(self.settings) == as_json(settings)
+            and len(self.history.treatments) == len(treated)
+            and all(map(_same_treatment, self.history.treatments, treated))
+        )
+
+
+class _Prior(NamedTuple):
+    """The chance map of the first morning ``(n,)``, and from which choices and causes it is."""
+
+    key: tuple[object, object]
+    causes: str
+    chance: Floats
+
 
 class OpenSeason:
     """A season's file, read anew whenever it changed; see `fieldmon.monitoring.Season`."""
@@ -94,7 +115,7 @@ class OpenSeason:
         self._lock = threading.RLock()
         self._last: SeasonContents | None = None
         self._written: SeasonContents | None = None
-        self._prior: tuple[object, Floats] | None = None
+        self._prior: _Prior | None = None
         self._aisles: dict[tuple[float, float], Aisles] = {}
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
@@ -125,8 +146,7 @@ class OpenSeason:
     def last_date(self) -> date:
         """Return the last day on which anything was planned or recorded; at first the first."""
         with self.store.reading() as db:
-            (day,) = db.execute("SELECT max(day) FROM days").fetchone()
-            return settings_of(db).date(int(day))
+            return settings_of(db).date(newest_day(db))
 
     @cached_property
     def label(self) -> RowLabel:
@@ -139,16 +159,20 @@ class OpenSeason:
         Of a team it is that of the one named, or of the first.
         """
         with self._lock:
-            contents = self._now()
-            settings, day = contents.settings, contents.settings.day(on)
-            now_s = None if now is None else seconds(now)
-            morning = contents.morning(day)
-            if not settings.team:
-                shift = self._shift(settings, settings.robot)
-                return contents.history.scene(shift, day, morning, now_s)
-            member = settings.member(who) if who else settings.team[0]
-            shift = self._shift(settings, member.robot, member)
-            return contents.history.scene(shift, day, morning, now_s, member.name)
+            return self._scene(self._now(), on, now, who)
+
+    def _scene(
+        self, contents: SeasonContents, on: date, now: time | None = None, who: str = ""
+    ) -> Scene:
+        settings, day = contents.settings, contents.settings.day(on)
+        now_s = None if now is None else seconds(now)
+        morning = contents.morning(day)
+        if not settings.team:
+            shift = self._shift(settings, settings.robot)
+            return contents.history.scene(shift, day, morning, now_s)
+        member = settings.member(who) if who else settings.team[0]
+        shift = self._shift(settings, member.robot, member)
+        return contents.history.scene(shift, day, morning, now_s, member.name)
 
     def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:
         """Return the ways on the plot with another gate; None: its own."""
@@ -190,8 +214,11 @@ class OpenSeason:
         outside_changes.refuse(db)
         revision = FileRevision.of(db)
         if self._last is None or self._last.revision != revision:
-            settings = settings_of(db)
-            prior = self._first_morning(settings)
+            settings, treated = settings_of(db), treatments.load(db, self._inside)
+            if before is not None and before.still_counts(revision, settings, treated):
+                self._last = replace(before, revision=revision)
+                return self._last
+            prior = self._first_morning(db, settings)
             if before is not None and before.revision.inspections == revision.inspections:
                 inspections = before.history.inspections
             else:
@@ -199,7 +226,7 @@ class OpenSeason:
             history = replace(
                 nothing_yet(self.plot, settings, prior, self.observations),
                 inspections=inspections,
-                treatments=treatments.load(db, self._inside),
+                treatments=treated,
             )
             if before is None:
                 mornings = Mornings(history)
@@ -209,14 +236,18 @@ class OpenSeason:
             self._last = SeasonContents(revision, settings, history, mornings)
         return self._last
 
-    def _first_morning(self, settings: MonitoringSettings) -> Floats:
+    def _first_morning(self, db: sqlite3.Connection, settings: MonitoringSettings) -> Floats:
         key = (settings.begins, settings.prior)
-        if self._prior is None or self._prior[0] != key:
-            begins = np.datetime64(settings.begins, "D")
-            plot, records = self.plot, self.observations
-            chance = prior_chance(plot.grid, plot.field, records, begins, settings.prior, self.risk)
-            self._prior = (key, chance)
-        return self._prior[1]
+        if self._prior is None or self._prior.key != key:
+            causes = first_morning.causes(db, *key)
+            chance = first_morning.take(db, causes)
+            if chance is None:
+                begins, plot = np.datetime64(settings.begins, "D"), self.plot
+                chance = prior_chance(
+                    plot.grid, plot.field, self.observations, begins, settings.prior, self.risk
+                )
+            self._prior = _Prior(key, causes, chance)
+        return self._prior.chance
 
     def _inside(self, area: shapely.Geometry) -> NDArray[np.bool_]:
         ground = self.plot.grid.frame.geometry_m(area)
@@ -235,12 +266,17 @@ class OpenSeason:
         self._last = None
         now = self._read(db, before, since)
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
-        keep_mornings(db, now.mornings, newest)
+        self._keep_mornings(db, now.mornings, newest)
         inspection_lots.keep(db)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
         kept = now.revision._replace(changes=now.revision.changes + 1)
         self._written = replace(now, revision=kept)
+
+    def _keep_mornings(self, db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
+        keep_mornings(db, mornings, newest)
+        if self._prior is not None:
+            first_morning.keep(db, self._prior.causes, self._prior.chance)
 
 
 def nothing_yet(
@@ -264,3 +300,14 @@ def nothing_yet(
 def settings_of(db: sqlite3.Connection) -> MonitoringSettings:
     """Return what is chosen for a season, as a transaction sees it."""
     return from_json(settings_log.now(db))
+
+
+def newest_day(db: sqlite3.Connection) -> int:
+    """Return the last day of which the file keeps figures."""
+    (day,) = db.execute("SELECT max(day) FROM days").fetchone()
+    return int(day)
+
+
+def _same_treatment(one: Treatment, other: Treatment) -> bool:
+    same_time = (one.day, one.efficacy) == (other.day, other.efficacy)
+    return same_time and np.array_equal(one.plants, other.plants)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.open_season import SeasonContents
     from fieldmon.pests.development import Development
 
     Floats = NDArray[np.float64]
@@ -81,10 +82,9 @@ class SeasonEstimates(OpenSeason):
         asked
             The threshold, the sprayer and the costs; None: the defaults.
         """
-        scene = self.scene(on)
         with self._lock:
             contents = self._now()
-            day = contents.settings.day(on)
+            scene, day = self._scene(contents, on), contents.settings.day(on)
             evening = contents.history.evening(contents.morning(day), day)
         return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
 
@@ -94,7 +94,7 @@ class SeasonEstimates(OpenSeason):
             contents = self._now()
             day = contents.settings.day(on)
             now = Status.of(contents.history, contents.morning(day), day)
-        return replace(now, development=self.development(on))
+        return replace(now, development=_development(contents, on))
 
     def development(self, on: date) -> Development | None:
         """Return how far the pest has come on a day, counted from its first find.
@@ -102,18 +102,15 @@ class SeasonEstimates(OpenSeason):
         Until there is one, from the season's first day. None: no pest or weather was given, or
         its development is not known.
         """
-        now = self._now()
-        pest, weather = now.settings.pest, now.settings.weather
-        if pest is None or weather is None:
-            return None
-        return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)
+        return _development(self._now(), on)
 
     def forecast(self, on: date) -> Forecast:
         """Return how many plants are infested on the mornings after a day, nobody inspecting."""
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            return contents.history.forecast(contents.morning(day), day)
+            morning = contents.morning(day)
+        return contents.history.forecast(morning, day)  # others may plan meanwhile
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
@@ -142,3 +139,10 @@ class SeasonEstimates(OpenSeason):
         """Return the figures of the days on which anything was planned or recorded, in order."""
         with self.store.reading() as db:
             return day_figures.kept(db)
+
+
+def _development(now: SeasonContents, on: date) -> Development | None:
+    pest, weather = now.settings.pest, now.settings.weather
+    if pest is None or weather is None:
+        return None
+    return development(pest, weather, now.history.first_find(on) or now.settings.begins, on)

@@ -195,12 +195,11 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     def advise(self, on: date, said: str, who: str = "") -> None:
         """Write into the log what was advised for a day, unless that was written last of it."""
         with self._lock, self.store.reading() as db:
-            of_day = [one for one in season_log.entries(db) if one.kind == "advised"]
-        told = [one.what["said"] for one in of_day if one.what["date"] == str(on)]
-        if told[-1:] == [said]:
-            return
+            if _advised(db, on)[-1:] == [said]:
+                return
         with self._lock, self.store.writing() as db:
-            season_log.append(db, "advised", who, date=str(on), said=said)
+            if _advised(db, on)[-1:] != [said]:  # nor has anybody else written it meanwhile
+                season_log.append(db, "advised", who, date=str(on), said=said)
 
     def log(self) -> tuple[LogEntry, ...]:
         """Return the log, the first entry first.
@@ -261,3 +260,9 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         """Write all layers that follow from the causes anew."""
         with self._lock, self.store.writing() as db:
             self._refresh(db)
+
+
+def _advised(db: sqlite3.Connection, on: date) -> list[str]:
+    """Return what was advised for a day, in order."""
+    advised = (one.what for one in season_log.entries(db) if one.kind == "advised")
+    return [str(one["said"]) for one in advised if one["date"] == str(on)]

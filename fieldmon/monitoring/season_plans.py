@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.errors import FileProblem
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.monitoring import (
     routes,
     season_log,
 )
-from fieldmon.monitoring.open_season import OpenSeason
+from fieldmon.monitoring.mornings import is_behind
+from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.monitoring.settings import MonitoringSettings, seconds
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
@@ -88,10 +91,10 @@ class SeasonPlans(OpenSeason):
 
         Of a team it is that of the one named, or of the first.
         """
-        settings = self.settings
-        if settings.team:
-            who = settings.member(who).name if who else settings.team[0].name
-        with self.store.reading() as db:
+        with self._lock, self.store.reading() as db:  # both of one moment
+            settings = self._read(db).settings
+            if settings.team:
+                who = settings.member(who).name if who else settings.team[0].name
             return routes.plants(db, settings.day(on), who)
 
     def _keep(self, settings: MonitoringSettings, noted: tuple[DayPlan, ...]) -> None:
@@ -102,8 +105,10 @@ class SeasonPlans(OpenSeason):
             if len(today.route)
         ]
         with self.store.reading() as db:
-            if all(routes.is_kept(db, today, who) for today, who in named):
-                return
+            is_kept = all(routes.is_kept(db, today, who) for today, who in named)
+        if is_kept:
+            self._keep_what_was_worked_out()
+            return
         with self._writing() as db:
             before = self._read(db)
             kept = [
@@ -115,6 +120,16 @@ class SeasonPlans(OpenSeason):
                 season_log.append(db, "planned", who, **routes.in_words(settings, today))
             if kept:
                 self._refresh(db, named[0][0].scene.day, before)
+
+    def _keep_what_was_worked_out(self) -> None:
+        """Keep mornings that another version of fieldmon left to us; wait for nobody."""
+        with self._lock, self.store.reading() as db:
+            now, newest = self._read(db), newest_day(db)
+            if not is_behind(db, now.mornings, newest):
+                return
+        with suppress(FileProblem), self.store.writing(patience_s=0.0) as db:
+            if FileRevision.of(db) == now.revision:
+                self._keep_mornings(db, now.mornings, newest)
 
     def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
         begins = routes.begins(settings, today, who)

@@ -220,12 +220,12 @@ class SeasonRecords(OpenSeason):
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
         with self._lock, self.store.writing() as db:
-            contradict = contradictions(
-                other.history.inspections, self._read(db).history.inspections
-            )
             before, was = inspection_table.n_counting(db), season_log.states(db)
+            held = self._read(db).history.inspections
             with other.store.reading() as theirs:
                 told = season_log.taken_in(db, theirs)
+                # nobody writes there from here on
+                contradict = contradictions(other.history.inspections, held)
                 chosen = merging.merge(db, theirs)
             self._refresh(db)
             new = inspection_table.n_counting(db) - before

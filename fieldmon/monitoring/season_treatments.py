@@ -29,6 +29,7 @@ from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
+    import sqlite3
     from collections.abc import Iterable
     from datetime import date
 
@@ -150,8 +151,11 @@ class SeasonTreatments(OpenSeason):
     def treatments(self) -> tuple[KeptTreatment, ...]:
         """Return the treatments that count, in the order in which they ended."""
         with self._lock, self.store.reading() as db:
-            outside_changes.refuse(db)
-            return treatments.kept(db, self._inside, local_clock(self.plot.field))
+            return self._treatments(db)
+
+    def _treatments(self, db: sqlite3.Connection) -> tuple[KeptTreatment, ...]:
+        outside_changes.refuse(db)
+        return treatments.kept(db, self._inside, local_clock(self.plot.field))
 
     def keep_labels(self, labels: Iterable[ProductLabel], source: str = "", who: str = "") -> int:
         """Let these be what labels allow, instead of those before; return how many there are."""
@@ -172,22 +176,27 @@ class SeasonTreatments(OpenSeason):
 
     def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow."""
-        settings = self.settings
-        rules = cautions.RulesToKeep(self.labels(), settings.harvest, settings.starts)
+        with self._lock, self.store.reading() as db:  # all of one moment
+            settings, labels = self._read(db).settings, label_table.read(db)
+            done = self._treatments(db)
+        rules = cautions.RulesToKeep(labels, settings.harvest, settings.starts)
         if units is not None:
             rules = replace(rules, units=units)
-        return cautions.cautions(self.treatments(), rules, on)
+        return cautions.cautions(done, rules, on)
 
     def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
         """Return the first day of harvest that treatments up to a day allow, and which one waits.
 
         None: no treatment is known to need a wait.
         """
-        done = [one for one in self.treatments() if one.on <= on]
-        return cautions.harvest_from(done, self.labels())
+        with self._lock, self.store.reading() as db:  # both of one moment
+            done = [one for one in self._treatments(db) if one.on <= on]
+            labels = label_table.read(db)
+        return cautions.harvest_from(done, labels)
 
     def effects(self, on: date, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
         """Return what inspections up to the evening of a day tell of each treatment before it."""
-        now = self._now()
+        with self._lock, self.store.reading() as db:  # both of one moment
+            now, done = self._read(db), self._treatments(db)
         day = now.settings.day(on)
-        return treatment_effect.effects(self.treatments(), now.history, day, units)
+        return treatment_effect.effects(done, now.history, day, units)

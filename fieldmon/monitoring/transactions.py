@@ -143,9 +143,12 @@ class Store:
             yield db
 
     @contextmanager
-    def writing(self) -> Iterator[sqlite3.Connection]:
-        """Give the file for one transaction, alone: all of it is kept, or nothing."""
-        with _sentences(self.path), closing(_connect(self.path)) as db:
+    def writing(self, patience_s: float | None = None) -> Iterator[sqlite3.Connection]:
+        """Give the file for one transaction, alone: all of it is kept, or nothing.
+
+        `patience_s`: how long to wait for others; None: as long as for any command.
+        """
+        with _sentences(self.path), closing(_connect(self.path, patience_s)) as db:
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")
             _into_one_file(db)
@@ -283,10 +286,11 @@ def _into_one_file(db: sqlite3.Connection) -> None:
     That program may still have it open: then it stays so until it is closed.
     """
     if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
+        (patience_ms,) = db.execute("PRAGMA busy_timeout").fetchone()
         db.execute("PRAGMA busy_timeout = 0")
         with suppress(sqlite3.OperationalError):
             db.execute("PRAGMA journal_mode = DELETE")
-        db.execute(f"PRAGMA busy_timeout = {1000 * _PATIENCE_S:.0f}")
+        db.execute(f"PRAGMA busy_timeout = {patience_ms}")
 
 
 def _version(db: sqlite3.Connection) -> int | None:

@@ -138,19 +138,23 @@ def wait_for(url, server):
 
 
 @pytest.fixture(scope="session")
-def visitors(browser):
-    """Return each kind of visitor's browser window: its tabs share what was loaded, as people's."""
+def new_tab(browser):
+    """Return what opens a tab of some size: one kind of visitor's share what was loaded."""
     windows = {}
 
-    def of(size, agent):
-        if (size, agent) not in windows:
-            windows[size, agent] = browser.new_context(
-                viewport={"width": size[0], "height": size[1]}, user_agent=agent,
-                accept_downloads=True,
-            )  # fmt: skip
+    def of(size=(1200, 800), agent=None):
+        if agent not in windows:
+            # maps are drawn by the processor, as all that moves
+            windows[agent] = browser.new_context(
+                user_agent=agent, accept_downloads=True, reduced_motion="reduce"
+            )
             # another program may have the machine's processors
-            windows[size, agent].set_default_timeout(180_000)
-        return windows[size, agent]
+            windows[agent].set_default_timeout(180_000)
+        page = windows[agent].new_page()
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        page.requests = []
+        page.on("request", lambda sent: page.requests.append(sent.url))
+        return page
 
     yield of
     for window in windows.values():
@@ -158,11 +162,9 @@ def visitors(browser):
 
 
 @pytest.fixture
-def page(visitors, request):
+def page(new_tab, request):
     """Return a new tab of the asked size that remembers every request and keeps a picture."""
-    page = visitors(*getattr(request, "param", ((1400, 1000), None))).new_page()
-    page.requests = []
-    page.on("request", lambda sent: page.requests.append(sent.url))
+    page = new_tab(*getattr(request, "param", ()))
     yield page
     SHOTS.mkdir(exist_ok=True)
     dressed(page)

@@ -56,7 +56,7 @@ def look(page):
         page.devtools = page.context.new_cdp_session(page)
     # a third of what Playwright's own picture takes, which is packed as tightly as it can be
     shot = page.devtools.send("Page.captureScreenshot", {"optimizeForSpeed": True})["data"]
-    pixel = np.array(Image.open(io.BytesIO(base64.b64decode(shot))).convert("RGB"), int)
+    pixel = np.array(Image.open(io.BytesIO(base64.b64decode(shot))).convert("RGB"), np.int16)
     box = page.locator(MAP).bounding_box()
     x, y, width, height = (round(box[side]) for side in ("x", "y", "width", "height"))
     return pixel[max(y, 0) : y + height, max(x, 0) : x + width]
@@ -229,8 +229,10 @@ def scale_px_of_m(page):
 
 
 def open_room(page, name):
-    """Turn to a room by its link."""
+    """Turn to a room by its link, and wait until it is there."""
     page.get_by_role("link", name=name).first.click()
+    here = page.locator("a[aria-current=page]").filter(has_text=name)
+    here.first.wait_for(state="attached", timeout=_REST_MS)
     rest(page)
 
 

@@ -3,8 +3,12 @@
 Run it from the repository's root: ``python tests/app/ten_sessions.py [people] [clicks]``. It starts
 the app by its command on the sample estate; each person turns pages in an order of their own,
 over the protocol that browsers speak, all at the same time.
+
+A long day made short: ``python tests/app/ten_sessions.py 10 --minutes 20`` turns pages without a
+pause for so long, and everybody leaves and comes back each fifty pages.
 """
 
+import argparse
 import asyncio
 import os
 import random
@@ -25,6 +29,8 @@ from streamlit.util import calc_hash
 
 # people look at a page before they click again; mean seconds
 PAUSE_S = 2.0
+# of a long day made short: how often one turns a page who also works, and pages of one visit
+PAGE_EACH_S, PAGES_A_VISIT = 30.0, 50
 PAGES = ["", "plots", "season", "ahead", "plot"]
 
 
@@ -44,13 +50,63 @@ async def click(line, page):
 async def person(port, number, clicks, pages=None):
     rng = random.Random(number)
     address = f"ws://127.0.0.1:{port}/_stcore/stream"
-    async with websockets.connect(address, subprotocols=["streamlit"], max_size=None) as line:
+    async with websockets.connect(
+        address, subprotocols=["streamlit"], max_size=None, ping_interval=None
+    ) as line:
         first = await click(line, "")
         taken = []
         for page in pages or rng.choices(PAGES, k=clicks):
             await asyncio.sleep(rng.uniform(0, 2 * PAUSE_S))
             taken.append(await click(line, page))
         return first, taken
+
+
+async def hurried(port, number, until):
+    """Turn pages without a pause until a moment, leaving and coming back; return how many."""
+    turned, visit = 0, 0
+    while time.monotonic() < until:
+        address = f"ws://127.0.0.1:{port}/_stcore/stream"
+        rng, visit = random.Random(f"{number} {visit}"), visit + 1
+        async with websockets.connect(
+            address, subprotocols=["streamlit"], max_size=None, ping_interval=None
+        ) as line:
+            for page in ["", *rng.choices(PAGES, k=PAGES_A_VISIT - 1)]:
+                await click(line, page)
+                turned += 1
+                if time.monotonic() > until:
+                    break
+    return turned
+
+
+async def compressed(port, server, people, minutes):
+    """Say what the server holds in the quarters of a day without pauses, and after it."""
+    await person(port, 0, 0, PAGES)
+    watch = asyncio.create_task(watched(server.pid, 5.0))
+    until = time.monotonic() + 60.0 * minutes
+    turned = sum(await asyncio.gather(*(hurried(port, k, until) for k in range(people))))
+    watch.cancel()
+    quarters = np.array_split(await watch, 4)
+    hours = turned / people * PAGE_EACH_S / 3600
+    lines = [
+        f"{turned} pages turned by {people} in {minutes:.0f} minutes",
+        f"as many as in {hours:.1f} h with a page each {PAGE_EACH_S:.0f} s",
+        *quarters_said(quarters),
+    ]
+    await asyncio.sleep(10.0)
+    after, files, threads = held_by(server.pid)
+    lines.append(f"after all have left: {after:.0f} MB, {files} open files, {threads} threads")
+    sys.stdout.write("\n".join(lines) + "\n")
+
+
+def quarters_said(quarters):
+    """Return a line for each quarter of a run: means, and what stood at its end."""
+    return [
+        f"quarter {k} of the run: {mb:.0f} MB, {files:.0f} open files, {threads:.0f} threads; "
+        f"at its end {notes[-1][0]:.0f} MB, {notes[-1][1]:.0f}, {notes[-1][2]:.0f}"
+        for k, notes in enumerate(quarters, 1)
+        if len(notes)
+        for mb, files, threads in [notes.mean(axis=0)]
+    ]
 
 
 def held_by(pid):
@@ -88,7 +144,7 @@ async def measure(port, server, people, clicks):
     watch = asyncio.create_task(watched(server.pid, 5.0))
     every = await asyncio.gather(*(person(port, k, clicks) for k in range(people)))
     watch.cancel()
-    quarters = [quarter.mean(axis=0) for quarter in np.array_split(await watch, 4) if len(quarter)]
+    quarters = np.array_split(await watch, 4)
     await asyncio.sleep(10.0)  # all have left
     after, files, threads = held_by(server.pid)
     seconds = np.concatenate([one for _, one in every])
@@ -102,10 +158,7 @@ async def measure(port, server, people, clicks):
             f"server:     {before:.0f} MB with one, {after:.0f} MB after {people}: "
             f"{(after - before) / people:.1f} MB a person"
         ),
-        *(
-            f"quarter {k} of the run: {mb:.0f} MB, {files:.0f} open files, {threads:.0f} threads"
-            for k, (mb, files, threads) in enumerate(quarters, 1)
-        ),
+        *quarters_said(quarters),
         f"after all have left: {after:.0f} MB, {files} open files, {threads} threads",
         f"load of this machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores",
     ]
@@ -113,14 +166,18 @@ async def measure(port, server, people, clicks):
 
 
 def main():
-    people, clicks = (int(a) for a in (sys.argv[1:] + ["10", "12"][len(sys.argv) - 1 :]))
+    asked = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    asked.add_argument("people", type=int, nargs="?", default=10)
+    asked.add_argument("clicks", type=int, nargs="?", default=12)
+    asked.add_argument("--minutes", type=float, help="a long day made short: no pauses")
+    told = asked.parse_args()
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port",
                    str(port), "--seasons", folder]  # fmt: skip
-        server = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
+        server = subprocess.Popen(command, stdout=subprocess.DEVNULL, process_group=0)
         try:
             for _ in range(600):
                 try:
@@ -128,7 +185,10 @@ def main():
                     break
                 except OSError:
                     time.sleep(0.1)
-            asyncio.run(measure(port, server, people, clicks))
+            if told.minutes is None:
+                asyncio.run(measure(port, server, told.people, told.clicks))
+            else:
+                asyncio.run(compressed(port, server, told.people, told.minutes))
         finally:
             os.killpg(server.pid, 15)
             server.wait(20)

@@ -54,9 +54,9 @@ def kept(served_seasons):
 
 
 @pytest.fixture(scope="module")
-def tab(visitors, address, kept):
+def tab(new_tab, address, kept):
     """Return a tab of the app on the season, which stays open from test to test."""
-    page = visitors((1400, 1000), None).new_page()
+    page = new_tab((1400, 1000))
     page.goto(f"{address}/?{kept}")
     rest(page)
     yield page
@@ -104,8 +104,8 @@ def test_axe_finds_nothing_serious_in_any_room_nor_in_the_dark(tab):
     assert found == []
 
 
-def test_axe_finds_nothing_serious_in_a_study(visitors, address, kept):
-    page = visitors((1400, 1000), None).new_page()
+def test_axe_finds_nothing_serious_in_a_study(new_tab, address, kept):
+    page = new_tab((1400, 1000))
     page.goto(f"{address}/study?{kept}")
     page.wait_for_selector(IDLE, timeout=240_000)
     assert left(page) == []

@@ -1,6 +1,9 @@
 """Texts that do harm in every text field of every readable format: read as text, shown as text."""
 
 import re
+import tempfile
+from dataclasses import replace
+from datetime import date
 from pathlib import Path
 
 import geopandas as gpd
@@ -11,13 +14,21 @@ import pytest
 from shapely import Point
 
 from app.words import language, texts
+from fieldmon.compute.units import Units
+from fieldmon.errors import FieldmonError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.sandbox import tasks
+from fieldmon.monitoring import Season
+from fieldmon.reports.html import html_text
+from fieldmon.reports.season import season_report
 from tests.app.test_hostile_texts import EVERY, EVIL, LEADS
 from tests.awkward import DAY, HERE, SECOND, SQUARE
+from tests.monitoring.seasons import a_plot
 from tests.more_awkward import _TASKS, ods, pfd, pln
 from tests.old_workbook import xls
+from tests.pages import held
 from tests.paths import ROOT
 
 LONG = f"{EVERY} {'x' * 10_000}"
@@ -160,3 +171,110 @@ def test_what_is_drawn_in_the_browser_makes_no_markup_of_texts():
         if markup.search(line)
     ]
     assert [line for line in found if "SIGNS[kind]" not in line] == []
+
+
+#: a line of a drawing holds no second one, and at most 2 049 letters
+IN_A_LINE = f"{' '.join(EVERY.split())} {'x' * 1_000}"
+SURVEYED = """<?xml version="1.0"?>
+<gpx version="1.1" creator="{said}" xmlns="http://www.topografix.com/GPX/1/1">
+<metadata><name>{said}</name><desc>{said}</desc></metadata>{body}</gpx>"""
+
+
+def gpx(*bodies):
+    """Return a GPX file with a text that does harm wherever one may stand."""
+    return Upload("data.gpx", SURVEYED.format(said=in_xml(LONG), body="".join(bodies)).encode())
+
+
+def waypoint(place, name):
+    said = in_xml(LONG)
+    return (
+        f'<wpt lat="{place[1]}" lon="{place[0]}"><time>{DAY}T05:00:00Z</time><name>{name}</name>'
+        f"<cmt>{said}</cmt><desc>{said}</desc><src>{said}</src><type>{said}</type>"
+        f"<extensions><who>{said}</who></extensions></wpt>"
+    )
+
+
+def track(area, name):
+    points = "".join(f'<trkpt lat="{y}" lon="{x}"/>' for x, y in area.exterior.coords)
+    return f"<trk><name>{name}</name><cmt>{name}</cmt><trkseg>{points}</trkseg></trk>"
+
+
+def drawing(folder):
+    """Return a drawing with a text that does harm as its comment and as the name of a layer."""
+    lines = [area.exterior for area in (SQUARE, SECOND)]
+    frame = gpd.GeoDataFrame({"Layer": ["HARM", "B"]}, geometry=lines, crs=4326)
+    (folder / "data.dxf").unlink(missing_ok=True)
+    frame.to_file(folder / "data.dxf", driver="DXF", engine="pyogrio")  # it would make it harmless
+    said = IN_A_LINE.encode()
+    drawn = (folder / "data.dxf").read_bytes().replace(b"HARM", said)
+    return Upload("data.dxf", b"999\n" + said + b"\n" + drawn)
+
+
+def read_in(folder, task, *asked):
+    """Read by a task in a room of its own."""
+    return task(tempfile.mkdtemp(dir=folder), *asked)
+
+
+def surveyed_plots(folder):
+    source = gpx(track(SQUARE, in_xml(LONG)), track(SECOND, "B"))
+    return read_in(folder, tasks.plots, source, PlotOptions(layer="tracks"))
+
+
+def test_the_names_of_tracks_and_of_a_drawings_layers_are_text(tmp_path):
+    drawn = PlotOptions(crs="EPSG:4326", name_column="Layer")
+    for read, letters in (
+        (surveyed_plots(tmp_path), len(EVERY)),
+        (read_in(tmp_path, tasks.plots, drawing(tmp_path), drawn), 220),  # of a layer's name
+    ):
+        (own,) = (field.name for field in read.value if field.name != "B")
+        held_as_text(own, letters)
+        shown_as_text(read)
+
+
+def test_names_and_comments_of_waypoints_are_text(tmp_path):
+    options = RecordOptions(columns=(("species", "cmt"), ("stage", "desc"), ("present", "")))
+    source = gpx(waypoint(HERE[0], in_xml(LONG)))
+    records = read_in(tmp_path, tasks.records, source, options, None)
+    for text in (*records.value.species.tolist(), *records.value.stage.tolist()):
+        held_as_text(text, len(EVERY))
+    shown_as_text(records)
+    found = gpx(waypoint(HERE[0], "found"))
+    asked = InspectionOptions(day=np.datetime64(DAY))
+    rows = read_in(tmp_path, tasks.inspection_rows, found, asked)
+    for text in (*rows.value.notes.tolist(), *rows.value.who.tolist()):
+        held_as_text(str(text), len(EVERY))
+    shown_as_text(rows)
+
+
+def test_a_season_of_such_files_is_text_on_paper_and_on_the_scouts_page(tmp_path):
+    name = next(one.name for one in surveyed_plots(tmp_path).value if one.name != "B")
+    waypoints = gpx(waypoint(HERE[0], "found"))
+    asked = InspectionOptions(day=np.datetime64(DAY))
+    said = str(read_in(tmp_path, tasks.inspection_rows, waypoints, asked).value.notes[0])
+    for text in (name, said):  # what rooms and the scout's page are looked at with in a browser
+        assert " ".join(text.split()) == " ".join(LONG.split())
+    plot = a_plot()
+    plot = replace(plot, field=replace(plot.field, name=name))
+    season = Season.create(tmp_path / "Harm.gpkg", plot, begins=date.fromisoformat(DAY))
+    plants, found = np.arange(4), np.array([1, 0, 0, 0])
+    told = [np.array([said] * 4, object)] * 2
+    on = date.fromisoformat(DAY)
+    season.record(Inspections.of(plants, found, np.datetime64(on), who=told[0], notes=told[1]))
+    (sheet,) = season.plan(on).route.to_file(tmp_path / "sheet.html")
+    printed = sheet.read_text("utf-8"), html_text(season_report(season, on, Units()))
+    for page in printed:
+        held(page, ["<script>window.hit=1</script>"])
+
+
+def test_refusals_of_files_with_such_texts_are_text(tmp_path):
+    """Which layer, which column: names out of the file stand in the question."""
+    for source, task, asked in (
+        (drawing(tmp_path), tasks.plots, (PlotOptions(),)),
+        (drawing(tmp_path), tasks.plots, (PlotOptions(layer=IN_A_LINE),)),
+        (gpx(track(SQUARE, in_xml(LONG))), tasks.plots, (PlotOptions(),)),
+        (gpx(waypoint(HERE[0], in_xml(LONG))), tasks.records, (RecordOptions(), None)),
+    ):
+        with pytest.raises(FieldmonError) as refused:
+            read_in(tmp_path, task, source, *asked)
+        line = language.in_words(str(refused.value))
+        assert not (EVIL in line and LEADS.search(line)), line[:300]

@@ -12,7 +12,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from tests.app.driving import PAGES, go, opened
-from tests.app.on_screen import IDLE, open_part
+from tests.app.on_screen import IDLE, open_part, open_room, rest
 from tests.monitoring.seasons import a_plot
 
 EVIL = "evil.example"
@@ -80,10 +80,11 @@ def test_in_a_browser_nothing_runs_nothing_is_fetched_and_nothing_leads_out(
     page, address, served_seasons
 ):
     hostile_season(served_seasons / "Harm.gpkg")
+    page.goto(f"{address}/?season=Harm")
+    rest(page)
     seen = 0
     for name, room in rooms.ROOMS.items():
-        page.goto(f"{address}/{'' if name == 'today' else name}?season=Harm")
-        page.wait_for_selector(IDLE, timeout=240_000)
+        open_room(page, texts.ROOMS[name])
         for part in ("", *room.parts[1:]):
             if part:
                 open_part(page, texts.PARTS[part])

@@ -39,6 +39,7 @@ from tests.app.on_screen import (
     becomes,
     card,
     click,
+    dressed,
     free,
     is_near,
     look,
@@ -78,11 +79,9 @@ def shown(page, address):
 
 
 @pytest.fixture(scope="module")
-def first_screen(visitors, address):
+def first_screen(new_tab, address):
     """Load the app's first screen once for all who only look at it and switch what it shows."""
-    page = visitors((1400, 1000), None).new_page()
-    page.requests = []
-    page.on("request", lambda sent: page.requests.append(sent.url))
+    page = new_tab((1400, 1000))
     shown(page, address)
     page.opaque = card(page).get_by_role("slider", name="Opacity").input_value()
     yield page
@@ -197,20 +196,21 @@ _COUNT_SENT = """() => {
 
 
 @pytest.fixture(scope="module")
-def walk(visitors, address):
-    """Load every room, and turn to each of its parts; return what was asked for and complained."""
-    page, asked, complaints = visitors((1400, 1000), None).new_page(), [], []
-    page.on("request", lambda sent: asked.append(sent.url))
+def walk(new_tab, address):
+    """Turn to every room and each of its parts; return what was asked for and complained."""
+    page, complaints = new_tab(), []
     page.on("console", lambda one: complaints.append(one.text) if one.type == "error" else None)
-    for name in ("study", "prior", *rooms.ROOMS):
-        page.goto(f"{address}/{'' if name == 'today' else name}")
+    for name in ("study", "prior", ""):
+        page.goto(f"{address}/{name}")
         page.wait_for_selector(IDLE, timeout=240_000)
-        for part in rooms.ROOMS[name].parts[1:] if name in rooms.ROOMS else ():
+    for name, room in rooms.ROOMS.items():
+        open_room(page, texts.ROOMS[name])
+        for part in room.parts[1:]:
             open_part(page, texts.PARTS[part])
             page.wait_for_selector(IDLE, timeout=180_000)
     still(page)
     page.close()
-    return asked, complaints
+    return page.requests, complaints
 
 
 def test_nothing_is_asked_of_the_world(walk, address):
@@ -279,35 +279,6 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
     rest(page)
     still(page)
     assert len(asked) == n
-
-
-def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(page, address):
-    shown(page, address)
-    still(page)
-    page.locator(".label.row", has_text=re.compile("^10$")).click()
-    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
-    page.locator(".label.row", has_text=re.compile("^20$")).click()
-    page.get_by_text("170 plants selected").wait_for(timeout=180_000)
-    page.locator(".label.row", has_text=re.compile("^20$")).click()
-    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
-    page.get_by_role("application").focus()
-    middle = view(page)
-    page.keyboard.press("ArrowRight")
-    page.keyboard.press("+")
-    until(lambda: view(page)["zoom"] > middle["zoom"] + 0.99)
-    still(page)
-    assert view(page)["longitude"] > middle["longitude"]
-    said = page.locator(f"{MAP} [role=status]")
-    for _ in range(20):  # the middle may lie between plants
-        if "chance" in said.text_content():
-            break
-        page.keyboard.press("Shift+ArrowDown")
-        still(page)
-    row, plant = re.search(r"row (\d+), plant (\d+)", said.text_content()).groups()
-    page.keyboard.press("Enter")
-    page.get_by_text(texts.HISTORY).first.wait_for(timeout=180_000)
-    for name, number in ((texts.HISTORY_ROW, row), (texts.HISTORY_PLANT, plant)):
-        assert page.get_by_role("spinbutton", name=name, exact=True).input_value() == number
 
 
 def test_the_route_is_downloaded_and_read(screen):
@@ -446,8 +417,17 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
     assert between in tip.inner_text()
 
 
-def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(page, address):
+@pytest.fixture(scope="module")
+def asked_screen(new_tab, address):
+    """Load the first screen once for all who ask it about plants."""
+    page = new_tab()
     shown(page, address)
+    yield page
+    page.close()
+
+
+def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_screen):
+    page = asked_screen
     for name in (ROUTE, HOT):
         switch(page, name, on=False)
     still(page)
@@ -459,14 +439,49 @@ def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(page, ad
     plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
     click(page, place[plant], says=texts.HISTORY)
     label = row_label(plot.grid, np.array([plant]))
-    for name, number in ((texts.HISTORY_ROW, label.line), (texts.HISTORY_PLANT, label.number)):
-        value = page.get_by_role("spinbutton", name=name, exact=True)
-        assert value.input_value() == str(number[0])
+    until(lambda: history(page) == (str(label.line[0]), str(label.number[0])))
     image = becomes(
         page, lambda now: share_near(now, place[[plant]], (255, 190, 0), reach=45) == 1, "the ring"
     )
     yellow = np.argwhere(np.abs(image - (255, 190, 0)).max(axis=2) < 30)
     assert yellow.mean(axis=0)[::-1] == pytest.approx(place[plant], abs=2)
+
+
+def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(asked_screen):
+    page = asked_screen
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    still(page)
+    page.locator(".label.row:visible", has_text=re.compile("^10$")).click()
+    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
+    page.locator(".label.row:visible", has_text=re.compile("^20$")).click()
+    page.get_by_text("170 plants selected").wait_for(timeout=180_000)
+    page.locator(".label.row:visible", has_text=re.compile("^20$")).click()
+    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
+    page.get_by_role("application").focus()
+    middle = view(page)
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("+")
+    until(lambda: view(page)["zoom"] > middle["zoom"] + 0.99)
+    still(page)
+    assert view(page)["longitude"] > middle["longitude"]
+    said = page.locator(f"{MAP} [role=status]")
+    for _ in range(20):  # the middle may lie between plants
+        if "chance" in said.text_content():
+            break
+        page.keyboard.press("Shift+ArrowDown")
+        still(page)
+    row, plant = re.search(r"row (\d+), plant (\d+)", said.text_content()).groups()
+    page.keyboard.press("Enter")
+    until(lambda: history(page) == (row, plant))
+
+
+def history(page):
+    """Return of which plant the history is shown, its row and number as they stand there."""
+    page.get_by_text(texts.HISTORY).first.wait_for()
+    return tuple(
+        page.get_by_role("spinbutton", name=name, exact=True).input_value()
+        for name in (texts.HISTORY_ROW, texts.HISTORY_PLANT)
+    )
 
 
 def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
@@ -685,6 +700,7 @@ _SHADES = """b => { const words = b.querySelector("p") || b; let ground = b, sha
         return [getComputedStyle(words).color, shade]; }"""
 
 
+@pytest.mark.parametrize("page", [LAPTOP], indirect=True)
 def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address, tmp_path):
     large = box(35.15, 30.36, 35.158, 30.366)
     small = box(35.17, 30.36, 35.1708, 30.3607)
@@ -757,9 +773,17 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
-@pytest.mark.parametrize("page", [PHONE], indirect=True)
-def test_a_phone_shows_the_whole_plot_above_the_days_work(page, address):
+@pytest.fixture(scope="module")
+def on_a_phone(new_tab, address):
+    """Load the app's first screen once on a phone, for all who leave it as it was."""
+    page = new_tab(*PHONE)
     shown(page, address)
+    yield page
+    page.close()
+
+
+def test_a_phone_shows_the_whole_plot_above_the_days_work(on_a_phone):
+    page = on_a_phone
     image = still(page)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     sheet = page.locator(".st-key-panel").bounding_box()
@@ -774,9 +798,9 @@ def test_a_phone_shows_the_whole_plot_above_the_days_work(page, address):
     assert share_near(image, place[::7], colours.of_chance()[3], tolerance=130) > 0.8
 
 
-@pytest.mark.parametrize("page", [PHONE], indirect=True)
-def test_the_sheet_is_pulled_up_and_let_down_again(page, address):
-    shown(page, address)
+def test_the_sheet_is_pulled_up_and_let_down_again(on_a_phone):
+    page = on_a_phone
+    dressed(page)
     sheet, grip = page.locator(".st-key-panel"), page.get_by_role("button", name="Pull the day")
     half = sheet.bounding_box()["y"]
     for up in (True, False):
@@ -807,7 +831,6 @@ def test_on_a_phone_two_taps_cut_the_plot_into_blocks(page, address):
     page.get_by_text("a cut into blocks: 2").wait_for(timeout=180_000)
 
 
-@pytest.mark.parametrize("page", [LAPTOP], indirect=True)
 def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up(page, address):
     page.goto(f"{address}/ahead?part=drive")
     rest(page)
@@ -819,7 +842,11 @@ def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up
     sent = [fetch(page, one) for one in [*page.requests] if "/map_data/" in one]
     day = next(one for one in sent if "stops" in one)
     red = lambda image: (np.abs(image - [190, 25, 25]).max(axis=2) < 40).sum()  # noqa: E731
-    begins, before = now(), look(page)
+    before = look(page)
+    slider = page.get_by_role("slider", name=texts.MAP_WORDS["time_of_day"])
+    slider.fill(f"{day['stops'][0][0] - 60:.0f}")
+    begins = now()
+    assert begins["stops"] == 0
     page.locator(f"{MAP} .canvas").focus()
     page.keyboard.press("Space")
     until(lambda: now()["stops"] > 0)
@@ -827,7 +854,6 @@ def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up
     assert not now()["playing"]
     assert (now()["lon"], now()["lat"]) != (begins["lon"], begins["lat"])
     find = next(one for one in day["stops"] if one[2])
-    slider = page.get_by_role("slider", name=texts.MAP_WORDS["time_of_day"])
     standing = []
     for second in (find[0] - 8, find[0] - 3, find[0] + 1):
         slider.fill(f"{second:.0f}")

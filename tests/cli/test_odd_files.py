@@ -114,3 +114,9 @@ def test_every_nth_needs_a_sampler_that_counts(run, season):
     assert code == 0, err
     code, _, err, _ = run("plan", season, "--date", BEGINS, "-o", "r.csv")
     assert code == 0, err
+
+
+def test_a_name_of_no_letters_is_refused_before_anybody_hears_of_it(run):
+    code, _, err, _ = run("stand-in", "--manufacturer", "\udce4", "--serial", "-")
+    assert code == 2
+    assert "letters that can be printed" in err

@@ -31,3 +31,8 @@ def test_fifty_wrong_lines_are_each_a_sentence(first, tmp_path, old_season):
 def test_every_command_is_among_them():
     first_words = {tuple(wrong_lines.wrong_line(seed))[:1] for seed in range(2000)}
     assert {words[:1] for words, _ in wrong_lines.commands()} <= first_words
+
+
+def test_what_makes_a_line_wrong_is_not_said_again_rightly():
+    """The last of two counts: `--seeds many --seeds 1` was a right line, and ran a study."""
+    assert wrong_lines.wrong_line(2885).count("--seeds") == 1

@@ -96,7 +96,9 @@ def wrong_line(seed):
     numbers = [p for p in options if _is_number(p)]
     wrong = rng.choice(("option", "number", "file", "surplus"))
     if wrong == "number" and numbers:
-        given.append([rng.choice(numbers).opts[0], rng.choice(_NO_NUMBER)])
+        name = rng.choice(numbers).opts[0]
+        given = [one for one in given if one[0] != name]  # the last of two would count
+        given.append([name, rng.choice(_NO_NUMBER)])
     elif wrong == "file" and arguments and _is_file(arguments[0]):
         given[0] = [rng.choice(_NOWHERE)]
     elif wrong == "surplus" and not any(p.nargs == -1 for p in arguments):

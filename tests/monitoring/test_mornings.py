@@ -68,8 +68,8 @@ def of_day(season, day):
     return season._now().morning(day)
 
 
-def test_the_file_keeps_the_newest_morning_and_the_last_two_of_every_eighth(path):
-    assert kept(path) == [8, 16, LAST]
+def test_the_file_keeps_the_first_and_newest_morning_and_the_last_two_of_every_eighth(path):
+    assert kept(path) == [0, 8, 16, LAST]
 
 
 def test_mornings_from_the_file_are_those_from_the_first_to_the_last_bit(path):
@@ -102,7 +102,7 @@ def test_what_is_recorded_of_an_early_day_reaches_the_mornings_after_it(path):
         assert the_same(of_day(Season(path), day), morning), day
     assert Season(path).status(BEGINS + timedelta(days=LAST)) != before
     assert Season(path).verify() == ()
-    assert kept(path) == [8, 16, LAST]
+    assert kept(path) == [0, 8, 16, LAST]
 
 
 def test_a_treatment_taken_back_leaves_the_mornings_of_before(path):
@@ -127,6 +127,24 @@ def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, damage
     change(path, damage)
     season = Season(path)
     assert the_same(of_day(season, LAST), all_over(season)[LAST])
+
+
+def test_a_plan_that_is_kept_already_keeps_the_mornings_of_a_new_version(path, monkeypatch):
+    from fieldmon.monitoring import mornings
+
+    on = BEGINS + timedelta(days=LAST)
+    route = Season(path).plan(on).route
+    was = path.read_bytes()
+    Season(path).plan(on)
+    assert path.read_bytes() == was
+    monkeypatch.setattr(mornings, "_rules", lambda: "of another version")
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        Season(path).plan(on)  # waits for nobody
+    assert Season(path)._now().mornings.last_until(LAST) == 0
+    np.testing.assert_array_equal(Season(path).plan(on).route.plant, route.plant)
+    assert Season(path)._now().mornings.last_until(LAST) == LAST
+    assert Season(path).verify() == ()
 
 
 def test_another_program_version_does_not_believe_the_kept_ones(path, monkeypatch):

@@ -10,6 +10,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
+from fieldmon.monitoring.transactions import Store
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
@@ -132,3 +133,33 @@ def test_a_map_made_otherwise_is_noticed(season):
     with season.store.writing() as db:
         db.execute("UPDATE days SET digest = 'other'")
     assert len(season.verify()) == 1
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        lambda season, on: season.advice(on),
+        lambda season, _: season.assumed(),
+        lambda season, on: season.cautions(on),
+        lambda season, on: season.contradicting(on),
+        lambda season, on: season.effects(on),
+        lambda season, on: season.forecast(on),
+        lambda season, on: season.harvest_from(on),
+        lambda season, on: season.kept_route(on),
+        lambda season, _: season.last_date(),
+        lambda season, on: season.learnt(on),
+        lambda season, _: season.other_maps(),
+        lambda season, on: season.progress(on),
+        lambda season, on: season.scene(on),
+        lambda season, on: season.status(on),
+        lambda season, on: season.verdict(on, 0.1),
+    ],
+)
+def test_what_a_season_answers_is_of_one_moment_others_may_write_between_two(
+    recorded, monkeypatch, asked
+):
+    season, moments = Season(recorded), []
+    reading = Store.reading
+    monkeypatch.setattr(Store, "reading", lambda self: moments.append(self) or reading(self))
+    asked(season, BEGINS)
+    assert len(moments) == 1

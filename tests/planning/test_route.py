@@ -1,12 +1,15 @@
 """The day's route: the seconds charged, on a line that crosses no row."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
-from fieldmon.planning.route import route_of
+from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.planning.route import route_of, with_forecast
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import Planting, lay
 from fieldmon.plot.travel import crosses_rows
@@ -62,3 +65,12 @@ def test_a_route_without_stops_is_empty():
     route = route_of(scene, plan_work(scene, sampler("naive")))
     assert (len(route), route.drive_m, route.end_s) == (0, 0.0, 0.0)
     assert route.line_lonlat().shape == (0, 2)
+
+
+def test_only_a_route_with_notes_has_room_for_what_is_ahead():
+    scene = scene_on(GRIDS["rectangle"], seed=1)
+    bare = route_of(scene, plan_work(scene, sampler("naive")))
+    noted = replace(bare, notes=RouteNotes("Vines", "naive"))
+    assert with_forecast(bare, list) is bare
+    assert with_forecast(noted, list).notes.ahead is list
+    assert noted.notes.ahead is None

@@ -68,10 +68,10 @@ class RobotName(NamedTuple):
     def check(self) -> None:
         """Raise `SettingError` if a name holds what parts or stands for topics."""
         for name in self[:2]:
-            if not name or set(name) & set("/+#$"):
+            if not name.isprintable() or not name or set(name) & set("/+#$"):
                 raise SettingError(
-                    "Manufacturer and serial number of a robot must have no /, +, # or $, and not "
-                    f"be empty, but one is {name!r}."
+                    "Manufacturer and serial number of a robot must be letters that can be "
+                    f"printed, but no /, +, # or $, and not be empty, but one is {name!r}."
                 )
 
     @property

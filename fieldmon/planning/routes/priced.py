@@ -237,11 +237,13 @@ def least_by_kind(
     until_s
         Up to which moment of the clock prices are tried.
     """
-    shape = kinds(price)[0].shape
+    worth, reward = kinds(price)
+    shape = worth.shape
     low, high = np.full(shape, price / REACH), np.full(shape, price * REACH)
     least = np.full(shape, np.inf)
-    for _ in range(_PRICES):
-        worth, reward = kinds(price)
+    for k in range(_PRICES):
+        if k:
+            worth, reward = kinds(price)
         least = np.minimum(least, worth + price * seconds)
         too_long = reward - worth > price * seconds
         low = np.where(too_long, np.maximum(low, price), low)

@@ -10,7 +10,6 @@ around holes and between parts, a cross link is put in.
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -100,14 +99,13 @@ def ladder_below(aisles: Aisles) -> Ladder:
 class Ladders:
     """Ladders below a plot, or below some of its aisles, on which no way is longer than true."""
 
-    def __init__(self, aisles: Aisles) -> None:
-        self.aisles, self.rungs = aisles, rungs_of(aisles)
+    def __init__(self, aisles: Aisles, rungs: Rungs | None = None) -> None:
+        self.aisles, self.rungs = aisles, rungs_of(aisles) if rungs is None else rungs
+        self._made: dict[object, Ladder] = {}
 
     def of(self, rungs: Rungs) -> Ladders:
         """Return ladders of other rungs, as where parts of the plot are one place."""
-        other = copy(self)
-        other.rungs = rungs
-        return other
+        return Ladders(self.aisles, rungs)
 
     def whole(self, *, hanging: bool) -> Ladder:
         """Return a ladder of all aisles with the plot's gate; short ones beside others may hang."""
@@ -116,11 +114,17 @@ class Ladders:
         return self.among(every, (to_gate, float(self.aisles.gate_m[1])), hanging=hanging)
 
     def among(self, members: Int, gate: tuple[Float, float], *, hanging: bool) -> Ladder:
-        """Return a ladder of some aisles.
+        """Return a ladder of some aisles, made once.
 
         ``gate``: metres ``(2, k)`` from the left and right ends of the members to a gate, and its
         y.
         """
+        asked = members.tobytes(), gate[0].tobytes(), gate[1], hanging
+        if asked not in self._made:
+            self._made[asked] = self._among(members, gate, hanging=hanging)
+        return self._made[asked]
+
+    def _among(self, members: Int, gate: tuple[Float, float], *, hanging: bool) -> Ladder:
         rungs = self.rungs
         up, low = rungs.up[members], rungs.low[members]
         order = np.lexsort((low, np.round(up, 3)))
@@ -306,19 +310,37 @@ def _cross_links(
     # the gate's own ways are its stubs
     asked[gate], asked[:, gate] = np.inf, np.inf
     links: dict[int, float] = {}
+    over = _from_left_to_right(left, right, cross) - asked
     for _ in range(_ROUNDS * 10):
-        over = _from_left_to_right(left, right, cross) - asked
-        if over.max() <= _EXACT_M:
-            return sorted(links.items())
         a, b = (int(k) for k in np.unravel_index(np.argmax(over), over.shape))
+        if over[a, b] <= _EXACT_M:
+            return sorted(links.items())
         room = asked[a, b] - np.abs(left - left[a]) - np.abs(right - right[b])
         room[gate] = -np.inf
         best = int(np.argmax(room))
         if room[best] < 0.0:
             return None
         links[best] = min(links.get(best, np.inf), float(room[best]))
-        cross[best] = min(cross[best], links[best])
+        if links[best] < cross[best]:
+            cross[best] = links[best]
+            _take_crossing(over, (left, right), (best, cross[best]), asked)
     return None
+
+
+def _take_crossing(
+    over: Float, places: tuple[Float, Float], crossing: tuple[int, float], asked: Float
+) -> None:
+    """Let ways from left to right take one more crossing, or a shorter one.
+
+    To the last bit what `_from_left_to_right` gives with it: the smaller of two numbers is it
+    after the same is added to both, too.
+    """
+    (left, right), (k, metres) = places, crossing
+    to = np.abs(left - left[k]) + metres
+    up = (to - right[k])[:, None] + right[k:] - asked[:, k:]
+    np.minimum(over[:, k:], up, out=over[:, k:])
+    down = (to + right[k])[:, None] - right[: k + 1] - asked[:, : k + 1]
+    np.minimum(over[:, : k + 1], down, out=over[:, : k + 1])
 
 
 def _from_left_to_right(left: Float, right: Float, cross: Float) -> Float:

@@ -106,15 +106,14 @@ def test_the_library_knows_nothing_of_languages():
 
 
 @pytest.mark.parametrize("code", OTHERS)
-@pytest.mark.parametrize("part", ["today", "season", "compare", "plot"])
-def test_pages_speak_the_language_of_the_address(code, part, speaking):
+def test_pages_speak_the_language_of_the_address(code, speaking):
     speaking(code)  # the harness asks boxes for the names of what they hold
     app = opened(lang=code)
-    go(app, part)
-    assert not app.exception
-    assert not app.error
-    left = english_left(app, code)
-    assert left == []
+    for part in ("today", "season", "compare", "plot"):
+        go(app, part)
+        assert not app.exception, part
+        assert not app.error, part
+        assert english_left(app, code) == [], part
 
 
 @pytest.mark.parametrize("code", OTHERS)

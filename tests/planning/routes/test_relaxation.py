@@ -7,7 +7,12 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from fieldmon.planning.routes.relaxation import Ladders, ladder_below
+from fieldmon.planning.routes.relaxation import (
+    Ladders,
+    _from_left_to_right,
+    _take_crossing,
+    ladder_below,
+)
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.travel import GATE, Aisles
 from tests.planning.routes.test_best_route import crooked_aisles
@@ -66,3 +71,15 @@ def test_every_plant_is_in_one_aisle_in_order(aisles, data):
     part = slice(ladder.start[k], ladder.start[k + 1])
     assert (np.diff(ladder.in_m[part]) >= 0).all()
     assert len(set(aisles.grid.corridor[aisles.grid.row[ladder.plant[part]]])) <= 1
+
+
+def test_one_more_crossing_is_to_the_last_bit_what_all_of_them_give():
+    rng, n = np.random.default_rng(8), 14
+    left, right = np.sort(rng.uniform(0.0, 300.0, (2, n)))
+    cross, asked = np.where(rng.random(n) < 0.5, np.inf, 90.0), rng.uniform(0.0, 200.0, (n, n))
+    cross[0] = 77.0
+    over = _from_left_to_right(left, right, cross) - asked
+    for k in rng.permutation(n):
+        cross[k] = rng.uniform(0.0, 60.0)
+        _take_crossing(over, (left, right), (int(k), cross[k]), asked)
+        assert (over == _from_left_to_right(left, right, cross) - asked).all()

@@ -128,3 +128,21 @@ def test_the_ways_measured_are_those_of_the_table_from_every_lane_end():
                 down, step = int(other < row), abs(other - row) - 1
                 way_s = between_m[2 * row + end, 2 * other + other_end] / scene.clock.speed_m_s
                 assert tours.next_s[down, row, end, step, other_end] == pytest.approx(way_s)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_the_ways_measured_reach_six_rows_to_either_side_and_no_further(returns):
+    n_rows = 2 * REACH + 3
+    grid = rectangle(n_rows, 2)
+    scene = scene_with(grid, np.full(len(grid), 0.1), 2.0, returns=returns)
+    between_m, speed_m_s = scene.aisles.travel.between_m, scene.clock.speed_m_s
+    next_s, home_s = np.full((2, n_rows, 2, REACH, 2), np.nan), np.full((n_rows, 2), np.nan)
+    measure_ways(scene.aisles.travel, scene.clock, next_s, home_s)
+    told = np.full_like(next_s, np.nan)
+    for row, other, end, to in product(range(n_rows), range(n_rows), range(2), range(2)):
+        if 0 < abs(other - row) <= REACH:
+            way_s = between_m[2 * row + end, 2 * other + to] / speed_m_s
+            told[int(other < row), row, end, abs(other - row) - 1, to] = way_s
+    np.testing.assert_allclose(next_s, told)
+    to_gate_s = between_m[:-1, -1].reshape(n_rows, 2) / speed_m_s
+    np.testing.assert_allclose(home_s, to_gate_s if returns else 0.0)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.spread import Spread
     from fieldmon.infestation.tracing import Traces
+    from fieldmon.pests.pest import Pest
 
 #: no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 LEAST_CHANCE, MOST_CHANCE = 1e-6, 1.0 - 1e-6
@@ -75,6 +76,11 @@ class Belief(Protocol):
     @property
     def doubt(self) -> float:
         """How far the expected number infested may be off as rates are not known, as a share."""
+        ...
+
+    @property
+    def pest(self) -> Pest | None:
+        """The pest that lives on the plot; None: nobody named it."""
         ...
 
     def learn(

@@ -128,8 +128,10 @@ def forecast(
         expected = _numbers(evening, nights)
         inside = np.minimum(here.result(), expected)
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
-    tonight = now or estimate_plot(grid, evening.chance, evening.pair_chance, doubt=evening.doubt)
-    named = isinstance(evening, TracedPairs) and evening.pest is not None
+    named = evening.pest is not None
+    tonight = now or estimate_plot(
+        grid, evening.chance, evening.pair_chance, doubt=evening.doubt, named=named
+    )
     doubts = _deviation(tonight), _OF_A_PEST if named else _LEVEL_DOUBT
     ends = _interval(inside, expected - inside, doubts, found)
     high = np.minimum(np.ceil(ends[1]), len(evening.chance))

@@ -30,6 +30,7 @@ class IndependentPlants:
     pair_chance: None = None
     traces: None = None
     doubt: float = 0.0
+    pest: None = None
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import MOST_CHANCE
-from fieldmon.infestation.plot_estimate import doubted_widely
+from fieldmon.infestation.plot_estimate import doubted, doubted_widely
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_pairs import TracedPairs
 
@@ -54,7 +54,9 @@ class LevelRange:
         return low, high
 
 
-def level_range(chance: Floats, doubt: float, sure: float = 0.9) -> LevelRange:
+def level_range(
+    chance: Floats, doubt: float, sure: float = 0.9, *, named: bool = False
+) -> LevelRange:
     """Return how far a chance map ``(n,)`` may be off as a whole.
 
     At its ends the chances add up to the ends of what the expected number may be, as
@@ -66,6 +68,8 @@ def level_range(chance: Floats, doubt: float, sure: float = 0.9) -> LevelRange:
         How far the expected number may be off, as a share (`Belief.doubt`).
     sure
         Chance that the interval holds the expected number.
+    named
+        Whether somebody named the pest, as `estimate_plot` has it.
     """
     if not 0.0 < sure < 1.0:
         raise SettingError(
@@ -74,7 +78,8 @@ def level_range(chance: Floats, doubt: float, sure: float = 0.9) -> LevelRange:
     share = float(np.mean(chance))
     if doubt <= 0.0 or not 0.0 < share < MOST_CHANCE:
         return LevelRange()
-    by = np.quantile(doubted_widely(doubt), [0.5 - sure / 2, 0.5 + sure / 2])
+    factors = doubted(doubt) if named else doubted_widely(doubt)
+    by = np.quantile(factors, [0.5 - sure / 2, 0.5 + sure / 2])
     ends = share * by / (1.0 + share * (by - 1.0))
     certain = float(np.mean(chance >= 1.0))
     possible = float(np.mean(chance > 0.0))

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     _Table = tuple[NDArray[np.int64], NDArray[np.int64], Floats, Floats, Floats]
 
 _DRAWS = 400
+# which fields are drawn: the same ones always, so that an answer is the same when asked again
+_KEY = np.uint64(0)
 # fields drawn side by side: a plant's neighbours are looked up once for all of them
 _SIDE_BY_SIDE = 16
 # steps of this spread evenly over [0, 1)
@@ -68,8 +70,9 @@ def estimate_plot(
     chance: NDArray[np.float64],
     pair_chance: NDArray[np.float64] | None = None,
     sure: float = 0.9,
-    key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
     doubt: float = 0.0,
+    *,
+    named: bool = False,
 ) -> PlotEstimate:
     """Return what a chance map ``(n,)`` says of the whole plot.
 
@@ -81,10 +84,10 @@ def estimate_plot(
         Taken as independent, the number would seem far surer than it is.
     sure
         Chance that the interval holds the number.
-    key
-        Which fields are drawn for the interval: the same key, the same answer.
     doubt
         How far the expected number may be off beyond that, as a share (`Belief.doubt`).
+    named
+        Whether somebody named the pest (`Belief.pest`), see `doubted_widely`.
     """
     if not 0.0 < sure < 1.0:
         raise SettingError(
@@ -96,14 +99,14 @@ def estimate_plot(
     if pair_chance is None:
         pair_chance = pair_chances(chance, grid)
     table = _table(chance, pair_chance, grid.adjacent)
-    drawn = _drawn(table, key, len(chance))
+    drawn = _drawn(table, _KEY, len(chance))
     clean = float(np.exp(np.log1p(-table[-1]).sum()))  # the same chain draws no infested plant
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     counts = (drawn * (expected / max(float(drawn.mean()), 1e-9))).clip(0.0, len(chance))
     if doubt > 0.0:
         # odds, as finds change a level by: never more than there are plants
-        factors = doubted_widely(doubt)
+        factors = doubted(doubt) if named else doubted_widely(doubt)
         counts = counts * factors / (1.0 + counts / len(chance) * (factors - 1.0))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
@@ -120,7 +123,8 @@ def doubted_widely(doubt: float) -> Floats:
     """Return the same where the doubt itself may be off: a logarithm with Student's tails.
 
     On mornings of seasons that no map was told of, the middle half is as wide as that of a gamma,
-    but one number in five was outside its nine tenths.
+    but one number in five was outside its nine tenths. Of a pest that is named, a gamma holds as
+    many as it should, and these tails hold all.
     """
     places = ((np.arange(_DRAWS) + 1) * _SILVER) % 1.0
     wide = np.sqrt(_TAILS / (2.0 * gammaincinv(_TAILS / 2.0, places)))

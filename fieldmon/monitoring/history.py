@@ -275,12 +275,14 @@ class History:
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
         left = self._still_out(morning, day)
-        return estimate_plot(self.grid, left.chance, left.pair_chance, doubt=left.doubt)
+        return estimate_plot(
+            self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=left.pest is not None
+        )
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""
         left = self._still_out(morning, day)
-        return level_range(left.chance, left.doubt)
+        return level_range(left.chance, left.doubt, named=left.pest is not None)
 
     def _still_out(self, morning: Belief, day: int) -> Belief:
         """Return what is believed of plants not found yet."""

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.belief import Belief
     from fieldmon.pests.weather import Weather
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.simulation.statistics import SummaryStatistics
@@ -232,15 +233,14 @@ def _season(
     season = simulated_days(aisles, robot, sampler("adaptive"), start, settings, streams)
     for day in season:
         lost += day.left
-        held.append(_holds(aisles.grid, day.belief.chance, day.belief.pair_chance,
-                           day.belief.doubt, int(np.count_nonzero(day.infested))))  # fmt: skip
+        held.append(_holds(aisles.grid, day.belief, int(np.count_nonzero(day.infested))))
     return lost, np.array(held)
 
 
-def _holds(
-    grid: PlantGrid, chance: Floats, pair_chance: Floats | None, doubt: float, number: int
-) -> bool:
-    made = estimate_plot(grid, chance, pair_chance, doubt=doubt)
+def _holds(grid: PlantGrid, belief: Belief, number: int) -> bool:
+    made = estimate_plot(
+        grid, belief.chance, belief.pair_chance, doubt=belief.doubt, named=belief.pest is not None
+    )
     return made.low <= number <= made.high
 
 

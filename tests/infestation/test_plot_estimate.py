@@ -8,6 +8,7 @@ from scipy.stats import binom
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
+from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.plot_estimate import draw_fields, estimate_plot
 from fieldmon.plot.layout import rectangle
@@ -69,10 +70,9 @@ def test_plants_that_stand_together_make_the_number_less_sure_and_clean_more_lik
     assert together.chance_clean > 2 * alone.chance_clean
 
 
-def test_the_same_key_gives_the_same_answer_and_a_surer_interval_is_wider():
+def test_the_same_question_has_the_same_answer_and_a_surer_interval_is_wider():
     chance = np.full(400, 0.05)
-    key = RandomStreams(3).key("outlook")
-    assert estimate_plot(GRID, chance, key=key) == estimate_plot(GRID, chance, key=key)
+    assert estimate_plot(GRID, chance) == estimate_plot(GRID, chance)
     sure, rough = estimate_plot(GRID, chance, sure=0.99), estimate_plot(GRID, chance, sure=0.5)
     assert sure.low < rough.low <= rough.high < sure.high
 
@@ -101,3 +101,14 @@ def test_no_doubt_makes_more_infested_plants_than_there_are():
     grid = rectangle(20, 20)
     many = estimate_plot(grid, np.full(400, 0.6), doubt=2.0)
     assert 0 <= many.low < many.expected < many.high <= 400
+
+
+def test_of_a_pest_that_is_named_the_doubt_is_not_itself_in_doubt():
+    grid = rectangle(40, 40)
+    chance = np.full(1600, 0.05)
+    wide, named = (estimate_plot(grid, chance, doubt=0.4, named=each) for each in (False, True))
+    assert wide.low < named.low < named.expected < named.high < wide.high
+    halves = [estimate_plot(grid, chance, sure=0.5, doubt=0.4, named=n) for n in (False, True)]
+    assert halves[0].high - halves[0].low == pytest.approx(halves[1].high - halves[1].low, rel=0.25)
+    ends = [level_range(chance, 0.4, named=each) for each in (False, True)]
+    assert ends[0].low < ends[1].low < 1.0 < ends[1].high < ends[0].high

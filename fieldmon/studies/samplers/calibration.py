@@ -97,7 +97,7 @@ class _Watched:
     def __init__(self, belief: Belief, mornings: list[Belief], seconds: list[float]) -> None:
         self._belief, self._mornings, self._seconds = belief, mornings, seconds
         self.chance, self.pair_chance = belief.chance, belief.pair_chance
-        self.traces, self.doubt = belief.traces, belief.doubt
+        self.traces, self.doubt, self.pest = belief.traces, belief.doubt, belief.pest
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
@@ -197,7 +197,8 @@ def _estimate(belief: Belief, grid: PlantGrid, sure: float) -> PlotEstimate:
     if pair_chance is None:
         start, other = grid.adjacent
         pair_chance = np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
-    return estimate_plot(grid, belief.chance, pair_chance, sure, doubt=belief.doubt)
+    named = belief.pest is not None
+    return estimate_plot(grid, belief.chance, pair_chance, sure, belief.doubt, named=named)
 
 
 def _compared(mornings: _Mornings) -> Calibration:

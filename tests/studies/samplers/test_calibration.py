@@ -39,7 +39,8 @@ def test_the_interval_for_the_number_infested_holds_it_mostly(made):
 def test_a_belief_that_never_learns_scores_as_the_share_it_says():
     class Stubborn:
         def __init__(self, chance):
-            self.chance, self.pair_chance, self.traces, self.doubt = chance, None, None, 0.0
+            self.chance, self.pair_chance, self.traces = chance, None, None
+            self.doubt, self.pest = 0.0, None
 
         def learn(self, *_):
             return self

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
 import numpy as np
 import shapely
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
 
 _SIZE = 1000.0
+# seen on a light ground and on a dark one
+_LINE = "#7c857f"
 
 
 def outline(field: Field) -> str:
@@ -33,8 +37,10 @@ def outline(field: Field) -> str:
 
     path = "".join(placed(ring) + "Z" for ring in rings)
     box = f"0 0 {max(wide * scale, 1):.0f} {max(tall * scale, 1):.0f}"
-    said = texts.OUTLINE_ALT.format(name=field.name).replace("&", "&amp;").replace("<", "&lt;")
-    return (
-        f'<svg class="first-map" viewBox="{box}" role="img"><title>{said}</title>'
-        f'<path d="{path}" vector-effect="non-scaling-stroke"/></svg>'
+    drawing = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"><path d="{path}" fill="none" '
+        f'stroke="{_LINE}" stroke-width="2" vector-effect="non-scaling-stroke"/></svg>'
     )
+    said = escape(texts.OUTLINE_ALT.format(name=field.name))
+    # as a picture: of what stands in a page, Streamlit takes drawings out
+    return f'<img class="first-map" alt="{said}" src="data:image/svg+xml,{quote(drawing)}">'

@@ -144,6 +144,11 @@ class Comparison(BackgroundWork):
         """Return the number of seasons simulated."""
         return len(self._made)
 
+    @property
+    def is_judged(self) -> bool:
+        """Tell whether two seasons of each strategy are there, of which an interval can be said."""
+        return self.done >= 2 * len(self.settings.strategies)
+
     def start(self) -> None:
         """Begin, or go on where it was stopped."""
         if not self.running and self.done < self.total:

@@ -37,22 +37,17 @@ def show(choices: Choices) -> None:
     running = cached.comparison(key, settings, choices.robot, laid)
     label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
     background.buttons(running, label, key="run", over=running.done == running.total)
-    every_s = _NEXT_S if _is_judged(running) else _FIRST_S
+    every_s = _NEXT_S if running.is_judged else _FIRST_S
     st.fragment(_watch, run_every=every_s if running.running else None)(
         choices, running, at_work=running.running, every_s=every_s
     )
-
-
-def _is_judged(running: Comparison) -> bool:
-    """Tell whether two seasons of each strategy are there, of which an interval can be said."""
-    return running.done >= 2 * len(running.settings.strategies)
 
 
 def _watch(choices: Choices, running: Comparison, *, at_work: bool, every_s: float) -> None:
     if at_work and not running.running:
         st.rerun()  # the buttons must know
     _results(choices, running)
-    if at_work and every_s == _FIRST_S and _is_judged(running):
+    if at_work and every_s == _FIRST_S and running.is_judged:
         st.rerun()  # from now on it is looked for less often
 
 

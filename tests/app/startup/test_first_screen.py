@@ -45,7 +45,7 @@ def test_the_outline_stands_where_the_map_will_be(monkeypatch):
 
     waiting = SimpleNamespace(ready=Ready(), load=lambda **_: None)
     monkeypatch.setattr(preload, "start", lambda: waiting)
-    pictures = [one.proto.body for one in opened().get("html") if "<svg" in one.proto.body]
+    pictures = [one.proto.body for one in opened().get("html") if "<img" in one.proto.body]
     assert len(pictures) == 1
     assert "Outline of plot" in pictures[0]
     assert 'class="first-map"' in pictures[0]

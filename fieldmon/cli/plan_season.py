@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import typer
@@ -37,11 +36,9 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     if season.settings.team:
         _plan_team(season, options, on)
         return
-    with ThreadPoolExecutor(1) as beside:  # most of it is worked out while the day is planned
-        coming = beside.submit(season.forecast, on)
-        today = season.plan(on, None if now is None else clock(now, "--now"))
-        if options.bound and len(today.route):
-            today = with_bound(today)
+    today = season.plan(on, None if now is None else clock(now, "--now"))
+    if options.bound and len(today.route):
+        today = with_bound(today)
     route = today.route
     if not len(route):
         left_h = today.scene.seconds_left / 3600
@@ -53,7 +50,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
     tell_assumed(season.assumed())
-    write_routes(with_forecast(route, coming.result), options.output)
+    write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
 
 

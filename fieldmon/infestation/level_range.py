@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import MOST_CHANCE
-from fieldmon.infestation.plot_estimate import doubted, doubted_widely
+from fieldmon.infestation.plot_estimate import doubted_level
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_pairs import TracedPairs
 
@@ -78,8 +78,7 @@ def level_range(
     share = float(np.mean(chance))
     if doubt <= 0.0 or not 0.0 < share < MOST_CHANCE:
         return LevelRange()
-    factors = doubted(doubt) if named else doubted_widely(doubt)
-    by = np.quantile(factors, [0.5 - sure / 2, 0.5 + sure / 2])
+    by = np.quantile(doubted_level(doubt, named=named), [0.5 - sure / 2, 0.5 + sure / 2])
     ends = share * by / (1.0 + share * (by - 1.0))
     certain = float(np.mean(chance >= 1.0))
     possible = float(np.mean(chance > 0.0))

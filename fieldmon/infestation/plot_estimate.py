@@ -87,7 +87,7 @@ def estimate_plot(
     doubt
         How far the expected number may be off beyond that, as a share (`Belief.doubt`).
     named
-        Whether somebody named the pest (`Belief.pest`), see `doubted_widely`.
+        Whether somebody named the pest (`Belief.pest`), see `doubted_level`.
     """
     if not 0.0 < sure < 1.0:
         raise SettingError(
@@ -106,7 +106,7 @@ def estimate_plot(
     counts = (drawn * (expected / max(float(drawn.mean()), 1e-9))).clip(0.0, len(chance))
     if doubt > 0.0:
         # odds, as finds change a level by: never more than there are plants
-        factors = doubted(doubt) if named else doubted_widely(doubt)
+        factors = doubted_level(doubt, named=named)
         counts = counts * factors / (1.0 + counts / len(chance) * (factors - 1.0))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
@@ -119,8 +119,13 @@ def doubted(doubt: float) -> Floats:
     return factors
 
 
-def doubted_widely(doubt: float) -> Floats:
-    """Return the same where the doubt itself may be off: a logarithm with Student's tails.
+def doubted_level(doubt: float, *, named: bool) -> Floats:
+    """Return what a plot's odds may have to be multiplied by: of a pest that is named, or not."""
+    return doubted(doubt) if named else _doubted_widely(doubt)
+
+
+def _doubted_widely(doubt: float) -> Floats:
+    """Return `doubted` where the doubt itself may be off: a logarithm with Student's tails.
 
     On mornings of seasons that no map was told of, the middle half is as wide as that of a gamma,
     but one number in five was outside its nine tenths. Of a pest that is named, a gamma holds as

@@ -6,9 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.decisions.map_verdict import map_verdict
-from fieldmon.monitoring import (
-    day_figures,
-)
+from fieldmon.monitoring import day_figures
 from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.open_season import OpenSeason

@@ -10,13 +10,9 @@ import numpy as np
 
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.geojson import RouteNotes
-from fieldmon.monitoring import (
-    routes,
-    season_log,
-)
+from fieldmon.monitoring import routes, season_log
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
-from fieldmon.monitoring.settings import MonitoringSettings, seconds
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import Posted, team_day
@@ -26,10 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.open_season import SeasonContents
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.wishes import Wishes
-
-    Floats = NDArray[np.float64]
+    from fieldmon.samplers.base import Scene
 
 
 class SeasonPlans(OpenSeason):
@@ -71,13 +66,11 @@ class SeasonPlans(OpenSeason):
         with self._lock:
             contents = self._now()
             settings, day = contents.settings, contents.settings.day(on)
-            now_s = None if now is None else seconds(now)
+            scenes = [self._scene(contents, on, now, who) for who in _names(settings)]
             if settings.team:
-                days = self._team_days(contents, day, now_s, wishes)
+                days = self._team_days(settings, day, scenes, wishes)
             else:
-                shift = self._shift(settings, settings.robot)
-                scene = contents.history.scene(shift, day, contents.morning(day), now_s)
-                days = (plan_in(scene, settings.decides(), wishes),)
+                days = (plan_in(scenes[0], settings.decides(), wishes),)
             noted = tuple(
                 self._noted(settings, today, who)
                 for today, who in zip(days, _names(settings), strict=True)
@@ -137,16 +130,12 @@ class SeasonPlans(OpenSeason):
         return replace(today, route=replace(today.route, notes=notes))
 
     def _team_days(
-        self, contents: SeasonContents, day: int, now_s: float | None, wishes: Wishes | None
+        self, settings: MonitoringSettings, day: int, scenes: list[Scene], wishes: Wishes | None
     ) -> tuple[DayPlan, ...]:
-        settings, history = contents.settings, contents.history
-        scenes, posts = [], []
-        for member in settings.team:
-            shift = self._shift(settings, member.robot, member)
-            scene = history.scene(shift, day, contents.morning(day), now_s, member.name)
+        posts = []
+        for member, scene in zip(settings.team, scenes, strict=True):
             begun_s = member.starts_s + member.robot.day_s - scene.seconds_left
             told = scene if wishes is None else wishes.told(scene)
-            scenes.append(scene)
             posts.append(Posted(told, begun_s, np.zeros(len(scene.chance), np.bool_)))
         before = self._given_out(settings, day)
         works = team_day(posts, settings.decides(), settings.teamwork, before=before)

@@ -32,15 +32,10 @@ if TYPE_CHECKING:
     from datetime import date
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
-
-    Floats = NDArray[np.float64]
 
 
 class SeasonRecords(OpenSeason):
@@ -140,9 +135,7 @@ class SeasonRecords(OpenSeason):
             outside_changes.refuse_more(db)
             settings, plot = settings_of(db), (self.plot.grid, self.label)
             n = outside_changes.correct(db, plot, settings, who)
-            if n:
-                season_log.append(db, "corrected", who, states=season_log.states(db), rows=n)
-                self._refresh(db)
+            self._corrected(db, n, who)
         return n
 
     def take_drafts(self) -> tuple[str, ...]:
@@ -208,11 +201,13 @@ class SeasonRecords(OpenSeason):
         with self._lock, self.store.writing() as db, Store(copy).reading() as theirs:
             plot = self.plot.grid, self.label
             n = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who.strip()))
-            if n:
-                states = season_log.states(db)
-                season_log.append(db, "corrected", who.strip(), states=states, rows=n)
-                self._refresh(db)
+            self._corrected(db, n, who.strip())
         return n
+
+    def _corrected(self, db: sqlite3.Connection, rows: int, who: str) -> None:
+        if rows:
+            season_log.append(db, "corrected", who, states=season_log.states(db), rows=rows)
+            self._refresh(db)
 
     def merge(self, other: OpenSeason) -> Merged:
         """Take in what another copy of this season holds: all that is in either, once each.

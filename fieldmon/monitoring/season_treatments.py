@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.monitoring.treatments import KeptTreatment
 
-    Floats = NDArray[np.float64]
-
 
 class SeasonTreatments(OpenSeason):
     """The treatments of a season, and the labels of what was used."""

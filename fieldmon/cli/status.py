@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import tell_drafts
-from fieldmon.cli.options import SeasonFile, LastDate
+from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:

@@ -44,9 +44,11 @@ def ends(looked, lines):
         looks += alive.sum(axis=1)
         found = np.pad(alive[:, :-1], ((0, 0), (1, 0))) * looked[:, None]
         alive = alive * (1.0 - looked[:, None]) + found
-        for done, told in ((treats, counts >= high[n]), (leaves, counts <= low[n])):
-            done += alive[:, told].sum(axis=1)
-            alive[:, told] = 0.0
+        told = counts >= high[n], counts <= low[n]
+        treats, leaves = (
+            of + alive[:, ends].sum(axis=1) for of, ends in zip((treats, leaves), told, strict=True)
+        )
+        alive[:, told[0] | told[1]] = 0.0
     return treats, leaves, looks
 
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.plot.grid import PlantGrid
 
 NOTHING = "nothing"
 RULES = (NOTHING, WHOLE, ZONES)

@@ -78,6 +78,9 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
 
     Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
     """
+    from fieldmon.io.sandbox import process  # noqa: PLC0415
+
+    process.warm("fieldmon.io.sandbox.tasks")  # it loads while the season is read
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
 

@@ -103,7 +103,8 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
         batch = "" if done.batch is None else f" (batch {done.batch})"
         typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
     if last is not None:
-        typer.echo("\n".join(lines(kept, kept.status(last.item()))))
+        with kept.one_moment():
+            typer.echo("\n".join(lines(kept, kept.status(last.item()))))
 
 
 def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:

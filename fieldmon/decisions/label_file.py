@@ -184,7 +184,9 @@ def _refuse_two_of_one(name: str, made: list[ProductLabel]) -> None:
     """Raise `FileProblem` where two lines say different things of one product, crop and pest."""
     first: dict[tuple[str, str, str], ProductLabel] = {}
     for one in made:
-        known = first.setdefault((plain_name(one.product), plain_name(one.crop), plain_name(one.pest)), one)
+        known = first.setdefault(
+            (plain_name(one.product), plain_name(one.crop), plain_name(one.pest)), one
+        )
         if known != one:
             differ = [f.name for f in fields(one) if getattr(one, f.name) != getattr(known, f.name)]
             of = " on ".join(part for part in (one.product, one.crop) if part)

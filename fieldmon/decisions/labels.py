@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
-from fieldmon.decisions.doses import Dose
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from fieldmon.decisions.doses import Dose
 
 MOST_DAYS, MOST_HOURS = 3650, 10_000
 

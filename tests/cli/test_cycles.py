@@ -1,4 +1,4 @@
-"""Within a command Python seldom looks for cycles; what it finds there is thrown away all the same."""
+"""Within a command Python seldom looks for cycles; what it finds there is thrown away as ever."""
 
 import gc
 import weakref

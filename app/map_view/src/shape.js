@@ -66,7 +66,7 @@ export function keepShape(words) {
     page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
     measure();
-    setTimeout(listed, LATER_MS);
+    setTimeout(() => { listed(); measure(); }, LATER_MS); // the panel may only just be there
     const said = words() ?? {};
     fold.textContent = shape.folded ? "›" : "‹"; // mirrored by itself where one reads from the right
     fold.setAttribute("aria-label", (shape.folded ? said.unfold : said.fold) ?? "");

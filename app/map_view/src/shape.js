@@ -37,9 +37,8 @@ export function covered() {
 }
 
 function measure() {
-  const { left, right, bottom } = covered();
+  const { left, right } = covered();
   page.style.setProperty("--covers-start", `${left + right}px`);
-  page.style.setProperty("--covers-bottom", `${bottom}px`);
 }
 
 // Streamlit's list of pages, on a phone, has a group in it that is no item, and whose items are then in no list.

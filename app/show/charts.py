@@ -152,7 +152,7 @@ def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
 
 
 def load() -> None:
-    """Make a chart, so that the first one a person asks for need not load what checks all charts."""
+    """Make a chart: what checks all charts is then loaded before anybody asks for one."""
     level = np.zeros(2)
     bands({"": (level, level, level)}, ("", "")).to_dict()
 

@@ -49,7 +49,7 @@ _ENDINGS = (
 
 def threshold() -> None:
     """Offer the threshold and how sure a verdict must be; they stand beside the answer."""
-    with st.container(horizontal=True):
+    with st.container(horizontal=True, vertical_alignment="bottom"):
         for key in _ASKED:
             _box(key)
 
@@ -73,7 +73,7 @@ def _box(key: str) -> None:
     low, high, step = _LIMITS[key]
     widget_memory.show(
         st.number_input, texts.DECIDE_BOXES[key.partition(" ")[2]], low, high, step=step, key=key,
-        default=type(step)(deciding.BEGINS[key]),
+        default=type(step)(deciding.BEGINS[key]), format="%d" if isinstance(step, int) else "%.8g",
     )  # fmt: skip
 
 

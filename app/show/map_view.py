@@ -38,17 +38,26 @@ if TYPE_CHECKING:
 KEY = "map"
 # as many as the browser offers
 _MOST_PICKED = 20_000
-# the script is fetched once; the component is run with every answer of the server
-_LOADER = """export default (component) => {
+# The script is fetched once; the component is called with every answer of the server. The last
+# call alone decides: Streamlit may end one that was overtaken after the next has begun. A fetch
+# that fails is tried again, at another address, as a browser may remember the failure.
+LOADER = """const load = (address, ms) => import(address).catch(async () => {
+  await new Promise((done) => setTimeout(done, ms));
+  return load(address.replace(/[?].*|$/, `?after=${ms}`), Math.min(2 * ms, 8000));
+});
+export default (component) => {
   const place = component.parentElement;
-  place.wanted = component;
-  place.ended = false;
-  import(new URL(%r, location.href).href).then(({ mount }) => {
-    if (!place.ended) place.end = mount(place.wanted);
+  place.last = component;
+  load(new URL("%s", location.href).href, 200).then(({ mount }) => {
+    if (place.last === component) place.end = mount(component);
   });
-  return () => { place.ended = true; place.end?.(); };
+  return () => {
+    if (place.last !== component) return;
+    place.last = null;
+    place.end?.();
+  };
 }"""
-_component = st.components.v2.component("fieldmon_map", html="", js=_LOADER % ADDRESS)
+_component = st.components.v2.component("fieldmon_map", html="", js=LOADER % ADDRESS)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.options import SeasonFile, TheDate
+from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     season: SeasonFile,
     threshold: Level,
     thresholds: Own = None,
-    on: TheDate = None,
+    on: LastDate = None,
     sure: Sure = 0.9,
     leaves: Leaves = 0,
     counted: Counted = 0.0,
@@ -106,11 +106,13 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
             **level,
         ),
     )
-    said = (
-        advice.said_of_plot() if level else [of_leaves(asked, leaves, counted, presence=presence)]
-    )
+    if level:
+        said = advice.said_of_plot()
+    else:
+        named = "" if leaves else " (--leaves, --counted)"
+        said = [of_leaves(asked, leaves, counted, presence=presence) + named]
     where = advice.said_of_zones(above=bool(level))
-    typer.echo("\n".join([asked.sentence(), *said, *where]))
+    typer.echo("\n".join([f"{when}, after the day's work.", asked.sentence(), *said, *where]))
     kept.advise(when, " ".join([*said[:1], *where[:1]]))
     if output:
         _write(_Asked(kept, when, advice, product), output)

@@ -208,6 +208,10 @@ Bounded = Annotated[
 ]
 WorkDate = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
 TheDate = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; today.")]
+LastDate = Annotated[
+    str | None,
+    typer.Option("--date", help="The day, YYYY-MM-DD; the last that was planned or recorded."),
+]
 StartTime = Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")]
 
 

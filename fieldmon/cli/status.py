@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import tell_drafts
-from fieldmon.cli.options import SeasonFile, TheDate
+from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ ListRows = Annotated[
 
 def status(
     season: SeasonFile,
-    on: TheDate = None,
+    on: LastDate = None,
     batches: ListBatches = False,  # noqa: FBT002 - a flag
     rows: ListRows = False,  # noqa: FBT002 - a flag
 ) -> None:

@@ -94,10 +94,12 @@ def _tell_areas(scenarios: Sequence[Scenario], seeds: int) -> None:
     for share in _LOOKED_AT:
         for scenario in scenarios:
             made = [area_at_equal_left(scenario, seed, share) for seed in range(seeds)]
-            area, left = (
-                sum(getattr(one, name) for one in made) / seeds for name in ("share", "left")
+            area, left, by_plant, known = (
+                sum(getattr(one, name) for one in made) / seeds
+                for name in ("share", "left", "by_plant", "all_known")
             )
             typer.echo(
                 f"{scenario.start:10} {share:4.0%} looked at: {1 - area:4.0%} less area, "
-                f"{left:.1f} times as many left"
+                f"{left:.1f} times as many left; {1 - by_plant:4.0%} plant by plant, "
+                f"{1 - known:4.0%} if all were known"
             )

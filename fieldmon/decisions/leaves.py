@@ -42,9 +42,8 @@ def of_leaves(threshold: Threshold, leaves: int, counted: float, *, presence: bo
     plan = IwaoPlan(threshold.level, None if threshold.is_share else TaylorLaw())
     if not leaves:
         return worded(
-            "The season holds plants, and this threshold is of leaves: look at {n} leaves or more, "
-            "and say how many they were (--leaves) and what was counted (--counted).",
-            n=least_more(plan, 0, 0),
+            "The season holds plants, and this threshold is of leaves: look at leaves from all "
+            "over the plot, and say how many they were and what was counted on them."
         )
     if (threshold.is_share or presence) and counted > leaves:
         raise SettingError(

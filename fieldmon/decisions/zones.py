@@ -240,7 +240,7 @@ def best_zones(
     sprayer: Sprayer | None = None,
     costs: TreatmentCosts | None = None,
 ) -> Zones:
-    """Return the zones whose spraying is expected to lose least.
+    """Return the zones whose spraying is expected to lose least; the plot as one if that does.
 
     Parameters
     ----------
@@ -267,7 +267,12 @@ def best_zones(
     most = (1.0 - costs.reserve) * plants.area_m2
     if costs.reserve > 0.0 and plants.m2 * np.count_nonzero(plants.once & (zone >= 0)) > most:
         zone = _within(lambda dearer: choose(grid, dearer, sprayer, costs), plants, most)
-    return _zones(zone, chance, plants, costs)
+    zones = _zones(zone, chance, plants, costs)
+    if costs.reserve > 0.0:
+        return zones
+    # where so many zones pay that switching costs more than what lies between them
+    whole = whole_plot(grid, chance, costs)
+    return whole if whole.saved - whole.cost > zones.saved - zones.cost else zones
 
 
 def whole_plot(grid: PlantGrid, chance: Floats, costs: TreatmentCosts | None = None) -> Zones:

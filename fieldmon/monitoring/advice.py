@@ -96,12 +96,6 @@ class MoreLooks:
     if_clean: int | None
     if_found: int | None
 
-    @property
-    def least(self) -> int | None:
-        """Return the fewer of the two; None: neither is in sight."""
-        known = [looks for looks in (self.if_clean, self.if_found) if looks is not None]
-        return min(known) if known else None
-
 
 @dataclass(frozen=True, eq=False)
 class Advice:
@@ -181,25 +175,31 @@ class Advice:
         return worded("Do not treat today.")
 
     def _look_on(self) -> str:
-        least = self.more.least if self.more else None
-        if least is None:
-            return worded("Look on: the plot is near the threshold, no few looks decide.")
-        return worded(
-            "Look on: look at {plants} more, then you can decide at the earliest.",
-            plants=counted(least, "plant"),
-        )
+        more = self.more or MoreLooks(None, None)
+        if more.if_clean is not None:
+            return worded(
+                "Look on: look at {plants} more; if nothing is found there, it need not be "
+                "treated.",
+                plants=counted(more.if_clean, "plant"),
+            )
+        if more.if_found is not None:
+            return worded(
+                "Look on: look at {plants} more, then you can decide at the earliest.",
+                plants=counted(more.if_found, "plant"),
+            )
+        return worded("Look on: the plot is near the threshold, no few looks decide.")
 
     def sentences(self, units: Units | None = None) -> list[str]:
         """Return the answer and what it rests on, in sentences."""
         return [self.headline(units), *self.reasons(), *self.said_of_zones()]
 
     def reasons(self) -> list[str]:
-        """Return what the answer rests on, and the looks that it lacks."""
-        return [self.plot.believed(), *self._looks_said()]
+        """Return what the answer rests on, and what would end it sooner."""
+        return [self.plot.believed(), *self._sooner_said()]
 
     def said_of_plot(self) -> list[str]:
         """Return the verdict of the plot, and the looks that it lacks."""
-        return [self.plot.sentence(), *self._looks_said()]
+        return [self.plot.sentence(), *self._looks_said(), *self._sooner_said()]
 
     def _looks_said(self) -> list[str]:
         more = self.more
@@ -209,6 +209,17 @@ class Advice:
             worded(
                 "If nothing is found on {plants} more, it need not be treated.",
                 plants=counted(more.if_clean, "plant"),
+            )
+        ]
+
+    def _sooner_said(self) -> list[str]:
+        more = self.more
+        if more is None or more.if_found is None:
+            return []
+        return [
+            worded(
+                "If {plants} more are all infested, it must be treated.",
+                plants=counted(more.if_found, "plant"),
             )
         ]
 

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.advice import Advice
 
-_MOST_ZONES = 25
-
 
 def advice_report(
     season: Season, on: date, advice: Advice, units: Units, product: str = ""
@@ -79,7 +77,7 @@ def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
     )  # fmt: skip
     found = int(np.count_nonzero(state == PRESENT))
     alt = map_alt(season.plot.field.name, state, 0) if found else words.ADVICE_ALT
-    return [Illustration("", alt, what.draw, what.heights(80.0, 150.0)), legend_block()]
+    return [Illustration("", alt, what.draw, what.heights(80.0, 150.0)), legend_block(zones=True)]
 
 
 def _zones(advice: Advice) -> Table:
@@ -99,6 +97,6 @@ def _zones(advice: Advice) -> Table:
             )
         )
     return Table(
-        words.ZONES, words.ZONES_COLUMNS, tuple(rows[:_MOST_ZONES] if rows else ()),
+        words.ZONES, words.ZONES_COLUMNS, tuple(rows),
         (0.1, 0.15, 0.2, 0.15, 0.15, 0.25), rest=words.ZONES_REST, left=(5,),
     )  # fmt: skip

@@ -180,11 +180,15 @@ def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
     )
 
 
-def legend_block(*, route: bool = False, by_state: bool = False) -> Illustration:
+def legend_block(
+    *, route: bool = False, by_state: bool = False, zones: bool = False
+) -> Illustration:
     """Return the legend below a map."""
     return Illustration(
-        "", "", lambda size: maps.legend(size[0], route=route, by_state=by_state), (8.0, 8.0)
-    )
+        "", "",
+        lambda size: maps.legend(size[0], route=route, by_state=by_state, zones=zones),
+        (8.0, 8.0),
+    )  # fmt: skip
 
 
 #: stands where plants have no row

@@ -373,7 +373,9 @@ def _north(grid: PlantGrid, placed: _Placed, size: Size) -> list[Part]:
     ]
 
 
-def legend(width: float, *, route: bool = False, by_state: bool = False) -> Drawing:
+def legend(
+    width: float, *, route: bool = False, by_state: bool = False, zones: bool = False
+) -> Drawing:
     """Return what the signs of a map mean, on a strip of that width."""
     y = 2.5
     x, parts = _states(y) if by_state else _chances(y)
@@ -382,9 +384,10 @@ def legend(width: float, *, route: bool = False, by_state: bool = False) -> Draw
               Lettering(x + 3.5, y, words.LEGEND_FOUND, 7.0)]  # fmt: skip
     x += 21.5
     ring = np.concatenate([_box(x, y, 3.5), _box(x, y, 3.5)[:1]])
-    parts += [Strokes((ring,), colours.INK, 0.5),
-              Lettering(x + 4.5, y, words.LEGEND_HOT, 7.0)]  # fmt: skip
-    x += 17.0
+    outlined = words.LEGEND_ZONES if zones else words.LEGEND_HOT
+    parts += [Strokes((ring,), colours.INK, 0.5, dashed=zones),
+              Lettering(x + 4.5, y, outlined, 7.0)]  # fmt: skip
+    x += 24.0 if zones else 17.0
     parts += [Discs(np.array([[x + 1.4, y]]), 1.2, edge=colours.GATE, width=0.8),
               Lettering(x + 3.7, y, words.LEGEND_GATE, 7.0)]  # fmt: skip
     x += 12.0

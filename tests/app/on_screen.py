@@ -45,8 +45,12 @@ _REST_MS = 180_000
 
 def rest(page):
     """Wait until the server has answered and a map is drawn."""
-    page.wait_for_selector(DRAWN, timeout=240_000)  # compiled first
-    page.wait_for_selector(IDLE, timeout=_REST_MS)
+    try:
+        page.wait_for_selector(DRAWN, timeout=240_000)  # compiled first
+        page.wait_for_selector(IDLE, timeout=_REST_MS)
+    except PlaywrightTimeout as late:
+        late.add_note(f"{page.url} says: {page.locator('body').inner_text()[:2000]}")
+        raise
 
 
 def look(page):

@@ -9,6 +9,7 @@ from datetime import date, time
 from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
+from urllib.parse import urlsplit
 
 import geopandas as gpd
 import numpy as np
@@ -18,6 +19,7 @@ from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from shapely import box
 
+from app.show.map_view import LOADER
 from app.show.maps import colours
 from app.state import rooms
 from app.words import texts
@@ -223,6 +225,48 @@ def test_nothing_is_asked_of_the_world(walk, address):
 def test_no_page_has_an_error_on_its_console(walk):
     _, complaints = walk
     assert complaints == []
+
+
+def test_a_map_comes_though_the_network_fails_and_the_server_has_let_go_of_a_part(page, address):
+    failures = [lambda asked: asked.abort(), lambda asked: asked.fulfill(status=404)]
+
+    def answer(asked):
+        failures.pop()(asked) if failures else asked.continue_()
+
+    page.route("**/map_data/*", answer)
+    page.goto(address)
+    rest(page)
+    assert not failures, "it was asked for, and did fail"
+
+
+#: as Streamlit does when new data come while the first call is not through: it is ended last
+_OVERTAKEN = """async () => {
+  const { default: call } = await import("/loader.js"), place = {};
+  const first = call({ parentElement: place, data: 1 }), last = call({ parentElement: place, data: 2 });
+  first();
+  await import("/map.js");
+  await new Promise((done) => setTimeout(done));
+  const mounted = window.mounted;
+  last();
+  return [mounted, window.mounted];
+}"""  # noqa: E501
+_MAP = """export const mount = ({ data }) => {
+  window.mounted = data;
+  return () => { window.mounted = null; };
+}"""
+
+
+def test_the_map_is_shown_by_the_last_call_though_an_earlier_one_ends_after_it(page):
+    files = {"/": ("text/html", ""), "/map.js": ("text/javascript", _MAP),
+             "/loader.js": ("text/javascript", LOADER % "/map.js")}  # fmt: skip
+
+    def answer(asked):
+        kind, body = files[urlsplit(asked.request.url).path]
+        asked.fulfill(content_type=kind, body=body)
+
+    page.route("http://fieldmon.test/**", answer)
+    page.goto("http://fieldmon.test/")
+    assert page.evaluate(_OVERTAKEN) == [2, None]
 
 
 @pytest.fixture

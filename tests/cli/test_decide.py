@@ -16,7 +16,11 @@ def test_the_verdict_is_the_seasons_and_what_is_assumed_is_said(run, season):
     from datetime import date
 
     said = kept.verdict(date.fromisoformat(BEGINS), 0.3).sentence()
-    assert out.splitlines()[:2] == ["Treat from 30 % of the plants infested on (your own).", said]
+    assert out.splitlines()[:3] == [
+        f"{BEGINS}, after the day's work.",
+        "Treat from 30 % of the plants infested on (your own).",
+        said,
+    ]
     assert said.startswith("Do not treat: ")
     assert "Assumed: 100 a hectare" in out
 

@@ -72,10 +72,12 @@ def test_areas_and_plants_add_up_on_any_plot(grid, rows, seed):
 
 
 @given(crooked_grids(60), st.integers(0, 1000))
-def test_a_stretch_is_one_section_and_long_enough(grid, seed):
+def test_a_stretch_is_one_section_and_long_enough_or_the_whole_plot(grid, seed):
     chance = np.random.default_rng(seed).random(len(grid)) ** 6
     sprayer = Sprayer(2, least_on_m=7.0, least_off_m=5.0)
     zones = best_zones(grid, chance, sprayer, TreatmentCosts(per_ha=200.0))
+    if len(zones) == 1 and zones.treated.all():
+        return  # nothing is switched
     line = grid.row_line[grid.row]
     for k in range(len(zones)):
         mine = zones.zone == k
@@ -160,6 +162,19 @@ def test_the_whole_plot_is_one_zone_and_some_zones_may_be_left_out():
     whole = whole_plot(ROW, chance, CHEAP)
     assert (whole.m2, whole.outside) == (whole.plot_m2, 0.0)
     assert zones.whole_cost == pytest.approx(whole.cost)
+
+
+def test_where_switching_costs_more_than_what_lies_between_the_plot_is_one_zone():
+    """Three rows of which each pays: three zones, or one that is left on at their ends."""
+    grid = rectangle(3, 9, Planting(90.0, 4.0, 2.0))
+    chance = np.full(27, 0.5)
+    chance[13] = 0.0
+    zones = best_zones(grid, chance, Sprayer(1), TreatmentCosts(per_ha=1.0, per_zone=5.0))
+    assert len(zones) == 1
+    assert zones.treated.all()
+    assert zones.cost == pytest.approx(zones.whole_cost)
+    spared = TreatmentCosts(per_ha=1.0, per_zone=0.0, reserve=0.1)
+    assert not best_zones(grid, chance, Sprayer(1), spared).treated.all()
 
 
 def test_where_nothing_is_worth_it_nothing_is_treated():

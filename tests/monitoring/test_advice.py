@@ -1,5 +1,6 @@
 """Advice: one answer in one sentence, the looks that it lacks, and zones that can be written."""
 
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
@@ -52,10 +53,16 @@ def test_when_nobody_can_say_it_tells_how_many_looks_decide(season):
     advice = season.advice(BEGINS, AdviceSettings(level, costs=CHEAP))
     assert advice.verdict == "look on"
     assert advice.more is not None
-    assert f"look at {advice.more.least} plant" in advice.headline()
-    # so many clean looks are enough, and one less is not
-    order = advice.more.if_clean
-    assert order is None or order >= 1
+    looks = advice.more
+    assert looks.if_clean is not None
+    assert f"look at {looks.if_clean} plants more; if nothing is found" in advice.headline()
+    assert f"If {looks.if_found} plants more are all infested" in advice.reasons()[-1]
+    assert f"If nothing is found on {looks.if_clean} plants" in " ".join(advice.said_of_plot())
+    only_found = replace(advice, more=replace(looks, if_clean=None))
+    assert f"look at {looks.if_found} plants more, then" in only_found.headline()
+    neither = replace(advice, more=None)
+    assert "no few looks decide" in neither.headline()
+    assert neither.reasons() == [advice.plot.believed()]
 
 
 def test_zones_become_what_the_sprayer_needs(season):

@@ -191,6 +191,11 @@ def test_the_legend_fits_the_page_and_names_its_signs(route, by_state):
     assert ("never inspected" in said) is by_state
     assert ("50 %+" in said) is not by_state
     assert {"found infested", "hot spot", "gate"} <= set(said)
+    of_zones = maps.legend(186.0, by_state=by_state, zones=True)
+    assert all(places(part)[:, 0].max() <= 186.0 for part in of_zones.parts)
+    assert set(said) - {"route, arrows show the way"} == (
+        set(of_zones.words()) - {"zones to treat"} | {"hot spot"}
+    )
 
 
 def test_a_day_without_a_stop_has_a_map_without_a_way():

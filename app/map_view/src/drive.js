@@ -5,6 +5,7 @@ import { TripsLayer } from "@deck.gl/geo-layers";
 import { ColumnLayer, PathLayer, PolygonLayer, ScatterplotLayer } from "@deck.gl/layers";
 
 import { element } from "./chrome.js";
+import { sinceLast } from "./frame_time.js";
 import { metresPerPixel } from "./view.js";
 
 const SPEEDS = [1, 10, 30, 100, 300], M_PER_DEGREE = 111320;
@@ -102,11 +103,10 @@ export class Drive {
     }
     if (this.second >= this.data.end) this.to(0);
     this.press.textContent = "❚❚";
-    let last = performance.now();
+    const since = sinceLast();
     const step = (now) => {
       // a page that was not seen for a while goes on where it was
-      const gone = Math.min(now - last, 400);
-      last = now;
+      const gone = Math.min(since(now), 400);
       this.second = Math.min(this.second + (gone / 1000) * this.speed, this.data.end);
       this.turn(gone);
       this.timer = this.second < this.data.end ? requestAnimationFrame(step) : null;

@@ -86,15 +86,14 @@ class MapPage {
     // who selects rows goes on, though the server has drawn what is selected so far
     if (!data.select || this.drawing.mode?.kind !== "rows") this.drawing.begin(data.draw ?? null);
     this.drawBar();
-    let jsons, driven;
-    try {
-      [driven, ...jsons] = await Promise.all([data.drive && store.json(data.drive), ...data.layers.map(store.layer)]);
-    } catch {
-      // the server has let go of something: it makes it again when asked
-      if (turn === this.turn) this.tell("missing", turn);
-      return;
-    }
-    if (turn !== this.turn) return;
+    const got = await store.persist(
+      () => Promise.all([data.drive && store.json(data.drive), ...data.layers.map(store.layer)]),
+      () => turn === this.turn,
+      // the server had let go of something: it makes it again when asked
+      () => this.tell("missing", turn),
+    );
+    if (got === null) return;
+    const [driven, ...jsons] = got;
     this.jsons = jsons;
     this.playback.show(data.frames ? null : data.play ?? null, data.words);
     this.frames.show(data.frames ?? null, data.words);
@@ -663,6 +662,7 @@ class MapPage {
   }
 
   end() {
+    this.turn++; // what is still being fetched is no longer wanted
     this.playback.stop();
     this.frames.stop();
     this.drive.end();

@@ -1,6 +1,7 @@
 // The day's work, played on the map: the way driven so far, the stops made, and who drives.
 
 import { element } from "./chrome.js";
+import { sinceLast } from "./frame_time.js";
 
 const SECONDS = 20; // a whole day, played
 
@@ -34,11 +35,11 @@ export class Playback {
       return;
     }
     const end = this.plan.at_s.at(-1);
-    let last = performance.now(), from = this.second === null || this.second >= end ? 0 : this.second;
+    const since = sinceLast();
+    let from = this.second === null || this.second >= end ? 0 : this.second;
     this.press.textContent = "❚❚";
     const step = (now) => {
-      from += ((now - last) / 1000) * (end / SECONDS);
-      last = now;
+      from += (since(now) / 1000) * (end / SECONDS);
       this.to(Math.min(from, end));
       if (from >= end) this.stop();
       else this.timer = requestAnimationFrame(step);

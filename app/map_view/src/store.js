@@ -6,7 +6,7 @@ const MOST = 200;
 function once(url, read) {
   if (!kept.has(url)) {
     const got = fetch(url).then((answer) => {
-      if (!answer.ok) throw new Error(`${url}: ${answer.status}`);
+      if (!answer.ok) throw Object.assign(new Error(`${url}: ${answer.status}`), { gone: answer.status === 404 });
       return read(answer);
     });
     got.catch(() => kept.delete(url));
@@ -18,6 +18,25 @@ function once(url, read) {
     kept.set(url, got);
   }
   return kept.get(url);
+}
+
+const FIRST_PAUSE_MS = 200, LONGEST_PAUSE_MS = 8000;
+const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+
+// Return what `fetched` brings, asked again after ever longer pauses until it is there: the network may fail
+// for a moment, and `gone` lets the server make what it had let go of. Null once it is no longer `wanted`.
+export async function persist(fetched, wanted, gone, rest = pause) {
+  for (let ms = FIRST_PAUSE_MS; ; ms = Math.min(2 * ms, LONGEST_PAUSE_MS)) {
+    try {
+      const got = await fetched();
+      return wanted() ? got : null;
+    } catch (error) {
+      if (!wanted()) return null;
+      if (error.gone) gone();
+    }
+    await rest(ms);
+    if (!wanted()) return null;
+  }
 }
 
 export const json = (url) => once(url, (answer) => answer.json());

@@ -50,3 +50,17 @@ test("the clock says the time of the day, past midnight too", () => {
   assert.equal(at(PLAN.starts_s, 3599), "07:29");
   assert.equal(at(23 * 3600, 2 * 3600), "01:00");
 });
+
+test("a day that is played begins at its beginning though its first frame is older than the click, and goes on", () => {
+  const frames = [], seen = [];
+  globalThis.requestAnimationFrame = (step) => frames.push(step);
+  globalThis.cancelAnimationFrame = () => {};
+  const day = Object.assign(playing(null), { press: {}, slider: {}, clock: {} });
+  day.changed = () => seen.push(layerOf(day, "robot")[0].q);
+  day.toggle();
+  const click = performance.now();
+  for (const now of [click - 40, click - 24, click + 5000, click + 40000]) frames.shift()(now);
+  assert.deepEqual(seen[0], [0, 0]);
+  assert.deepEqual(seen.at(-1), [0, 2]);
+  assert.equal(frames.length, 0);
+});

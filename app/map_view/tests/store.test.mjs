@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 
-import { layer, placesOf } from "../src/store.js";
+import { layer, persist, placesOf } from "../src/store.js";
 
 // written by tests/app/show/maps/plants_file.py, and held to what is written today by a test there
 const kept = JSON.parse(await readFile(new URL("plants.json", import.meta.url), "utf8"));
@@ -60,4 +60,26 @@ test("what could not be fetched is asked for again", async () => {
   await assert.rejects(layer({ url: "/late" }), /404/);
   there = true;
   assert.equal((await layer({ url: "/late" })).id, "late");
+});
+
+test("what fails is asked for until it is there, and the server hears of what it has let go of", async () => {
+  const answers = [new TypeError("no network"), Object.assign(new Error("404"), { gone: true }), "the map"];
+  const rests = [];
+  let heard = 0;
+  const fetched = async () => {
+    const next = answers.shift();
+    if (next instanceof Error) throw next;
+    return next;
+  };
+  assert.equal(await persist(fetched, () => true, () => heard++, async (ms) => rests.push(ms)), "the map");
+  assert.equal(heard, 1);
+  assert.ok(rests[1] > rests[0]);
+});
+
+test("what is no longer wanted is not asked for again", async () => {
+  let wanted = true, asked = 0;
+  const fails = async () => { asked++; throw new TypeError("no network"); };
+  assert.equal(await persist(fails, () => wanted, () => {}, async () => { wanted = false; }), null);
+  assert.equal(await persist(async () => "late", () => false, () => {}), null);
+  assert.equal(asked, 1);
 });

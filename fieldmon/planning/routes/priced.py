@@ -461,27 +461,35 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
         _put(room, k, END_LEFT, (end_left, end_left_held), (end_cut, end, end_sides, _NONE))
 
 
+@part
+def _take_element(ladder: Ladder, tables: Tables, metre: float, room: _Room, k: int) -> None:
+    """Find the best way to every state after an element, its reward and its choice."""
+    ways = tables.gate if k == ladder.gate else tables.aisle
+    for t in range(ways.shape[0]):
+        before, way, after = ways[t, 0], ways[t, 1], ways[t, 2]
+        # a drive is not complete before it came by the gate
+        if room.best[k, before] <= _NEVER or (after == 1 and k < ladder.gate):
+            continue
+        worth = room.best[k, before] + room.worth[k, way]
+        if after > 1 and k + 1 == ladder.across_m.size:
+            continue
+        if after > 1:
+            left, right = tables.passes[after, 0], tables.passes[after, 1]
+            worth -= metre * (left * ladder.up_m[k, 0] + right * ladder.up_m[k, 1])
+        if worth > room.best[k + 1, after]:
+            room.best[k + 1, after] = worth
+            room.held[k + 1, after] = room.held[k, before] + room.reward[k, way]
+            room.choice[k, after] = t
+
+
 @loop
 def _sweep(ladder: Ladder, tables: Tables, metre: float, room: _Room) -> int:
     """Find the best way to every state after every element; return the last state."""
     room.best[:] = _NEVER
     room.best[0, 0] = 0.0
-    n = ladder.across_m.size
-    for k in range(n):
-        ways = tables.gate if k == ladder.gate else tables.aisle
-        for t in range(ways.shape[0]):
-            before, way, after = ways[t, 0], ways[t, 1], ways[t, 2]
-            # a drive is not complete before it came by the gate
-            if room.best[k, before] <= _NEVER or (after == 1 and k < ladder.gate):
-                continue
-            worth = room.best[k, before] + room.worth[k, way]
-            if k + 1 < n:
-                left, right = tables.passes[after, 0], tables.passes[after, 1]
-                worth -= metre * (left * ladder.up_m[k, 0] + right * ladder.up_m[k, 1])
-            elif after != 1:
-                continue
-            if worth > room.best[k + 1, after]:
-                room.best[k + 1, after], room.choice[k, after] = worth, t
+    room.held[0, 0] = 0.0
+    for k in range(ladder.across_m.size):
+        _take_element(ladder, tables, metre, room, k)
     return 1
 
 
@@ -515,22 +523,3 @@ def _sweep_kinds(
                 worth[begin, end], reward[begin, end] = room.best[k + 1, 1], room.held[k + 1, 1]
             # those that end here do not end further up
             room.best[k + 1, 1] = _NEVER
-
-
-@part
-def _take_element(ladder: Ladder, tables: Tables, metre: float, room: _Room, k: int) -> None:
-    """Find the best way to every state after an element, and its reward."""
-    ways = tables.gate if k == ladder.gate else tables.aisle
-    for t in range(ways.shape[0]):
-        before, way, after = ways[t, 0], ways[t, 1], ways[t, 2]
-        if room.best[k, before] <= _NEVER or (after == 1 and k < ladder.gate):
-            continue
-        worth = room.best[k, before] + room.worth[k, way]
-        if after > 1 and k + 1 == ladder.across_m.size:
-            continue
-        if after > 1:
-            left, right = tables.passes[after, 0], tables.passes[after, 1]
-            worth -= metre * (left * ladder.up_m[k, 0] + right * ladder.up_m[k, 1])
-        if worth > room.best[k + 1, after]:
-            room.best[k + 1, after] = worth
-            room.held[k + 1, after] = room.held[k, before] + room.reward[k, way]

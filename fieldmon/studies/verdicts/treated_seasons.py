@@ -26,8 +26,12 @@ from fieldmon.studies.samplers.scenarios import Scenario
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
+    from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.plot.grid import PlantGrid
 
 NOTHING = "nothing"
 RULES = (NOTHING, WHOLE, ZONES)
@@ -154,11 +158,17 @@ class AreaAtEqualLeft:
         Area of the zones over the plot's.
     left
         Infested plants that zones leave, over those that the whole plot's treatment leaves.
+    by_plant
+        Area over the plot's if each plant could be sprayed alone: no zones by this map are smaller.
+    all_known
+        Area of the zones over the plot's for somebody who knew where insects are.
     """
 
     start: str
     share: float
     left: float
+    by_plant: float
+    all_known: float
 
 
 def area_at_equal_left(
@@ -180,26 +190,39 @@ def area_at_equal_left(
     """
     streams = RandomStreams(seed)
     start, grid = scenario.draw_start(streams), scenario.aisles.grid
-    evening = _looked(scenario, streams, looked_at)
+    evening, truth = _looked(scenario, streams, looked_at).chance, start.infested
+    zones = _least_area(grid, evening, Sprayer(), works)
+    really = float(np.count_nonzero(truth & ~zones.treated)) + (1 - works) * float(
+        np.count_nonzero(truth & zones.treated)
+    )
+    of_whole = (1 - works) * float(np.count_nonzero(truth))
+    return AreaAtEqualLeft(
+        scenario.start,
+        zones.m2 / zones.plot_m2,
+        really / max(of_whole, 1e-9),
+        _least_area(grid, evening, Sprayer(0), works).m2 / zones.plot_m2,
+        _least_area(grid, truth.astype(float), Sprayer(), works).m2 / zones.plot_m2,
+    )
+
+
+def _least_area(
+    grid: PlantGrid, chance: NDArray[np.float64], sprayer: Sprayer, works: float
+) -> Zones:
+    """Return the smallest zones that leave about as much as treating the whole plot does.
+
+    As the chances have it, and no more than half as much again.
+    """
     costs = TreatmentCosts(per_zone=0.0, works=works)
-    whole = whole_plot(grid, evening.chance, costs)
-    low, high = 1e-6, 1e6
-    zones = whole
+    low, high, zones = 1e-6, 1e6, whole_plot(grid, chance, costs)
     for _ in range(60):
         middle = float(np.sqrt(low * high))
-        dear = replace(costs, per_ha=middle)
-        tried = best_zones(grid, evening.chance, Sprayer(), dear)
+        tried = best_zones(grid, chance, sprayer, replace(costs, per_ha=middle))
         left = tried.outside + (1 - works) * tried.inside
         if left <= 1.5 * (1 - works) * (tried.inside + tried.outside):
             low, zones = middle, tried
         else:
             high = middle
-    truth = start.infested
-    really = float(np.count_nonzero(truth & ~zones.treated)) + (1 - works) * float(
-        np.count_nonzero(truth & zones.treated)
-    )
-    of_whole = (1 - works) * float(np.count_nonzero(truth))
-    return AreaAtEqualLeft(scenario.start, zones.m2 / whole.m2, really / max(of_whole, 1e-9))
+    return zones
 
 
 def _looked(scenario: Scenario, streams: RandomStreams, share: float) -> Belief:

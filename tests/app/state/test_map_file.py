@@ -4,6 +4,7 @@ import hashlib
 import re
 
 from app.state import map_file
+from tests.app.bundles import digest_of_sources
 from tests.paths import ROOT
 
 FOLDER = ROOT / "app" / "map_view"
@@ -19,18 +20,7 @@ def test_the_script_is_what_its_sources_build():
     first = map_file.FILE.read_text(encoding="utf-8").split("\n", 1)[0]
     said = re.fullmatch(r"// built from ([0-9a-f]{64})", first)
     assert said is not None, first[:80]
-    assert said[1] == digest_of_sources(), "the sources changed: npm run build"
-
-
-def digest_of_sources():
-    """Return the digest as `build.mjs` writes it: names and contents, in order of the names."""
-    inputs = [*(FOLDER / "src").iterdir(), FOLDER / "build.mjs", FOLDER / "package-lock.json"]
-    named = {path.relative_to(FOLDER).as_posix(): path for path in inputs}
-    digest = hashlib.sha256()
-    for name in sorted(named):
-        text = named[name].read_bytes().replace(b"\r\n", b"\n")
-        digest.update(f"{name} {len(text)}\n".encode() + text)
-    return digest.hexdigest()
+    assert said[1] == digest_of_sources(FOLDER), "the sources changed: npm run build"
 
 
 def test_the_script_asks_nothing_of_the_world():

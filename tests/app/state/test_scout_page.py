@@ -1,6 +1,5 @@
 """The scout's page is what its sources build, and knows all that it needs without a network."""
 
-import hashlib
 import json
 import re
 from urllib.parse import parse_qs, urlsplit
@@ -10,27 +9,19 @@ import pytest
 from app.state import scout_page
 from app.state.scout_page import FOLDER, PATH, files, invitation
 from app.words.language import LANGUAGES
+from tests.app.bundles import digest_of_sources
 from tests.paths import ROOT
 
 SOURCES = ROOT / "app" / "scout_page"
-
-
-def digest_of_sources():
-    """Return the digest as `build.mjs` writes it: names and contents, in order of the names."""
-    inputs = [*(SOURCES / "src").iterdir(), SOURCES / "build.mjs", SOURCES / "package-lock.json"]
-    named = {path.relative_to(SOURCES).as_posix(): path for path in inputs}
-    digest = hashlib.sha256()
-    for name in sorted(named):
-        text = named[name].read_bytes().replace(b"\r\n", b"\n")
-        digest.update(f"{name} {len(text)}\n".encode() + text)
-    return digest.hexdigest()
 
 
 @pytest.mark.parametrize("name", ["scout.js", "worker.js"])
 def test_the_scripts_are_what_their_sources_build(name):
     """`cd app/scout_page && npm ci && npm run build` writes the digest of what it builds from."""
     first = (FOLDER / name).read_text(encoding="utf-8").split("\n", 1)[0]
-    assert first == f"// built from {digest_of_sources()}", "the sources changed: npm run build"
+    assert first == f"// built from {digest_of_sources(SOURCES)}", (
+        "the sources changed: npm run build"
+    )
 
 
 @pytest.mark.parametrize(

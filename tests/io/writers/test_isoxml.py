@@ -1,11 +1,13 @@
 """Task data as the PyPI package isoxml reads it, whose classes are made from the standard."""
 
 import io
+import os
 import re
 import zipfile
 from dataclasses import fields, is_dataclass
 from decimal import Decimal
 from importlib.resources import files
+from itertools import product
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -120,22 +122,37 @@ def test_all_attributes_are_as_the_schemas_classes_demand(tmp_path, version, kin
     assert list(breaches(data)) == []
 
 
-@pytest.fixture(scope="module")
-def schema():
-    """Return the standard's own schema of version 4.3, as the PyPI package isoxml-writer has it."""
-    file = files("isoxml_writer") / "ISOXML_schema" / "ISO11783_TaskFile_V4-3.xsd"
-    return etree.XMLSchema(etree.parse(str(file)))
+def schemas():
+    """Return the standard's own schemas there are: 4.3, and any of version 3 that is told of.
+
+    The former is as the PyPI package isoxml-writer has it. FIELDMON_ISOXML_3 is the path of the
+    other, ``ISO11783_TaskFile_V3-3.xsd``, which no package has.
+    """
+    packaged = files("isoxml_writer") / "ISOXML_schema" / "ISO11783_TaskFile_V4-3.xsd"
+    told = os.environ.get("FIELDMON_ISOXML_3")
+    return {4: str(packaged)} | ({3: told} if told else {})
 
 
+ODD_NAMES = ["", " ", "כרם 7 & <ב>", "a\x07b\x00c", "\ud800\ufffe", "😀" * 40, "tab\tend\n", "'\""]
+
+
+@pytest.mark.parametrize("version", schemas())
 @pytest.mark.parametrize("kind", [None, 1, 2])
-def test_version_4_is_valid_against_the_standards_own_schema(schema, kind):
-    zones = ZONES if kind is None else zone_cells(PLOT, ZONES, 4.0, kind)
-    made = isoxml_taskdata("x" * 60, PLOT, zones, 99_999.0, "y" * 60, version=4)
+def test_it_is_valid_against_the_standards_own_schema_whatever_the_names(version, kind):
+    schema = etree.XMLSchema(etree.parse(schemas()[version]))
+    for zones, name in product([ZONES, ZONES[:1]], ["x" * 60, *ODD_NAMES]):
+        areas = zones if kind is None else zone_cells(PLOT, zones, 4.0, kind)
+        made = isoxml_taskdata(name, PLOT, areas, 99_999.0, name, version=version)
+        task_data = document(made)
+        schema.assertValid(task_data)
+        task_data.find("PFD").set("C", "z" * 40)
+        assert not schema.validate(task_data)
+
+
+def document(made):
+    """Return the XML of task data."""
     with zipfile.ZipFile(io.BytesIO(made)) as archive:
-        task_data = etree.fromstring(archive.read("TASKDATA/TASKDATA.XML"))
-    schema.assertValid(task_data)
-    task_data.find("PFD").set("C", "z" * 40)
-    assert not schema.validate(task_data)
+        return etree.fromstring(archive.read("TASKDATA/TASKDATA.XML"))
 
 
 def test_a_breach_of_the_schema_would_be_seen(tmp_path):
@@ -240,17 +257,17 @@ def breaches_of_version_3(root):
                 yield f"{element.tag}/{name} refers to {text}, which is not there"
 
 
-def task_data_3(zones, rate=99_999.0):
+def task_data_3(zones, rate=99_999.0, name="x" * 60):
     """Return the document of version 3."""
-    made = isoxml_taskdata("x" * 60, PLOT, zones, rate, "y" * 60, version=3)
-    with zipfile.ZipFile(io.BytesIO(made)) as archive:
-        return etree.fromstring(archive.read("TASKDATA/TASKDATA.XML"))
+    return document(isoxml_taskdata(name, PLOT, zones, rate, "y" * 60, version=3))
 
 
 @pytest.mark.parametrize("kind", [None, 1, 2])
 def test_version_3_keeps_what_the_standards_own_schema_of_it_says(kind):
-    root = task_data_3(ZONES if kind is None else zone_cells(PLOT, ZONES, 4.0, kind))
-    assert list(breaches_of_version_3(root)) == []
+    zones = ZONES if kind is None else zone_cells(PLOT, ZONES, 4.0, kind)
+    for name in ["x" * 60, *ODD_NAMES]:
+        root = task_data_3(zones, name=name)
+        assert list(breaches_of_version_3(root)) == []
     used = {element.tag for element in root.iter()}
     assert used == set(VERSION_3) - ({"GRD"} if kind is None else set())
 

@@ -47,6 +47,9 @@ def test_once_all_was_looked_at_zones_spray_at_least_60_percent_less(scenario):
     made = [area_at_equal_left(scenario, seed, looked_at=1.0) for seed in range(2)]
     assert max(one.share for one in made) < 0.4
     assert max(one.left for one in made) < 3.0
+    # who may spray each plant alone needs no more than strips; who knows all, hardly anything
+    assert all(one.by_plant <= one.share + 1e-9 for one in made)
+    assert all(one.all_known < 0.4 for one in made)
 
 
 def test_a_pest_lives_in_a_treated_season_by_its_own_nights():

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from ..state.driving import DriveRun
     from ..state.live_drive import LiveDrive
 
+# for a first answer is waited in steps that a click ends, less than a second in all
+_STEP_S, _STEPS = 0.05, 18
+
 
 def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool) -> bool:
     """Offer to begin and to stop it; return whether it is at work. `over`: nothing is left to do.
@@ -27,3 +30,14 @@ def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, ov
         st.button(label, type="primary", key=key, disabled=at_work or over)
         st.button(texts.STOP, key=f"{key}_stop", on_click=work.stop, disabled=not at_work)
     return at_work
+
+
+def show_progress(running: Comparison) -> None:
+    """Say how far it is; while there is no answer yet, wait a little for the first."""
+    draw = st.progress
+    for _ in range(_STEPS):
+        said = texts.COMPARE_PROGRESS.format(done=running.done, total=running.total)
+        draw = draw(running.done / running.total, said).progress
+        if running.is_answered or not running.running:
+            return
+        running.wait(_STEP_S)

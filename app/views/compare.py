@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 _MOST = 12
-# how often is looked for results; for the first answer is waited, in steps that a click ends
-_EVERY_S, _STEP_S, _STEPS = 1.0, 0.05, 18
+# how often is looked for results
+_EVERY_S = 1.0
 
 
 def show(choices: Choices) -> None:
@@ -52,7 +52,7 @@ def _results(choices: Choices, running: Comparison) -> None:
     if running.problem is not None:
         st.error(of_error(running.problem))
         return
-    _progress(running)
+    background.show_progress(running)
     seasons = running.seasons()
     ranked = outcomes(seasons)
     if not ranked:
@@ -73,14 +73,3 @@ def _results(choices: Choices, running: Comparison) -> None:
         box = f"use_strategy {running.settings.strategies}"
         st.selectbox(texts.STRATEGY, alone, format_func=verdicts.name, width=340, key=box)
         st.button(texts.USE_THIS, key="use_this", on_click=changing.use, args=(choices, box))
-
-
-def _progress(running: Comparison) -> None:
-    """Say how far it is; while there is no answer yet, wait a little for the first."""
-    draw = st.progress
-    for _ in range(_STEPS):
-        said = texts.COMPARE_PROGRESS.format(done=running.done, total=running.total)
-        draw = draw(running.done / running.total, said).progress
-        if running.is_answered or not running.running:
-            return
-        running.wait(_STEP_S)

@@ -844,8 +844,7 @@ VERDICT = (
     "({low:,.0f} to {high:,.0f} fewer, 95 % interval)."
 )
 VERDICT_ONE = (
-    "One season so far: **{best}** is ahead of {second}. That tells little, and has no interval "
-    "yet."
+    "One season so far: **{best}** is ahead of {second}. That tells little; more would tell."
 )
 VERDICT_TIED = (
     "**{best}** comes out best, but not clearly better than {second}: the 95 % interval of the "

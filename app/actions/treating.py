@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import streamlit as st
 
 from fieldmon.decisions.doses import Dose
-from fieldmon.decisions.labels import irac_groups, read_labels
+from fieldmon.decisions.label_file import read_labels
+from fieldmon.decisions.labels import irac_groups
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application

@@ -29,7 +29,7 @@ def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
 
     Example: fieldmon labels season.gpkg labels.csv
     """
-    from fieldmon.decisions.labels import read_labels  # noqa: PLC0415
+    from fieldmon.decisions.label_file import read_labels  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
     kept = Season(season)

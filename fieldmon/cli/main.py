@@ -10,6 +10,7 @@ from fieldmon.cli.backup import backup
 from fieldmon.cli.change import change
 from fieldmon.cli.compare import compare
 from fieldmon.cli.correct import correct
+from fieldmon.cli.cycles import cycles_seldom_looked_for
 from fieldmon.cli.decide import decide
 from fieldmon.cli.drive import drive
 from fieldmon.cli.export import export
@@ -67,7 +68,8 @@ app.command("stand-in")(stand_in)
 
 def main() -> None:
     """Run the command; a problem is a sentence and exit code 2, never a traceback."""
-    problems.run(app)
+    with cycles_seldom_looked_for():
+        problems.run(app)
 
 
 if __name__ == "__main__":

@@ -78,6 +78,9 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
 
     Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
     """
+    from fieldmon.io.sandbox import process  # noqa: PLC0415
+
+    process.warm("fieldmon.io.sandbox.tasks")  # it loads while the season is read
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
 
@@ -100,7 +103,8 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
         batch = "" if done.batch is None else f" (batch {done.batch})"
         typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
     if last is not None:
-        typer.echo("\n".join(lines(kept, kept.status(last.item()))))
+        with kept.one_moment():
+            typer.echo("\n".join(lines(kept, kept.status(last.item()))))
 
 
 def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:

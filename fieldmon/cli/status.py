@@ -40,7 +40,11 @@ def status(
 
     kept = Season(season)
     tell_drafts(kept.drafts)
-    now = kept.status(day(on) or kept.last_date())
+    with kept.one_moment():
+        _show(kept, kept.status(day(on) or kept.last_date()), batches=batches, rows=rows)
+
+
+def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
     typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
     for line in of_treatments(kept, now):

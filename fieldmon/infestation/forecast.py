@@ -146,7 +146,10 @@ def _numbers(evening: Belief, nights: Sequence[Spread]) -> Floats:
     """Return how many are expected to be infested this evening and after each night, ``(d,)``."""
     numbers, belief = [float(evening.chance.sum())], evening
     for spread in nights:
-        belief = belief.overnight(spread)
+        if isinstance(belief, TracedPairs):
+            belief = belief.untold_night(spread)
+        else:
+            belief = belief.overnight(spread)
         numbers.append(float(belief.chance.sum()))
     return np.array(numbers)
 

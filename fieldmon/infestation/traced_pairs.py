@@ -37,6 +37,7 @@ from fieldmon.infestation.origins import (
     OVERLOOKED,
     OriginCounts,
 )
+from fieldmon.infestation.pair_changes import pairs_after_arrivals, pairs_scaled
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
@@ -64,8 +65,6 @@ ARRIVE, ARRIVE_BY_EDGE = 0.0002, 0.0001
 _KNOWN, _UNKNOWN = 0.99, 0.95
 # what was inspected around a plant never lowers it by more in a day (as an exponent)
 _MOST_LOWERED = 3.0
-# two neighbours' fates never hang together more
-_MOST_DEPENDENCE = 0.9
 # the wind by which finds are traced: so much of it is that of the nights before the last, told
 # apart by metres a second
 _LATE, _WIND_M_S = 0.5, 1.0
@@ -280,19 +279,24 @@ class TracedPairs:
 
     def times(self, scale: Floats) -> TracedPairs:
         """Return the same with all chances ``(n,)`` times a scale, but those of known finds."""
-        start, other = self.grid.adjacent
         scale = np.where(self.chance > _KNOWN, 1.0, scale)
         chance = np.clip(self.chance * scale, LEAST_CHANCE, np.maximum(self.chance, _UNKNOWN))
-        own = np.repeat(scale, np.diff(start))
-        p, q = np.repeat(chance, np.diff(start)), chance[other]
-        most = p * q + _MOST_DEPENDENCE * (np.minimum(p, q) - p * q)
-        both = np.minimum(self.pair_chance * np.sqrt(own * scale[other]), most)
-        return replace(self, chance=chance, pair_chance=np.maximum(both, p + q - 1.0).clip(0.0))
+        both = pairs_scaled(self.pair_chance, self.grid.adjacent, scale, chance)
+        return replace(self, chance=chance, pair_chance=both)
 
     def overnight(self, spread: Spread) -> TracedPairs:
         """Return what is believed the next morning."""
-        start, other = self.grid.adjacent
-        degree = float(np.diff(start).mean())
+        return self._overnight(spread, tells_apart=True)
+
+    def untold_night(self, spread: Spread) -> TracedPairs:
+        """Return the same chances next morning; where they came from is not told apart any more.
+
+        No find can be traced by it, but it is worked out in half the time.
+        """
+        return self._overnight(spread, tells_apart=False)
+
+    def _overnight(self, spread: Spread, *, tells_apart: bool) -> TracedPairs:
+        degree = float(np.diff(self.grid.adjacent.start).mean())
         sends = spread.rate_per_day * (degree if spread.to != "one" else 1.0)
         reach, moves = self.reach, self.chance
         if isinstance(spread, PestSpread) and self.cohorts is not None:
@@ -306,19 +310,20 @@ class TracedPairs:
         rate = spread.rate_per_day * min(1.0, beside * self.counts.scale[BESIDE_IT])
         near = replace(spread, rate_per_day=rate, arrivals_per_day=0.0)
         pairs = self.chance, self.pair_chance
-        chance, pair_chance = night_of_pairs(pairs, self.grid.linked, near, leaning(self.evidence))
-        brought = self._brought(reach, moves, sends, spread)
+        believed = night_of_pairs(pairs, self.grid.linked, near, leaning(self.evidence))
+        brought = self._brought(reach, (moves, sends), spread, tells_apart=tells_apart)
         arrives = 1.0 - np.exp(-brought.sum(axis=0))
-        gain = (1.0 - chance) * arrives
-        after = np.clip(chance + gain, LEAST_CHANCE, MOST_CHANCE)
-        shares = self._shares_after(chance - self.chance, gain, brought)
-        own = np.repeat(arrives, np.diff(start))
-        p, q = np.repeat(chance, np.diff(start)), chance[other]
-        neither = (1.0 - p - q + pair_chance).clip(0.0) * (1.0 - own) * (1.0 - arrives[other])
-        p, q = np.repeat(after, np.diff(start)), after[other]
-        both = np.clip(p + q - 1.0 + neither, (p + q - 1.0).clip(0.0), np.minimum(p, q))
-        unseen = np.minimum(self.unseen + sends, _MOST_SENT)
-        morning = replace(self, chance=after, pair_chance=both, shares=shares, unseen=unseen)
+        gain = (1.0 - believed[0]) * arrives
+        after = np.clip(believed[0] + gain, LEAST_CHANCE, MOST_CHANCE)
+        morning = replace(
+            self,
+            chance=after,
+            pair_chance=pairs_after_arrivals(believed, self.grid.adjacent, arrives, after),
+            unseen=np.minimum(self.unseen + sends, _MOST_SENT),
+        )
+        if tells_apart:
+            shares = self._shares_after(believed[0] - self.chance, gain, brought)
+            morning = replace(morning, shares=shares)
         return self._aged(morning, spread)
 
     def _aged(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
@@ -334,16 +339,21 @@ class TracedPairs:
             morning = morning.treated(np.full(len(gain), left))
         return replace(morning, cohorts=cohorts, wind_m_s=_of_late(self.wind_m_s, spread.wind_m_s))
 
-    def _brought(self, reach: Reach, moves: Floats, sends: float, spread: Spread) -> Floats:
+    def _brought(
+        self, reach: Reach, sent: tuple[Floats, float], spread: Spread, *, tells_apart: bool
+    ) -> Floats:
         """Return what a night brings each plant from farther than beside it, ``(o, n)``.
 
-        `moves` is the chance ``(n,)`` that a plant is infested and sends something out.
+        `sent` is the chance ``(n,)`` that a plant is infested and sends something out, and how
+        much that is. Unless kernels are told apart, the first holds what all of them bring.
         """
-        scale = self.counts.scale
+        (moves, sends), scale = sent, self.counts.scale
         brought = np.zeros((N_ORIGINS, len(self.chance)))
-        jumped = reach.brought_by_each(moves)
-        beyond = reach.beyond * scale[JUMPED:]
-        brought[JUMPED:] = jumped * (sends * self.jumps * beyond)[:, None]
+        by_jumps = sends * self.jumps * (reach.beyond * scale[JUMPED:])
+        if tells_apart:
+            brought[JUMPED:] = reach.brought_by_each(moves) * by_jumps[:, None]
+        else:
+            brought[JUMPED] = reach.brought(moves, by_jumps)
         brought[ANYWHERE] = max(spread.arrivals_per_day, ARRIVE) * scale[ANYWHERE]
         by_edge = ARRIVE_BY_EDGE
         if isinstance(spread, PestSpread):

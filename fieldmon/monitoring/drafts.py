@@ -14,9 +14,6 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
-from fieldmon.io.readers.inspection_options import InspectionOptions
-from fieldmon.io.readers.inspections import look_up
 from fieldmon.monitoring import inspection_lots, inspection_table
 from fieldmon.monitoring.geopackage import geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
@@ -122,6 +119,11 @@ def keep(
 
 def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
     """Return what a draft says; raise with the reason where it makes no sense."""
+    # readers take a tenth of a second to import, and drafts are few
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import look_up  # noqa: PLC0415
+
     place, plant, on, at, result, count, who, notes = said
     if on in {None, ""}:
         raise ValueError("it has no date")

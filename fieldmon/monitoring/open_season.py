@@ -37,6 +37,7 @@ from fieldmon.plot.grid import RowLabel, row_label
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterator, Sequence
+    from contextlib import AbstractContextManager
     from datetime import date, time
     from pathlib import Path
 
@@ -126,6 +127,10 @@ class OpenSeason:
     def path(self) -> Path:
         """Return the file."""
         return self.store.path
+
+    def one_moment(self) -> AbstractContextManager[None]:
+        """Let all answers within this block be of one moment, whoever writes meanwhile waits."""
+        return self.store.one_moment()
 
     @property
     def revision(self) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.monitoring import day_figures
@@ -14,12 +15,14 @@ from fieldmon.monitoring.status import Status
 from fieldmon.pests.development import development
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from datetime import date
 
     import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.decisions.map_verdict import MapVerdict
+    from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
@@ -30,28 +33,31 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+class _Asked(NamedTuple):
+    """What the file says now; what is believed on the morning of a day; the day's number."""
+
+    contents: SeasonContents
+    morning: Belief
+    day: int
+
+
 class SeasonEstimates(OpenSeason):
     """What follows on each day from all that was recorded before."""
 
     def morning(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of a morning."""
-        with self._lock:
-            contents = self._now()
-            return contents.morning(contents.settings.day(on)).chance
+        with self._asked(on) as (_, morning, _):
+            return morning.chance
 
     def evening(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of a day, after what was recorded of it so far."""
-        with self._lock:
-            contents = self._now()
-            day = contents.settings.day(on)
-            return contents.history.evening(contents.morning(day), day).chance
+        with self._asked(on) as (contents, morning, day):
+            return contents.history.evening(morning, day).chance
 
     def level_range(self, on: date) -> LevelRange:
         """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
-        with self._lock:
-            contents = self._now()
-            day = contents.settings.day(on)
-            return contents.history.level_range(contents.morning(day), day)
+        with self._asked(on) as (contents, morning, day):
+            return contents.history.level_range(morning, day)
 
     def verdict(
         self, on: date, level: float, sure: float = 0.9, plants: NDArray[np.bool_] | None = None
@@ -61,10 +67,8 @@ class SeasonEstimates(OpenSeason):
         Plants that were found and not treated count: they are infested. `plants` ``(n,)`` is the
         part of the plot that is asked about; None: all.
         """
-        with self._lock:
-            contents = self._now()
-            day = contents.settings.day(on)
-            evening = contents.history.evening(contents.morning(day), day)
+        with self._asked(on) as (contents, morning, day):
+            evening = contents.history.evening(morning, day)
         return map_verdict(
             contents.history.grid, evening.chance, level, evening.pair_chance,
             plants=plants, sure=sure, doubt=evening.doubt,
@@ -80,18 +84,15 @@ class SeasonEstimates(OpenSeason):
         asked
             The threshold, the sprayer and the costs; None: the defaults.
         """
-        with self._lock:
-            contents = self._now()
-            scene, day = self._scene(contents, on), contents.settings.day(on)
-            evening = contents.history.evening(contents.morning(day), day)
+        with self._asked(on) as (contents, morning, day):
+            scene = self._scene(contents, on)
+            evening = contents.history.evening(morning, day)
         return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""
-        with self._lock:
-            contents = self._now()
-            day = contents.settings.day(on)
-            now = Status.of(contents.history, contents.morning(day), day)
+        with self._asked(on) as (contents, morning, day):
+            now = Status.of(contents.history, morning, day)
         return replace(now, development=_development(contents, on))
 
     def development(self, on: date) -> Development | None:
@@ -104,18 +105,14 @@ class SeasonEstimates(OpenSeason):
 
     def forecast(self, on: date) -> Forecast:
         """Return how many plants are infested on the mornings after a day, nobody inspecting."""
-        with self._lock:
-            contents = self._now()
-            day = contents.settings.day(on)
-            morning = contents.morning(day)
-        return contents.history.forecast(morning, day)  # others may plan meanwhile
+        with self._asked(on) as (contents, morning, day):
+            history = contents.history
+        return history.forecast(morning, day)  # others may plan meanwhile
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
-        with self._lock:
-            contents = self._now()
-            day = contents.settings.day(on)
-            return contents.history.learnt(contents.morning(day), day)
+        with self._asked(on) as (contents, morning, day):
+            return contents.history.learnt(morning, day)
 
     def progress(self, on: date) -> Progress:
         """Return how far the inspections are after a day's work; nothing is estimated for it."""
@@ -127,16 +124,22 @@ class SeasonEstimates(OpenSeason):
         for kept in self.days():
             if kept.on == on:
                 return kept
-        with self._lock:
-            now = self._now()
-            day = now.settings.day(on)
-            estimate = now.history.estimate(now.morning(day), day)
-        return DayFigures.of(on, Progress.of(now.history, day), estimate)
+        with self._asked(on) as (contents, morning, day):
+            estimate = contents.history.estimate(morning, day)
+        return DayFigures.of(on, Progress.of(contents.history, day), estimate)
 
     def days(self) -> tuple[DayFigures, ...]:
         """Return the figures of the days on which anything was planned or recorded, in order."""
         with self.store.reading() as db:
             return day_figures.kept(db)
+
+    @contextmanager
+    def _asked(self, on: date) -> Iterator[_Asked]:
+        """Give what a question about a day is answered from; others wait, or would do it again."""
+        with self._lock:
+            contents = self._now()
+            day = contents.settings.day(on)
+            yield _Asked(contents, contents.morning(day), day)
 
 
 def _development(now: SeasonContents, on: date) -> Development | None:

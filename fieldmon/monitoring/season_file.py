@@ -14,6 +14,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     derived_layers,
+    first_morning,
     inspection_table,
     qgis_project,
     season_log,
@@ -125,6 +126,8 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                 tables.write_array(db, "risk", risk)
             settings_log.write(db, as_json(settings))
             set_meta(db, "revision", "0")
+            # whoever opens it need not work it out again
+            first_morning.keep(db, first_morning.causes(db, settings.begins, settings.prior), prior)
             derived_layers.refresh(db, plot, history, first.morning)
             qgis_project.keep(db, Path(path).name)
             season_log.begin(db, f"a season on {plot.field.name}")
@@ -187,10 +190,6 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
             yield change
             if change.since is not None:
                 self._refresh(db, change.since)
-
-    def settings_in(self, db: sqlite3.Connection) -> MonitoringSettings:
-        """Return what is chosen for the season, as a transaction sees it."""
-        return self._read(db).settings
 
     def advise(self, on: date, said: str, who: str = "") -> None:
         """Write into the log what was advised for a day, unless that was written last of it."""

@@ -26,6 +26,7 @@ from fieldmon.monitoring import (
     season_log,
 )
 from fieldmon.monitoring.geopackage import insert, point_blobs, touch
+from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.local_clock import local_clock, utc_now
 
@@ -210,7 +211,7 @@ def _write(
     seen: list[Inspections] = []
     if not letter.tellings:
         return {}, 0, seen
-    settings = season.settings_in(change.db)  # before anything is written: it is read once
+    settings = settings_of(change.db)
     batch = batches.begin(change.db, "findings", SOURCE, scout.name)
     problems: dict[str, str] = {}
     for one in letter.tellings:

@@ -36,6 +36,8 @@ _GLANCE_S = 0.5
 _MAGIC = b"SQLite format 3\x00"
 # the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
 _KEPT = threading.local()
+# the files that a thread reads as of one moment within `Store.one_moment`, by path
+_STILL = threading.local()
 
 
 def is_season(path: str | Path) -> bool:
@@ -138,9 +140,32 @@ class Store:
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
         """Give a consistent view of the file."""
-        with _sentences(self.path), _opened(self.path) as db:
-            db.execute("BEGIN")
-            yield db
+        still = _still().get(self.path)
+        with _sentences(self.path):
+            if still is not None:
+                yield still
+                return
+            with _opened(self.path) as db:
+                db.execute("BEGIN")
+                yield db
+
+    @contextmanager
+    def one_moment(self) -> Iterator[None]:
+        """Let all that this thread reads of the file within this block be of one moment.
+
+        Whoever writes waits until it ends. What a thread does not write within it, it writes after.
+        """
+        still = _still()
+        if self.path in still:
+            yield
+            return
+        with self.reading() as db:
+            get_meta(db, "version")  # the moment is that of the first thing read
+            still[self.path] = db
+            try:
+                yield
+            finally:
+                del still[self.path]
 
     @contextmanager
     def writing(self, patience_s: float | None = None) -> Iterator[sqlite3.Connection]:
@@ -148,6 +173,8 @@ class Store:
 
         `patience_s`: how long to wait for others; None: as long as for any command.
         """
+        if self.path in _still():  # it would wait for itself
+            raise RuntimeError("What is read as of one moment must not be written within it.")
         with _sentences(self.path), closing(_connect(self.path, patience_s)) as db:
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")
@@ -186,6 +213,13 @@ def kept_open() -> Iterator[None]:
         files, _KEPT.files = _KEPT.files, None
         for db in files.values():
             db.close()
+
+
+def _still() -> dict[Path, sqlite3.Connection]:
+    if not hasattr(_STILL, "files"):
+        _STILL.files = {}
+    files: dict[Path, sqlite3.Connection] = _STILL.files
+    return files
 
 
 def _kept() -> dict[tuple[Path, int], sqlite3.Connection] | None:

@@ -68,10 +68,11 @@ def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
 
 
 def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
-    state = season.history.known(season.settings.day(on))
+    with season.one_moment():
+        state, evening = season.history.known(season.settings.day(on)), season.evening(on)
     grid = season.plot.grid
     what = PlotMap(
-        grid, season.evening(on), state, hot_spots(grid, np.full(len(grid), -1, np.int8)),
+        grid, evening, state, hot_spots(grid, np.full(len(grid), -1, np.int8)),
         season.plot.aisles.gate_m, units,
         zones_m=tuple(grid.frame.geometry_m(area) for area in advice.outlines),
     )  # fmt: skip

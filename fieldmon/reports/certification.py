@@ -8,6 +8,7 @@ What nobody said stands as not said: nothing is filled in.
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -102,15 +103,18 @@ def certification_report(
         raise SettingError(
             worded("A certification report must be of a season or more, but none is given.")
         )
-    records = [_PlotRecord.of(season, until, units) for season in seasons]
-    begins = min(one.season.settings.begins for one in records)
-    on = max(one.on for one in records)
-    title = worded(words.CERT_TITLE, begins=units.day(begins), day=units.day(on))
-    sheets = [Sheet(words.CERT_SHEETS[0], page) for page in _pages(_summary(records))]
-    sheets += [Sheet(words.CERT_SHEETS[1], page) for page in _pages(_applications(records))]
-    sheets += [
-        Sheet(words.CERT_SHEETS[2], (table,)) for one in records for table in _inspections(one)
-    ]
+    with ExitStack() as still:
+        for season in seasons:
+            still.enter_context(season.one_moment())
+        records = [_PlotRecord.of(season, until, units) for season in seasons]
+        begins = min(one.season.settings.begins for one in records)
+        on = max(one.on for one in records)
+        title = worded(words.CERT_TITLE, begins=units.day(begins), day=units.day(on))
+        sheets = [Sheet(words.CERT_SHEETS[0], page) for page in _pages(_summary(records))]
+        sheets += [Sheet(words.CERT_SHEETS[1], page) for page in _pages(_applications(records))]
+        sheets += [
+            Sheet(words.CERT_SHEETS[2], (table,)) for one in records for table in _inspections(one)
+        ]
     plots = ", ".join(dict.fromkeys(one.season.plot.field.name for one in records))
     return Report(plots, title, on, tuple(sheets))
 

@@ -22,8 +22,9 @@ Line = dict[str, object]
 
 def treatments_table(season: Season) -> Iterator[Line]:
     """Yield a line for each treatment that counts: GLOBALG.A.P.'s fields, and how it is kept."""
-    labels = season.labels()
-    for one in season.treatments():
+    with season.one_moment():
+        labels, treatments = season.labels(), season.treatments()
+    for one in treatments:
         said, period = one.application, waits(one, label_of(one, labels))
         entry = period.entry_from
         yield {

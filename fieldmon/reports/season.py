@@ -93,13 +93,14 @@ class _Facts:
 
 def season_report(season: Season, on: date, units: Units) -> Report:
     """Return the report of a season up to a day; nothing is kept by it."""
-    facts = _Facts.of(season, on, units)
-    made = (_stands(facts), _went(facts), _hot_and_found(facts), _goes_by(facts))
-    title = worded(words.SEASON_TITLE, begins=units.day(season.settings.begins), day=units.day(on))
-    sheets = tuple(
-        Sheet(heading, tuple(blocks))
-        for heading, blocks in zip(words.SEASON_SHEETS, made, strict=True)
-    )
+    with season.one_moment():
+        facts, begins = _Facts.of(season, on, units), season.settings.begins
+        made = (_stands(facts), _went(facts), _hot_and_found(facts), _goes_by(facts))
+        sheets = tuple(
+            Sheet(heading, tuple(blocks))
+            for heading, blocks in zip(words.SEASON_SHEETS, made, strict=True)
+        )
+    title = worded(words.SEASON_TITLE, begins=units.day(begins), day=units.day(on))
     return Report(facts.name, title, on, sheets)
 
 

@@ -8,8 +8,10 @@ import pytest
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.origins import ANYWHERE, AT_START, BY_EDGE, JUMPED, OVERLOOKED
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(20, 20)
@@ -118,3 +120,17 @@ def test_a_day_moves_the_chance_of_jumping_as_bayes_rule_does_and_counts_it_once
     scale = after.counts.scale / told.counts.scale
     wanted = 0.02 * (0.6 * scale[AT_START] + 0.4 * scale[JUMPED] * jumps / told.jumps)
     assert after.chance[39] == pytest.approx(wanted, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "pest", [None, Pest("mite", movement=Movement("exponential", 0.4, reach_m=6.0))]
+)
+def test_a_night_that_tells_nothing_apart_brings_the_same_chances(pest):
+    first = TracedPairs.of(GRID, FLAT)
+    belief = first if pest is None else first.of_pest(pest)
+    told = untold = seen(belief, np.arange(N) % 41 == 0)
+    spread = Spread(0.1) if pest is None else PestInWeather(pest).spread(0, GRID.frame)
+    for _ in range(3):
+        told, untold = told.overnight(spread), untold.untold_night(spread)
+        np.testing.assert_allclose(untold.chance, told.chance, rtol=1e-12)
+        np.testing.assert_allclose(untold.pair_chance, told.pair_chance, rtol=1e-10)

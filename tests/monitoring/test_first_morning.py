@@ -11,6 +11,7 @@ import pytest
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.monitoring import Season, first_morning
 from fieldmon.monitoring import open_season as in_season
+from tests.monitoring.seasons import BEGINS, a_season
 
 
 @pytest.fixture
@@ -56,3 +57,9 @@ def test_another_program_works_the_first_morning_out_by_its_own_rules(season_fil
     )
     assert Season(season_file).history.first_morning is not None
     assert len(asked) == 1
+
+
+def test_a_season_that_was_just_begun_has_its_first_morning_in_the_file(tmp_path, monkeypatch):
+    monkeypatch.setattr(in_season, "prior_chance", None)  # who opens it would call that
+    season = a_season(tmp_path / "season.gpkg")
+    assert len(season.morning(BEGINS)) == len(season.plot.grid)

@@ -10,13 +10,19 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.pests.pest import Movement, Pest, Stage
+from fieldmon.planning.workday import Workday
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
 from fieldmon.samplers.base import InspectionTimes, Stops
 from fieldmon.simulation.insects import NightInsects, PestInsects
-from fieldmon.simulation.season import SeasonSettings, morning_beliefs, simulated_days
+from fieldmon.simulation.season import (
+    SeasonOnItsWay,
+    SeasonSettings,
+    morning_beliefs,
+    simulated_days,
+)
 from fieldmon.simulation.start import Start
 
 AISLES = Aisles.of(rectangle(12, 12))
@@ -117,6 +123,23 @@ def test_while_the_robot_works_insects_move_in_their_hours():
     assert found_at(1.5 * 3600) == 0.0
     assert 0.4 < found_at(3.1 * 3600) < 0.9
     assert found_at(8 * 3600) == pytest.approx(0.9, abs=0.15)
+
+
+@pytest.mark.parametrize(
+    ("end_s", "passed"), [(3599.5, 0), (3600.0, 1), (7199.5, 1), (7200.0, 2), (25 * 3600.0, 24)]
+)
+def test_an_hour_has_passed_once_somebody_worked_for_it_whole(end_s, passed):
+    start = Start(at(40), np.full(N, 0.01))
+    settings = SeasonSettings(n_days=1, pest=PestInWeather(BY_HOUR))
+    on_its_way = SeasonOnItsWay(AISLES, Robot(), sampler("naive"), start, settings)
+    hours, pass_hour = [], on_its_way.insects.pass_hour
+    on_its_way.insects.pass_hour = lambda *of: hours.append(of[0].tolist()) or pass_hour(*of)
+    one = np.ones(1)
+    work = Workday(np.array([40], np.int32), one * 3600.0, one > 0, one * 9.0, one, end_s)
+    on_its_way.by_hour(0, lambda _: (work, ()), [one], (key(0), key(1)))
+    assert len(hours) == passed
+    # a plant reached as the second hour begins is found in the second
+    assert hours == [[], [40], *[[]] * 22][:passed]
 
 
 def test_the_evening_counts_what_came_by_day():

@@ -33,7 +33,7 @@ _OUT_OF_TIME = getattr(signal, "SIGXCPU", 0) or -1
 #: files read before a process is replaced, so that nothing adds up in it
 _USES = 200
 #: what a process that is to have all at hand loads before its first file
-_LOADED_AHEAD = (
+ALL_READERS = (
     "fieldmon.io.sandbox.tasks",
     *(f"fieldmon.io.readers.{name}" for name in ("plots", "points_and_lines", "treated", "crews")),
     *(f"fieldmon.io.formats.{name}" for name in ("gdal", "geoparquet")),
@@ -261,9 +261,12 @@ def call(task: str, *arguments: Any, seconds: float = limits.READ_SECONDS) -> An
         _IDLE.give_back(reader)
 
 
-def warm() -> None:
-    """Start a reading process now, so that the first file need not wait for it to load."""
-    _IDLE.give_back(_IDLE.borrow(*_LOADED_AHEAD))
+def warm(*modules: str) -> None:
+    """Start a reading process now, so that the first file need not wait for it to load `modules`.
+
+    None: all that read files.
+    """
+    _IDLE.give_back(_IDLE.borrow(*(modules or ALL_READERS)))
 
 
 def peaks_bytes() -> list[int]:

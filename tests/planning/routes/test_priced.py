@@ -1,8 +1,12 @@
 """Drives at a price: their bounds fall to one least price, and prices order time."""
 
+from itertools import pairwise, product
+
 import numpy as np
 import pytest
 
+from fieldmon.compute.jit import loop
+from fieldmon.planning.routes import priced as priced_room
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.plot.layout import Planting, rectangle
@@ -18,6 +22,7 @@ def priced(request):
     return Priced(ladder_below(aisles), reward, Robot(returns=returns))
 
 
+_once = priced_room._once
 PRICES = np.geomspace(1e-5, 0.03, 40)
 
 
@@ -48,3 +53,28 @@ def test_ways_that_can_be_driven_just_so_are_worth_no_more_than_those_granted(pr
     assert granted_again.worth == granted.worth
     assert (offered.worth[at] <= priced._room.worth[at] + 1e-9).all()
     assert worth.shape == offered.worth.shape
+
+
+@loop
+def once(ladder, reward, state, turns):
+    return _once(ladder, reward, state, turns)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.2, 0.7])
+def test_one_pass_is_worth_as_much_as_any_choice_of_stops_that_turns_for_each_change_of_side(turn):
+    ladder = ladder_below(Aisles.of(rectangle(3, 5, Planting(faces=2))))
+    k = int(np.argmax(np.diff(ladder.start)))
+    inside = np.arange(ladder.start[k], ladder.start[k + 1])
+    assert {*ladder.upper[inside].tolist()} == {False, True}
+    reward, stop = np.random.default_rng(6).random(len(ladder.plant)), 0.3
+    found = once(ladder, reward, (k, stop, 50.0), (turn, turn))
+    best = 0.0
+    for chosen in product((False, True), repeat=len(inside)):
+        at = inside[list(chosen)]
+        places = [ladder.upper[at[ladder.in_m[at] == here]] for here in np.unique(ladder.in_m[at])]
+        turns = min(
+            sum(one != other for one, other in pairwise(side for place in order for side in place))
+            for order in product(*({tuple(each), tuple(each[::-1])} for each in places))
+        )
+        best = max(best, (reward[at] - stop).sum() - turn * turns)
+    assert best - 1e-12 <= found <= np.maximum(reward[inside] - stop, 0.0).sum() + 1e-12

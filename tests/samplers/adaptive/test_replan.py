@@ -110,3 +110,13 @@ def test_a_stretch_ends_at_a_plant_of_its_row_that_pays(at):
 def test_a_plant_stands_in_its_row_and_the_gate_in_none():
     travel = scene_of(1, 1.0).aisles.travel
     assert [rows_of(travel, at) for at in (GATE, 0, 12, 95)] == [-1, 0, 1, 7]
+
+
+@pytest.mark.parametrize("row", [0, 1, 7])
+def test_from_the_gate_the_plan_leads_to_the_row_that_is_worth_it_the_first_as_any(row):
+    chance = np.full(len(GRID), 1e-6)
+    chance[GRID.row == row] = 0.5
+    scene = scene_with(GRID, chance, 1.0, returns=True)
+    travel, work = scene.aisles.travel, workspace(scene, ONE_TIME)
+    stretch = plan_at(travel, scene.clock, work, (GATE, 1e-3))
+    assert stretch.row == row

@@ -7,17 +7,37 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..words import texts
-from . import acting
 
 if TYPE_CHECKING:
     from ..state.comparison import Comparison
     from ..state.driving import DriveRun
     from ..state.live_drive import LiveDrive
 
+# for a first answer is waited in steps that a click ends, less than a second in all
+_STEP_S, _STEPS = 0.05, 18
 
-def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool) -> None:
-    """Offer to begin and to stop it; `over`: there is nothing left to do."""
+
+def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool) -> bool:
+    """Offer to begin and to stop it; return whether it is at work. `over`: nothing is left to do.
+
+    It begins before its button is drawn, by what is chosen now: so no second run has to tell the
+    buttons.
+    """
+    if st.session_state.get(key) and not over:
+        work.start()
+    at_work = work.running
     with st.container(horizontal=True):
-        pressed = st.button(label, type="primary", key=key, disabled=work.running or over)
-        acting.once(pressed, work.start)
-        st.button(texts.STOP, key=f"{key}_stop", on_click=work.stop, disabled=not work.running)
+        st.button(label, type="primary", key=key, disabled=at_work or over)
+        st.button(texts.STOP, key=f"{key}_stop", on_click=work.stop, disabled=not at_work)
+    return at_work
+
+
+def show_progress(running: Comparison) -> None:
+    """Say how far it is; while there is no answer yet, wait a little for the first."""
+    draw = st.progress
+    for _ in range(_STEPS):
+        said = texts.COMPARE_PROGRESS.format(done=running.done, total=running.total)
+        draw = draw(running.done / running.total, said).progress
+        if running.is_answered or not running.running:
+            return
+        running.wait(_STEP_S)

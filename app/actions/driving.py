@@ -35,8 +35,9 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)
     made = cached.drive_run(key, kind, made_up, choices.plot, scene, sampler(choices.sampler))
-    background.buttons(made, texts.DRIVE_RUN, key="drive_run", over=made.day is not None)
-    st.fragment(_progress, run_every=0.5 if made.running else None)(made, at_work=made.running)
+    over = made.day is not None
+    at_work = background.buttons(made, texts.DRIVE_RUN, key="drive_run", over=over)
+    st.fragment(_progress, run_every=0.5 if at_work else None)(made, at_work=at_work)
     return made
 
 

@@ -43,8 +43,8 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
         st.error(of_error(error))
         return None
     live = cached.live_drive(key, broker, name, scene)
-    background.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
-    st.fragment(_standing, run_every=1.0 if live.running else None)(live, at_work=live.running)
+    at_work = background.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
+    st.fragment(_standing, run_every=1.0 if at_work else None)(live, at_work=at_work)
     return live
 
 

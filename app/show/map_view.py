@@ -207,6 +207,7 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "dark": browser.is_dark(),
         "lengths": chosen_units.units().lengths(),
         "words": texts.MAP_WORDS,
+        "working": texts.WORKING,
         "language": language.current(),
         "direction": "rtl" if language.is_right_to_left() else "ltr",
     }  # fmt: skip

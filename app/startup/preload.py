@@ -37,7 +37,7 @@ class Preload(threading.Thread):
         self._loaded.wait()
 
     def run(self) -> None:
-        """Load what draws an outline, then what plans, then what prints and simulates."""
+        """Load what draws an outline, then what plans, then what prints, simulates and charts."""
         try:
             _load_outline()
             self._asked.wait(_LATER_S)
@@ -51,6 +51,7 @@ class Preload(threading.Thread):
         self.shown.wait(_LATER_S)
         _load_paper()
         _load_simulation()
+        _load_charts()
         # what is loaded stays: a click now and then would wait while all of it is looked through
         gc.collect()
         gc.freeze()
@@ -83,6 +84,13 @@ def _load_simulation() -> None:
     from . import compiled_loops  # noqa: PLC0415
 
     compiled_loops.load_simulation()
+
+
+def _load_charts() -> None:
+    from ..show import charts  # noqa: PLC0415
+    from ..views import compare  # noqa: F401, PLC0415
+
+    charts.load()
 
 
 @cache

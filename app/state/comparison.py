@@ -145,9 +145,9 @@ class Comparison(BackgroundWork):
         return len(self._made)
 
     @property
-    def is_judged(self) -> bool:
-        """Tell whether two seasons of each strategy are there, of which an interval can be said."""
-        return self.done >= 2 * len(self.settings.strategies)
+    def is_answered(self) -> bool:
+        """Tell whether a season of each strategy is there, of which a first answer can be said."""
+        return self.done >= len(self.settings.strategies)
 
     def start(self) -> None:
         """Begin, or go on where it was stopped."""

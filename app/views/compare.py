@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isnan
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 _MOST = 12
-# how often is looked for results: sooner until there is a first verdict
-_FIRST_S, _NEXT_S = 0.4, 1.0
+# how often is looked for results
+_EVERY_S = 1.0
 
 
 def show(choices: Choices) -> None:
@@ -36,27 +37,22 @@ def show(choices: Choices) -> None:
     laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
     running = cached.comparison(key, settings, choices.robot, laid)
     label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
-    background.buttons(running, label, key="run", over=running.done == running.total)
-    every_s = _NEXT_S if running.is_judged else _FIRST_S
-    st.fragment(_watch, run_every=every_s if running.running else None)(
-        choices, running, at_work=running.running, every_s=every_s
-    )
+    over = running.done == running.total
+    at_work = background.buttons(running, label, key="run", over=over)
+    st.fragment(_watch, run_every=_EVERY_S if at_work else None)(choices, running, at_work=at_work)
 
 
-def _watch(choices: Choices, running: Comparison, *, at_work: bool, every_s: float) -> None:
+def _watch(choices: Choices, running: Comparison, *, at_work: bool) -> None:
     if at_work and not running.running:
         st.rerun()  # the buttons must know
     _results(choices, running)
-    if at_work and every_s == _FIRST_S and running.is_judged:
-        st.rerun()  # from now on it is looked for less often
 
 
 def _results(choices: Choices, running: Comparison) -> None:
     if running.problem is not None:
         st.error(of_error(running.problem))
         return
-    progress = texts.COMPARE_PROGRESS.format(done=running.done, total=running.total)
-    st.progress(running.done / running.total, progress)
+    background.show_progress(running)
     seasons = running.seasons()
     ranked = outcomes(seasons)
     if not ranked:
@@ -64,6 +60,8 @@ def _results(choices: Choices, running: Comparison) -> None:
         return
     for said in (verdicts.sentence(ranked), *map(verdicts.robots_sentence, gains(seasons))):
         st.markdown(said)
+    if running.running and isnan(ranked[0].loss.low):
+        return  # the sentence is there at once; curves and table come with their first interval
     curves = {verdicts.name(one): curve(walked) for one, walked in seasons.items()}
     st.altair_chart(charts.bands(curves, (texts.DAY_AXIS, texts.DETECTION_AXIS)),
                     alt=texts.DETECTION_AXIS)  # fmt: skip

@@ -844,7 +844,7 @@ VERDICT = (
     "({low:,.0f} to {high:,.0f} fewer, 95 % interval)."
 )
 VERDICT_ONE = (
-    "After one season **{best}** is ahead of {second}. One season tells little; more would tell."
+    "One season so far: **{best}** is ahead of {second}. That tells little; more would tell."
 )
 VERDICT_TIED = (
     "**{best}** comes out best, but not clearly better than {second}: the 95 % interval of the "

@@ -29,6 +29,7 @@ from tests.app.on_screen import (
     tab_to,
 )
 from tests.app.test_in_browser import sample, season
+from tests.paths import ROOT
 
 EVERYTHING = os.environ.get("FIELDMON_AXE") == "all"
 #: the room that the suite sees in the dark: the one with a map, a route and figures
@@ -191,9 +192,36 @@ def test_a_day_is_done_by_keys_alone(today):
     page.get_by_role("button", name="Undo", exact=True).first.wait_for()
 
 
-def press(page, name):
+def test_strategies_are_compared_and_a_plot_is_brought_by_keys_alone(today):
+    page = today
+    tab_to(page, page.get_by_role("link", name=texts.ROOMS["ahead"]).locator("visible=true"))
+    page.keyboard.press("Enter")
+    samplers = page.get_by_role("combobox", name=texts.STRATEGY_SAMPLERS)
+    samplers.wait_for()
+    rest(page)
+    tab_to(page, samplers)
+    page.keyboard.press("Backspace")  # takes the last of three away
+    tags = page.locator("[data-testid=stMultiSelect]").first.locator("[data-tag]")
+    until(lambda: tags.count() == 2, 120)
+    page.keyboard.press("Escape")
+    press(page, texts.RUN, exact=True)
+    first = page.get_by_text(texts.VERDICT_ONE.split("**")[0])
+    first.or_(page.get_by_text("95 % interval")).first.wait_for()
+    press(page, texts.STOP, exact=True)
+    # a shapefile to the first route: last here, since the tab then shows another plot
+    tab_to(page, page.get_by_role("link", name=texts.ROOMS["plots"]).locator("visible=true"))
+    page.keyboard.press("Enter")
+    press(page, texts.WAYS_IN["file"])
+    with page.expect_file_chooser() as chosen:
+        press(page, "Upload")
+    chosen.value.set_files(ROOT / "sample_data" / "paran_estate.zip")
+    page.locator(".st-key-lead").get_by_text("Inspect ").first.wait_for()
+    rest(page)
+
+
+def press(page, name, *, exact=False):
     """Press a button by the keyboard."""
-    button = page.get_by_role("button", name=name).locator("visible=true")
+    button = page.get_by_role("button", name=name, exact=exact).locator("visible=true")
     button.first.wait_for()
     tab_to(page, button)
     page.keyboard.press("Enter")

@@ -20,13 +20,15 @@ import { ofRuns, runsOf, withRow } from "./select.js";
 import { covered, keepShape, listed } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
-import { fitted, metresPerPixel } from "./view.js";
+import { besideBox, metresPerPixel } from "./view.js";
 
 const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600, TURN_MS = 300;
 const NONE = [];
 const DARK = matchMedia("(prefers-color-scheme: dark)");
 // a GIF of more pixels is too large to be sent; more plants at once are no selection
 const FILM_PX = 1100, MOST_PICKED = 20000;
+// the legend stays so far from plants; so many of them are asked
+const MARGIN_PX = 8, MOST_ASKED = 4000;
 
 class MapPage {
   constructor(parent) {
@@ -103,10 +105,11 @@ class MapPage {
   }
 
   // the page reads in the language of its words; the panel's handle is then on the other side
-  speak({ language, direction }) {
+  speak({ language, direction, working }) {
     const page = document.documentElement, turned = page.dir !== direction;
     page.lang = language;
     page.dir = direction;
+    page.style.setProperty("--working", JSON.stringify(working)); // for a wait: see every_page.css
     listed();
     if (turned) window.dispatchEvent(new Event("resize"));
   }
@@ -124,7 +127,7 @@ class MapPage {
   }
 
   fit() {
-    const view = fitted(this.data.bounds, this.size(), this.padding());
+    const view = besideBox(this.data.bounds, this.size(), this.padding(), this.legendBox(), this.somePlaces());
     return this.data.drive ? { ...view, pitch: PITCH } : view;
   }
 
@@ -134,8 +137,26 @@ class MapPage {
   }
 
   padding() {
-    const { left, right, bottom } = covered();
-    return { left: left + 30, right: right + 64, top: 24, bottom: bottom + 56 };
+    const { left, right, bottom } = covered(), tools = [30, 64];
+    if (this.data.direction === "rtl") tools.reverse();
+    return { left: left + tools[0], right: right + tools[1], top: 24, bottom: bottom + 56 };
+  }
+
+  // Return where the legend lies on the map; null where it lies above the plot, as on a phone.
+  legendBox() {
+    const box = this.legend.getBoundingClientRect(), map = this.root.getBoundingClientRect();
+    if (!box.width || box.top - map.top < map.height / 3) return null;
+    const [x, y] = [map.left + MARGIN_PX, map.top + MARGIN_PX];
+    return { left: box.left - x, right: box.right - map.left + MARGIN_PX, top: box.top - y, bottom: map.height };
+  }
+
+  // Return places of plants, not too many: whether something hides them is asked of each.
+  somePlaces() {
+    const places = this.places(), some = [];
+    if (!places) return some;
+    const step = Math.ceil(places.lon.length / MOST_ASKED);
+    for (let k = 0; k < places.lon.length; k += step) some.push([places.lon[k], places.lat[k]]);
+    return some;
   }
 
   open() {

@@ -37,9 +37,8 @@ export function covered() {
 }
 
 function measure() {
-  const { left, right, bottom } = covered();
+  const { left, right } = covered();
   page.style.setProperty("--covers-start", `${left + right}px`);
-  page.style.setProperty("--covers-bottom", `${bottom}px`);
 }
 
 // Streamlit's list of pages, on a phone, has a group in it that is no item, and whose items are then in no list.
@@ -66,7 +65,7 @@ export function keepShape(words) {
     page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
     measure();
-    setTimeout(listed, LATER_MS);
+    setTimeout(() => { listed(); measure(); }, LATER_MS); // the panel may only just be there
     const said = words() ?? {};
     fold.textContent = shape.folded ? "›" : "‹"; // mirrored by itself where one reads from the right
     fold.setAttribute("aria-label", (shape.folded ? said.unfold : said.fold) ?? "");

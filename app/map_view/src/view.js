@@ -30,3 +30,22 @@ export function fitted([west, south, east, north], { width, height }, padding) {
   const [longitude, latitude] = port.unprojectFlat(middle);
   return { longitude, latitude, zoom, bearing: 0, pitch: 0 };
 }
+
+// Return the view that also leaves the corner free in which `box` lies, if one of the places is behind it.
+export function besideBox(bounds, size, padding, box, places) {
+  const view = fitted(bounds, size, padding);
+  if (!box || !places.length || !covers(view, size, box, places)) return view;
+  const side = box.left > size.width - box.right ? { right: Math.max(padding.right, size.width - box.left) }
+    : { left: Math.max(padding.left, box.right) };
+  const others = [side, { bottom: Math.max(padding.bottom, size.height - box.top) }];
+  const views = others.map((change) => fitted(bounds, size, { ...padding, ...change }));
+  return views[0].zoom > views[1].zoom ? views[0] : views[1];
+}
+
+function covers(view, size, box, places) {
+  const port = new WebMercatorViewport({ ...size, ...view });
+  return places.some((place) => {
+    const [x, y] = port.project(place);
+    return x > box.left && x < box.right && y > box.top && y < box.bottom;
+  });
+}

@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import { WebMercatorViewport } from "@deck.gl/core";
 
-import { fitted, metresPerPixel } from "../src/view.js";
+import { besideBox, fitted, metresPerPixel } from "../src/view.js";
 
 const ROOMS = [
   [{ width: 1440, height: 840 }, { left: 430, right: 64, top: 24, bottom: 56 }],
@@ -46,4 +46,20 @@ test("a pixel is as many metres as on the map", () => {
     const metres = 0.001 * (40075016.686 / 360) * Math.cos((latitude * Math.PI) / 180);
     assert.ok(Math.abs(metresPerPixel({ latitude, zoom: 17 }) * (x1 - x0) / metres - 1) < 1e-6);
   }
+});
+
+test("a plot whose corner a legend would hide is shown beside it or above it, any other as large as it can be", () => {
+  const size = { width: 1024, height: 700 }, padding = { left: 430, right: 64, top: 24, bottom: 56 };
+  const bounds = [35, 30, 35.002, 30.002], all = [[35, 30], [35.002, 30], [35, 30.002], [35.002, 30.002]];
+  for (const box of [{ left: 700, right: 1012, top: 500, bottom: 700 }, { left: 430, right: 640, top: 500, bottom: 700 }]) {
+    const view = besideBox(bounds, size, padding, box, all), port = new WebMercatorViewport({ ...size, ...view });
+    const hidden = all.filter((place) => {
+      const [x, y] = port.project(place);
+      return x > box.left && x < box.right && y > box.top && y < box.bottom;
+    });
+    assert.deepEqual(hidden, []);
+    assert.ok(view.zoom < fitted(bounds, size, padding).zoom);
+    assert.deepEqual(besideBox(bounds, size, padding, box, [[35.001, 30.001]]), fitted(bounds, size, padding));
+  }
+  assert.deepEqual(besideBox(bounds, size, padding, null, all), fitted(bounds, size, padding));
 });

@@ -54,7 +54,7 @@ def test_of_one_season_no_interval_is_said():
     said = verdicts.sentence(
         [outcome(BEST, [100.0], found=(50.0,)), outcome(SECOND, [140.0], [40.0], found=(50.0,))]
     )
-    assert said.startswith("After one season **Dynamic · 12 h · 40 s** is ahead of Naive")
+    assert said.startswith("One season so far: **Dynamic · 12 h · 40 s** is ahead of Naive")
     assert "interval" not in said
 
 

@@ -17,6 +17,7 @@ def steps(monkeypatch):
         "_load_planning",
         "_load_paper",
         "_load_simulation",
+        "_load_charts",
     ):
         monkeypatch.setattr(preload, name, lambda name=name: done.append(name))
     monkeypatch.setattr(preload, "_BROWSER_S", 0.0)
@@ -33,7 +34,7 @@ def test_the_outline_comes_first_and_what_other_pages_need_comes_after_a_page_wa
     assert "_load_simulation" not in steps
     loading.shown.set()
     loading.join(180)
-    assert steps[2:] == ["_load_planning", "_load_paper", "_load_simulation"]
+    assert steps[2:] == ["_load_planning", "_load_paper", "_load_simulation", "_load_charts"]
 
 
 def test_a_page_is_not_kept_waiting_where_loading_fails(steps, monkeypatch):

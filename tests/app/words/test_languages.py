@@ -12,7 +12,7 @@ import fieldmon
 from app.state import chosen_language
 from app.words import language, texts
 from fieldmon.io.writers import FORMATS
-from tests.app.driving import go, opened, texts_of
+from tests.app.driving import PAGES, go, map_of, opened, texts_of
 from tests.app.words.known_texts import catalogue, entries
 
 OTHERS = tuple(code for code in language.LANGUAGES if code != language.ENGLISH)
@@ -109,34 +109,47 @@ def test_the_library_knows_nothing_of_languages():
 def test_pages_speak_the_language_of_the_address(code, speaking):
     speaking(code)  # the harness asks boxes for the names of what they hold
     app = opened(lang=code)
-    for part in ("today", "season", "compare", "plot"):
+    for part in ("today", "plot"):  # the others are the same in a season: see below
         go(app, part)
         assert not app.exception, part
         assert not app.error, part
         assert english_left(app, code) == [], part
 
 
-@pytest.mark.parametrize("code", OTHERS)
-def test_a_season_speaks_the_language(season_app, code, speaking):
-    season_app.session_state[chosen_language.KEY] = code
-    season_app.run()
-    speaking(code)  # see above
-    for part in ("today", "season", "plot"):
-        go(season_app, part)
-        assert not season_app.exception
-        assert english_left(season_app, code) == []
+def test_every_part_of_every_room_speaks_every_other_language(season_app, speaking):
+    left = {}
+    for code in OTHERS:
+        season_app.session_state[chosen_language.KEY] = code
+        season_app.run()
+        speaking(code)  # see above
+        for part in PAGES:
+            go(season_app, part)
+            assert not season_app.exception, (code, part)
+            assert not season_app.error, (code, part)
+            left[code, part] = english_left(season_app, code)
+    assert {where: lines for where, lines in left.items() if lines} == {}
 
 
 def said(app):
-    """Return everything that a page says: texts, names of boxes and buttons, what they offer."""
-    kinds = ("button", "selectbox", "number_input", "metric", "tabs", "expander", "toggle",
-             "text_input", "date_input", "slider", "download_button", "button_group")  # fmt: skip
+    """Return everything that a page says: texts, boxes and what they offer, tables, the map."""
     lines = texts_of(app).splitlines()
-    for kind in kinds:
-        for one in app.get(kind):
-            lines.append(str(getattr(one, "label", "") or ""))
-            lines += [str(option) for option in getattr(one, "options", ())]
-    return lines
+    for one in (*app.main, *app.sidebar):
+        proto = getattr(one, "proto", None)
+        lines += [str(getattr(proto, name, "")) for name in ("label", "help", "placeholder")]
+        lines += [getattr(option, "content", option) for option in getattr(proto, "options", ())]
+    for table in app.dataframe:
+        lines += [str(name) for name in (*table.value.columns, table.value.index.name or "")]
+    return [line for line in (*lines, *on_map(app)) if line]
+
+
+def on_map(app):
+    """Return what is written on the map."""
+    data = map_of(app)
+    parts = (*data["switches"], *data["shades"], *data["labels"])
+    lines = [str(one.get("label", one.get("text", ""))) for one in parts]
+    for part in data["legend"]:
+        lines += [str(part.get("title", "")), *(str(item[-1]) for item in part["items"])]
+    return [data["alt"], *lines]
 
 
 def english_left(app, code):

@@ -167,8 +167,9 @@ def _treating(options: SimulateOptions) -> TreatmentRule | None:
 def _cost(costs: TreatmentCosts, plant_days: int, sprayed: list[Zones]) -> str:
     """Return what a season came to, in plants, hectares and money."""
     area, spent = (sum(getattr(one, name) for one in sprayed) for name in ("m2", "cost"))
-    lost = plant_days * costs.infested_plant_day
+    lost, evenings = plant_days * costs.infested_plant_day, len(sprayed)
     return (
-        f"{plant_days} infested plant-days, {area / 10_000:.2f} ha sprayed on {len(sprayed)} "
-        f"evenings: {spent:.2f} spent and {lost:.2f} lost, {spent + lost:.2f} altogether"
+        f"{plant_days} infested plant-days, {area / 10_000:.2f} ha sprayed on {evenings} "
+        f"evening{'s' * (evenings != 1)}: {spent:.2f} spent and {lost:.2f} lost, "
+        f"{spent + lost:.2f} altogether"
     )

@@ -19,7 +19,7 @@ def test_a_season_may_be_treated_by_a_rule_and_says_what_that_came_to(run):
     plain = run(*words)[1]
     code, out, err, _ = run(*words, "--treat-from", 0.001, "--treat", "whole")
     assert code == 0, err
-    assert "ha sprayed on 1 evenings" in out
+    assert "ha sprayed on 1 evening:" in out
     assert "altogether" not in plain
     code, _, err, _ = run(*words, "--treat-from", 0.01, "--treat", "half")
     assert code == 2

@@ -142,6 +142,15 @@ def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
     return batch.number, f"Batch {batch.number} was undone: {batch.rows} {batch.kind}{source}."
 
 
+def first_day(db: sqlite3.Connection, number: int) -> int:
+    """Return the first day of the season of which a batch says something."""
+    (kind,) = db.execute("SELECT kind FROM batches WHERE fid = ?", (number,)).fetchone()
+    table = _TABLE_OF[kind]
+    days = f"SELECT min(day) FROM {table} WHERE batch = ?"  # noqa: S608 - ours
+    (day,) = db.execute(days, (number,)).fetchone()
+    return max(int(day or 0), 0)
+
+
 def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[int, str]:
     """Mark one inspection as undone; return the batch it was of, and what was done."""
     row = db.execute(

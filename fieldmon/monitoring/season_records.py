@@ -122,7 +122,7 @@ class SeasonRecords(OpenSeason):
                 number, said = batches.undo_one(db, inspection)
             states = season_log.states(db, [number])
             season_log.append(db, "undone", who, states=states, batch=number, said=said)
-            self._refresh(db)
+            self._refresh(db, batches.first_day(db, number))
         return said
 
     def correct(self, who: str) -> int:

@@ -44,6 +44,21 @@ def test_undoing_a_batch_gives_back_the_state_before_and_deletes_nothing(season)
     assert [batch.undone for batch in season.batches()] == [True, False]
 
 
+def test_what_an_undo_leaves_is_what_all_days_worked_out_anew_come_to(season):
+    def derived():
+        with season.store.reading() as db:
+            days = db.execute("SELECT day, inspected, found, expected_left, digest FROM days")
+            states = db.execute("SELECT fid, chance, state, last_inspected FROM plant_state")
+            return days.fetchall(), states.fetchall()
+
+    for day in (0, 1, 3):
+        season.record(some_results(season, 5, day, found=(2,)), f"day {day}")
+    season.undo()
+    left = derived()
+    season.rebuild()
+    assert derived() == left
+
+
 def test_what_was_undone_can_be_recorded_again(season):
     results = some_results(season, found=[3])
     season.record(results, "x")

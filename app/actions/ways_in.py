@@ -33,11 +33,11 @@ def show() -> None:
 
 
 def _sample() -> None:
-    _choose(plot_source.SAMPLE, "today")
+    _choose(plot_source.SAMPLE)
 
 
 def _file() -> None:
-    _choose(plot_source.FILES, "today")
+    _choose(plot_source.FILES)
 
 
 def _season() -> None:
@@ -46,16 +46,17 @@ def _season() -> None:
     if not names:
         st.session_state["ask for a season"] = True
     elif len(names) == 1:
-        _choose(names[0], "today")
+        _choose(names[0])
     else:
         st.session_state[_CHOSEN] = True
         rooms.turn_to("plots")
 
 
-def _choose(source: str, room: str) -> None:
+def _choose(source: str) -> None:
+    """Open it at the day's plan, whatever part of the room was shown before."""
     st.session_state[_CHOSEN] = True
     plot_source.open_season(source)
-    rooms.turn_to(room)
+    rooms.turn_to_part("today")
 
 
 def _say_where() -> None:

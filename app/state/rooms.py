@@ -42,6 +42,12 @@ def turn_to(name: str) -> None:
     st.session_state[_TURN] = name
 
 
+def turn_to_part(part: str) -> None:
+    """Let the room of a part be turned to in the next run, and show that part there."""
+    turn_to(room_of(part))
+    open_part(part)
+
+
 def turned_to() -> str | None:
     """Return the room that is to be turned to, once."""
     name: str | None = st.session_state.pop(_TURN, None)

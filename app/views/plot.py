@@ -48,7 +48,7 @@ def bring(problem: FieldmonError | None) -> None:
 
 def show(choices: Choices) -> None:
     """Show the plot as it was understood, and change what was not."""
-    st.button(texts.TO_ROUTE, key="to_route", type="primary", on_click=rooms.turn_to,
+    st.button(texts.TO_ROUTE, key="to_route", type="primary", on_click=rooms.turn_to_part,
               args=("today",))  # fmt: skip
     plot_figures.show(choices.plot, choices.units)
     before = plot_before.plot_before(choices) if choices.season is None else None

@@ -170,6 +170,7 @@ def test_a_day_is_done_by_keys_alone(today):
     tab_to(page, page.get_by_role("dialog").get_by_role("button", name="Close"))
     page.keyboard.press("Enter")
     page.get_by_role("dialog").wait_for(state="hidden")
+    rest(page)
     # the day on paper
     with page.expect_download() as file:
         press(page, texts.STEP_BUTTONS["report"])
@@ -224,4 +225,4 @@ def press(page, name, *, exact=False):
     button = page.get_by_role("button", name=name, exact=exact).locator("visible=true")
     button.first.wait_for()
     tab_to(page, button)
-    page.keyboard.press("Enter")
+    button.first.press("Enter")  # a dialog that closes gives the keyboard back when it likes

@@ -2,6 +2,7 @@
 
 import shutil
 
+from app.state import rooms
 from app.words import texts
 from tests.app.driving import go, heading, opened, texts_of
 
@@ -16,6 +17,15 @@ def test_they_show_at_first_and_not_once_one_is_taken(app):
     assert not app.exception
     assert ways(app) == []
     assert "Gate" in heading(app)
+
+
+def test_each_way_leads_to_the_days_plan_whatever_was_shown_before(app):
+    go(app, "record")
+    go(app, "plots")
+    app.button(key="way_sample").click().run()
+    assert not app.exception
+    assert app.session_state[rooms.key("today")] == "today"
+    assert texts.STEP_BUTTONS["send"] in [button.label for button in app.button]
 
 
 def test_an_own_plot_begins_with_its_file(app):

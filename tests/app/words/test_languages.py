@@ -1,6 +1,7 @@
 """Languages: every text has its words in each, with the same blanks; the app speaks them."""
 
 import gettext
+import os
 import re
 import string
 from functools import cache
@@ -16,6 +17,8 @@ from tests.app.driving import PAGES, go, map_of, opened, texts_of
 from tests.app.words.known_texts import catalogue, entries
 
 OTHERS = tuple(code for code in language.LANGUAGES if code != language.ENGLISH)
+#: what passes by the catalogues does so in every language: the suite hears one of them
+SPOKEN = OTHERS if os.environ.get("FIELDMON_LANGUAGES") == "all" else ("he",)
 #: words that are the same in English and Spanish, and names of programs
 SAME_WORDS = {
     "Robot", "No", "m", "km", "ft", "mi", "ha", "dunam", "acre", "QGIS", "QField", "ArcGIS",
@@ -116,9 +119,9 @@ def test_pages_speak_the_language_of_the_address(code, speaking):
         assert english_left(app, code) == [], part
 
 
-def test_every_part_of_every_room_speaks_every_other_language(season_app, speaking):
+def test_every_part_of_every_room_speaks_another_language(season_app, speaking):
     left = {}
-    for code in OTHERS:
+    for code in SPOKEN:
         season_app.session_state[chosen_language.KEY] = code
         season_app.run()
         speaking(code)  # see above

@@ -4,8 +4,7 @@
 day a batch with its entry in the log. Of the days before the last one the figures are made up,
 since to estimate them takes minutes. The one route is the next day's, which is worked on when
 the commands are given. Each command runs on a fresh copy of the file, as a person runs it: seconds
-by the clock, seconds
-of work (of all its processes), and the most memory that one of its processes held.
+by the clock, seconds of work (of all its processes), and the most memory that one of these held.
 """
 
 from __future__ import annotations
@@ -39,6 +38,7 @@ from fieldmon.monitoring import (
     schema,
     season_log,
 )
+from fieldmon.monitoring.derived_layers import map_digest
 from fieldmon.monitoring.geopackage import insert
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.layout import Planting
@@ -79,6 +79,9 @@ def made(file: Path, n_plants: int = N_PLANTS, n_days: int = N_DAYS, a_day: int 
             _write(season, change.db, (day, settings), seen)
         insert(change.db, schema.DAYS, [_figures(day, seen) for day, seen in enumerate(work)][1:])
         change.reaches(last)
+    digests = [(map_digest(season.morning(on(day))), day) for day in range(1, last)]
+    with season.changing() as change:
+        change.db.executemany("UPDATE days SET digest = ? WHERE day = ?", digests)
     season.plan(on(last + 1))
     return season
 

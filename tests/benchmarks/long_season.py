@@ -176,7 +176,8 @@ def commands(season: Path, work: Path) -> list[Prepared]:
         Prepared("undo, one inspection", ["undo", "SEASON", "--inspection", str(newest)]),
         Prepared("decide", ["decide", "SEASON", "--threshold", "5%"]),
         Prepared("decide, with zones", [
-            "decide", "SEASON", "--threshold", "0.1%", "-o", "zones.xml.zip"]),
+            "decide", "SEASON", "--threshold", "0.1%", "--per-ha", "1",
+            "-o", "zones.xml.zip"]),
         Prepared("report of the season", ["report", "SEASON", "-o", "season.pdf"]),
         Prepared("report of a day", ["report", "SEASON", "-o", "day.pdf", "--date", day]),
         Prepared("report for a certifier", [
@@ -191,7 +192,8 @@ def commands(season: Path, work: Path) -> list[Prepared]:
         Prepared("export of the inspections", [
             "export", "SEASON", "--of", "inspections", "-o", "all.csv"]),
         Prepared("export of the log", ["export", "SEASON", "--of", "log", "-o", "log.csv"]),
-        Prepared("export of treatments", ["export", "SEASON", "-o", "treated.csv"]),
+        Prepared("export of treatments", ["export", "SEASON", "-o", "treated.csv"],
+                 first_of(*treated, "--date", day, "--rows", "1-20")),
         Prepared("merge, two results more", ["merge", "SEASON", "other.gpkg"]),
         Prepared("correct, of the last day", ["correct", "SEASON", "--who", "Ann"],
                  lambda copy: _edited(copy, newest)),
@@ -274,6 +276,7 @@ def main() -> None:
     asked.add_argument("--only", help="commands with this in their name")
     asked.add_argument("--long", action="store_true", help="also what takes minutes")
     asked.add_argument("--said", action="store_true", help="show what each command says")
+    asked.add_argument("--without", nargs="*", default=[], help="commands with this in their name")
     chosen = asked.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
@@ -291,6 +294,8 @@ def main() -> None:
         say("| command | clock | work | memory |\n|---|---|---|---|")
         for one in commands(season, work):
             if chosen.only and chosen.only not in one.name:
+                continue
+            if any(word in one.name for word in chosen.without):
                 continue
             if one.name in LONG and not chosen.long:
                 continue

@@ -104,10 +104,12 @@ def pytest_collection_finish():
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 # software drawing: Mesa's, which keeps compiled shaders, or else the browser's own, some seconds
-# slower for every map, and for maps alone; and no name in the world but this machine's
+# slower for every map, and for maps alone: put together without it, a page takes half the processor
+# time; and no name in the world but this machine's
 FLAGS = [
     *["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
-    *["--enable-unsafe-swiftshader", "--disable-gpu-rasterization", "--disable-smooth-scrolling"],
+    *["--enable-unsafe-swiftshader", "--disable-gpu-rasterization", "--disable-gpu-compositing"],
+    *["--disable-smooth-scrolling"],
     *["--disable-background-networking", "--disable-component-update", "--no-first-run"],
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ]

@@ -18,6 +18,8 @@ import pytest
 import streamlit as st
 from streamlit import config
 from streamlit.components.v2 import manifest_scanner
+from streamlit.runtime.scriptrunner.script_cache import ScriptCache
+from streamlit.testing.v1 import local_script_runner
 
 from app.words import language
 from fieldmon.monitoring import Season
@@ -39,10 +41,29 @@ def components():
 
 
 @pytest.fixture(scope="session", autouse=True)
+def harness():
+    """Compile the script once, not for each run; wait for it asleep, not a thousand looks a second.
+
+    Each look takes the interpreter from the script's own thread.
+    """
+    scripts, look = ScriptCache(), local_script_runner.require_widgets_deltas
+
+    def wait(runner, timeout=3):
+        runner._script_thread.join(timeout)
+        if not runner.script_stopped():
+            look(runner, 0)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(local_script_runner, "ScriptCache", lambda: scripts)
+        patch.setattr(local_script_runner, "require_widgets_deltas", wait)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def as_served():
     """Run pages by the app's own settings, which a session without a server does not read."""
     told = tomllib.loads((ROOT / "app" / ".streamlit" / "config.toml").read_text(encoding="utf-8"))
-    for part in ("global", "runner"):
+    for part in ("global", "runner", "browser"):
         for name, value in told[part].items():
             config.set_option(f"{part}.{name}", value)
 

@@ -44,7 +44,7 @@ EXAMPLES = int(os.environ.get("FIELDMON_EXAMPLES", "0"))
 # the first example of a property pays for compiling; a landing must not depend on luck
 settings.register_profile(
     "fieldmon",
-    max_examples=40,
+    max_examples=25,
     deadline=None,
     derandomize="CI" in os.environ,
     suppress_health_check=[HealthCheck.too_slow],

@@ -25,7 +25,7 @@ from app.words import language
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
-from tests.app.on_screen import dressed
+from tests.app.on_screen import dressed, picture
 from tests.paths import ROOT, SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
@@ -189,7 +189,7 @@ def page(new_tab, request):
     yield page
     SHOTS.mkdir(exist_ok=True)
     dressed(page)
-    page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
+    (SHOTS / f"{request.node.name.replace('/', '_')}.png").write_bytes(picture(page))
     page.close()
 
 

@@ -1,6 +1,5 @@
 """The frame: every room and part opens, whatever is chosen."""
 
-
 from app.words import texts
 from tests.app.driving import PAGES, go, map_of, texts_of
 

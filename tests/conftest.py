@@ -98,7 +98,7 @@ def pytest_collection_modifyitems(items):
 def pytest_collection_finish():
     """Look for garbage among what tests make, not among the tests themselves: a tenth of all."""
     gc.freeze()
-    gc.set_threshold(20_000, 20, 50)
+    gc.set_threshold(60_000, 10, 50)
     gc.enable()
 
 

@@ -52,8 +52,11 @@ def refresh(
     planned = [day for (day,) in db.execute("SELECT DISTINCT day FROM routes")]
     treated = [treatment.day for treatment in history.treatments]
     days: list[int] = sorted({0, *worked, *planned, *treated})
+    kept = {day for (day,) in db.execute("SELECT day FROM days WHERE day < ?", (since,))}
+    gone = [(day,) for day in kept.difference(days)]
+    db.executemany("DELETE FROM days WHERE day = ?", gone)
     db.execute("DELETE FROM days WHERE day >= ?", (since,))
-    rows = [_day_row(history, morning(day), day) for day in days if day >= since]
+    rows = [_day_row(history, morning(day), day) for day in days if day not in kept]
     insert(db, schema.DAYS, rows)
     _name_causes(db, history, morning(days[-1]), days[-1])
     spots = _write_spots(db, plot, history, days[-1])

@@ -258,10 +258,15 @@ def _all_words(root):
     return found
 
 
+def _is_in_function(mutant):
+    inside = _inside(mutant)
+    return bool(inside) and isinstance(inside[-1], ast.FunctionDef)
+
+
 def functions_changed(mutant):
     """Return the functions in which a mutant shows; of a constant, those that name it."""
     inside, module = _inside(mutant), mutant.path.relative_to(ROOT)
-    if inside and isinstance(inside[-1], ast.FunctionDef):
+    if _is_in_function(mutant):
         return {f"{module}:{'.'.join(one.name for one in inside)}"}
     names = {one.name for one in inside}
     for top in _top_of(mutant.path):
@@ -291,7 +296,8 @@ class Nearest:
         module, changed = mutant.path.relative_to(ROOT), functions_changed(mutant)
         own, room = str(own_tests(module)), f"{own_tests(module).parent}/"
         found = [one for one, it in self.known.items() if it["ok"] and changed & set(it["reach"])]
-        if not any(one.endswith(f":{mutant_function(mutant)}") for one in changed):
+        anew = not _is_in_function(mutant)
+        if anew:
             found += [one for one in self.known if one.startswith("tests/test_dataclasses")]
 
         def far(one):
@@ -300,8 +306,11 @@ class Nearest:
         def cost(one):
             return (far(one), self.known[one]["s"] / (1 + 4 * self.kills.get(one, 0)))
 
-        sum_s, chosen = 0.0, []
+        sum_s, chosen, files = 0.0, [], set()
         for one in sorted(found, key=cost):
+            files.add(one.split("::")[0])
+            if anew and len(files) > 6:  # files that would be imported anew
+                break
             sum_s += self.known[one]["s"]
             if sum_s > most_s and chosen:
                 break
@@ -389,8 +398,12 @@ def _tried_room(room, warm, nearest, told, file):
         new, said = mutated(source, mutant.place)
         tests, by, cpu_s = nearest.of(mutant, told.tests_s), None, 0.0
         if tests:
-            by, cpu_s = warm.tried(warm.tree / module, ast.parse(source), new, tests, 300)
-        outcome = "survived" if by is None else "slow" if by.startswith("slow") else "noticed"
+            by, cpu_s = warm.tried(warm.tree / module, ast.parse(source), new, tests, 150)
+        ended = (by or "survived").split(":")[0]
+        # what was not tried to the end counts as not noticed
+        outcome = {"slow": "slow", "survived": ended, "unfinished": "survived"}.get(
+            ended, "noticed"
+        )
         if outcome == "noticed":
             nearest.tell(by)
         counted[outcome] = counted.get(outcome, 0) + 1

@@ -33,6 +33,7 @@ import pytest
 from _pytest.config import _prepareconfig
 from _pytest.main import Session
 from hypothesis import Phase, settings
+from numba.core import config as numba_config
 from numba.core import event
 from numba.core.dispatcher import Dispatcher
 
@@ -41,7 +42,14 @@ TESTED = ("infestation", "io/writers", "monitoring", "planning", "plot", "sample
           "test_dataclasses.py")  # fmt: skip
 _WORDS = ["-s", "-p", "no:cacheprovider", "-p", "no:terminal", "--timeout=0",
           "--assert=plain"]  # fmt: skip
-_SLOW = 99  # how a child is said to have ended that took too long
+_SLOW, _UNFINISHED, _BROKEN = (
+    99,
+    98,
+    97,
+)  # how a child is said to have ended that took too long, or was let be
+
+
+_LITTLE = numba_config._OptLevel(1)
 
 
 def collected(tree, files):
@@ -68,6 +76,8 @@ class _Said:
     @pytest.hookimpl
     def pytest_runtest_logreport(self, report):
         self.failed |= report.failed
+        if report.failed:
+            sys.stderr.write(f"{report.nodeid}\n{report.longreprtext}\n")
         self.skipped |= report.skipped
 
 
@@ -292,7 +302,7 @@ class Warm:
             if too_long or idle or cpu_s > most_cpu_s:
                 os.killpg(child, signal.SIGKILL)
                 os.waitpid(child, 0)
-                return (_SLOW if too_long or idle else 0), cpu_s
+                return (_SLOW if too_long or idle else _UNFINISHED), cpu_s
             time.sleep(0.02)
 
     def tried(self, source_path, old, new, tests, most_cpu_s, log=None):
@@ -307,21 +317,25 @@ class Warm:
         usual = [self.known.get(one, {}).get("s", 1.0) for one in tests]
 
         def work():
-            if is_swapped:
+            if not is_swapped:
+                return self._noticed(self._imported_anew(file, now, tests))
+            try:
                 changed = self._swapped(pairs)
                 _compile_anew(lambda one: one.__code__ in changed)
-                items = [self.items[one] for one in tests]
-            else:
-                items = self._imported_anew(file, now, tests)
-            return self._noticed(items)
+            except Exception:  # noqa: BLE001 - whatever it is, no test has noticed it
+                traceback.print_exc()
+                return _BROKEN
+            return self._noticed([self.items[one] for one in tests])
 
         code, cpu_s = self._forked(
             work, lambda at: 10 + 5 * usual[min(at, len(usual) - 1)], most_cpu_s, log
         )
         at = tests[int(self.shared.heard()["test"])]
+        if code == _BROKEN:
+            raise RuntimeError(f"a mutant of {file} could not be put in")
         if code == 0:
             return None, cpu_s
-        return ("slow: " if code == _SLOW else "") + at, cpu_s
+        return {_SLOW: "slow: ", _UNFINISHED: "unfinished: "}.get(code, "") + at, cpu_s
 
     def _can_swap(self, pair):
         return pair is not None and pair[0] in self.functions and pair[0] not in self.at_import
@@ -378,6 +392,8 @@ class _Instead(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 def _compile_anew(is_changed):
     """Let loops that reach a change be compiled, all others be loaded, and nothing be kept."""
+    # compiled for one use: quickly rather than well
+    numba_config.OPT, numba_config.LOOP_VECTORIZE, numba_config.SLP_VECTORIZE = _LITTLE, 0, 0
     kept = importlib.import_module("fieldmon.compute.jit")._KeptLoops
     load = kept.load_overload
 

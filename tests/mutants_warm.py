@@ -49,6 +49,7 @@ _SLOW, _UNFINISHED, _BROKEN = (
 )  # how a child is said to have ended that took too long, or was let be
 
 
+_END = os._exit  # tests may replace it
 _LITTLE = numba_config._OptLevel(1)
 
 
@@ -216,6 +217,16 @@ class Warm:
             part.write_text(json.dumps(known))
             part.replace(kept)
         self.known = {one: values for one, values in known.items() if one in self.items}
+        for one, values in self.known.items():
+            values["reach"] = [*{*values["reach"], *self._named_by(self.items[one])}]
+
+    def _named_by(self, item):
+        """Return the loops that a test's own function names, and what they call."""
+        test = getattr(item.obj, "hypothesis", None)
+        code = (item.obj if test is None else test.inner_test).__code__
+        loops = _loops_named(code, vars(item.module))
+        reached = {one for loop in loops for one in loops_reached(loop.py_func)}
+        return {function_name(self.tree, one.__code__) for one in reached}
 
     def _measured(self, items, at, told):
         seen, compiling = set(), _Compiling(self.shared)
@@ -245,7 +256,7 @@ class Warm:
         inside = str(self.tree / "fieldmon")
         own = [code for code in seen if code.co_filename.startswith(inside)]
         loops = set()
-        for code in own:
+        for code in seen:  # tests call loops, too
             for loop in _loops_named(code, self.names_of.get(code.co_filename, {})):
                 if loop.py_func not in loops:
                     loops |= loops_reached(loop.py_func)
@@ -273,7 +284,7 @@ class Warm:
             except BaseException:  # noqa: BLE001 - whatever it is, this process ends
                 traceback.print_exc()
             finally:
-                os._exit(code)
+                _END(code)
         try:
             return self._waited(child, limit_s, most_cpu_s)
         finally:

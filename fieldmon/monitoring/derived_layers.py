@@ -115,7 +115,8 @@ def _beside_the_next(grid: PlantGrid, plants: NDArray[np.intp]) -> NDArray[np.bo
     """Return whether each plant but the last stands in a row just before the next one given."""
     far_m = np.hypot(*np.diff(grid.xy_m[plants], axis=0).T)
     same_row = np.diff(grid.row[plants]) == 0
-    return (np.diff(plants) == 1) & same_row & (far_m <= grid.row_spacing_m)
+    beside: NDArray[np.bool_] = (np.diff(plants) == 1) & same_row & (far_m <= grid.row_spacing_m)
+    return beside
 
 
 @lru_cache(maxsize=64)  # a tap changes one spot of many

@@ -261,15 +261,21 @@ class OpenSeason:
         return inside
 
     def _refresh(
-        self, db: sqlite3.Connection, since: int = 0, before: SeasonContents | None = None
+        self,
+        db: sqlite3.Connection,
+        since: int | None = None,
+        before: SeasonContents | None = None,
     ) -> None:
         """Write what follows from the causes, within the transaction that changes them.
 
         Nothing before `since` has changed; what the transaction read `before` its changes saves
-        working those mornings out again.
+        working those mornings out again. None: nothing has changed before the last morning that
+        the file keeps and that still follows from all that happened until then.
         """
         self._last = None
-        now = self._read(db, before, since)
+        now = self._read(db, before, since or 0)
+        if since is None:
+            since = now.mornings.last_until(newest_day(db))
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         self._keep_mornings(db, now.mornings, newest)
         inspection_lots.keep(db)

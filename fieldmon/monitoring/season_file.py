@@ -258,7 +258,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     def rebuild(self) -> None:
         """Write all layers that follow from the causes anew."""
         with self._lock, self.store.writing() as db:
-            self._refresh(db)
+            self._refresh(db, 0)
 
 
 def _advised(db: sqlite3.Connection, on: date) -> list[str]:

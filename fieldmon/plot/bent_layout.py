@@ -219,13 +219,13 @@ def shut_stretches(
     k, row = runs(np.zeros(len(n), np.int64), n)
     from_m = np.asarray(k * coarse_m - far_m, np.float64)
     to_m: Float = np.minimum(from_m + coarse_m, rows.lines.length_m[row] + far_m)
-    hit = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m), 8)))
+    hit = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m))))
     m = int(np.ceil(coarse_m / (_FINE * plant_m)))
     j, of = runs(np.zeros(len(hit), np.int64), np.full(len(hit), m))
     row, step = row[hit][of], ((to_m - from_m)[hit] / m)[of]
     from_m = from_m[hit][of] + j * step
     to_m = from_m + step
-    shut_ones = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m), 1)))
+    shut_ones = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m))))
     row, from_m, to_m = row[shut_ones], from_m[shut_ones], to_m[shut_ones]
     if not len(row):
         return Blocked.nowhere()
@@ -236,29 +236,28 @@ def shut_stretches(
 
 
 def _strips(
-    rows: RowLines,
-    aisles: RowAisles,
-    sides: int,
-    stretches: tuple[Int, Float, Float],
-    steps: int,
+    rows: RowLines, aisles: RowAisles, sides: int, stretches: tuple[Int, Float, Float]
 ) -> NDArray[np.object_]:
-    """Return the ground between rows and the middle of their aisle, or both, as polygons."""
+    """Return the ground between rows and the middle of their aisle, or both, as polygons.
+
+    With every corner of either side: a lane lies on the edge.
+    """
     row, from_m, to_m = stretches
-    share = np.linspace(0.0, 1.0, steps + 1)
-    places = from_m[:, None] + (to_m - from_m)[:, None] * share
-    many = np.repeat(row, steps + 1)
-    on_row = rows.lines.points(many, places.ravel())
-    left = _foot(aisles, many, on_row, _LEFT)
-    right = _foot(aisles, many, on_row, _RIGHT) if sides == _BOTH else on_row
-    shape = (len(row), steps + 1, 2)
-    ring = np.concatenate([right.reshape(shape), left.reshape(shape)[:, ::-1]], axis=1)
-    return np.asarray(shapely.polygons(np.concatenate([ring, ring[:, :1]], axis=1)), np.object_)
 
+    def beside(side: int) -> Polylines:
+        aisle = (aisles.left if side == _LEFT else aisles.right)[row]
+        ends = (rows.lines.points(row, place_m) for place_m in (from_m, to_m))
+        low, high = (aisles.lines.project(end, aisle)[0] for end in ends)
+        return aisles.lines.stretches(aisle, low, high)
 
-def _foot(aisles: RowAisles, row: Int, xy_m: Float, side: int) -> Float:
-    aisle = (aisles.left if side == _LEFT else aisles.right)[row]
-    place, _ = aisles.lines.project(xy_m, aisle)
-    return aisles.lines.points(aisle, place)
+    left = beside(_LEFT)
+    right = beside(_RIGHT) if sides == _BOTH else rows.lines.stretches(row, from_m, to_m)
+    owner = np.concatenate([np.repeat(np.arange(len(row)), np.diff(right.start)),
+                            np.repeat(np.arange(len(row)), np.diff(left.start))[::-1]])  # fmt: skip
+    corners = np.concatenate([right.xy_m, left.xy_m[::-1]])
+    order = np.argsort(owner, kind="stable")
+    rings = shapely.linearrings(corners[order], indices=owner[order])
+    return np.asarray(shapely.polygons(rings), np.object_)
 
 
 def _pieces(

@@ -109,6 +109,23 @@ class Polylines(NamedTuple):
         inner = self.xy_m[a:b]
         return inner if from_m <= to_m else inner[::-1]
 
+    def stretches(self, line: NDArray[np.integer], from_m: Float, to_m: Float) -> Self:
+        """Return stretches of lines, each between two places, with the corners between.
+
+        Backwards where the second place is the lesser one.
+        """
+        low, high = (self.corner_before(line, f(from_m, to_m)) for f in (np.minimum, np.maximum))
+        n = high - low
+        corner, of = runs(low + 1, n)
+        back = (from_m > to_m)[of]
+        corner[back] = (low + 1 + high)[of[back]] - corner[back]
+        start = offsets(n + 2)
+        xy_m = np.empty((start[-1], 2))
+        xy_m[np.arange(len(of)) + 2 * of + 1] = self.xy_m[corner]
+        xy_m[start[:-1]] = self.points(line, from_m)
+        xy_m[start[1:] - 1] = self.points(line, to_m)
+        return self.of(start, xy_m)
+
     def project(self, xy_m: Float, line: NDArray[np.integer]) -> tuple[Float, Float]:
         """Return the place of each point on a given line, and how far to its left it is.
 

@@ -7,6 +7,8 @@ import io
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.monitoring.cautions import label_of, waits
@@ -60,22 +62,37 @@ def treatments_table(season: Season) -> Iterator[Line]:
 def inspections_table(season: Season) -> Iterator[Line]:
     """Yield a line for each inspection that counts."""
     done, label, plot = season.history.inspections, season.label, season.plot.field.name
-    lonlat = season.plot.grid.lonlat(done.plant).tolist()
-    for k, plant in enumerate(done.plant.tolist()):
-        second, count = float(done.second[k]), float(done.count[k])
+    texts: dict[object, str] = {}  # the same name stands in thousands of rows
+    plants, of = np.unique(done.plant, return_inverse=True)
+    places = [
+        (round(lon, 7), round(lat, 7)) for lon, lat in season.plot.grid.lonlat(plants).tolist()
+    ]
+    columns = (
+        [places[k] for k in of.tolist()],
+        np.datetime_as_string(done.date).tolist(),
+        done.second.tolist(),
+        label.line[done.plant].tolist(),
+        label.number[done.plant].tolist(),
+        [RESULT_NAMES[result] for result in done.result.tolist()],
+        done.count.tolist(),
+        *([texts.setdefault(said, str(said)) for said in each] for each in (done.who, done.notes)),
+    )
+    for (lon, lat), on, second, row, number, result, count, who, notes in zip(
+        *columns, strict=True
+    ):
         minutes = None if math.isnan(second) else int(second // 60)
         yield {
             "plot": plot,
-            "date": str(done.date[k]),
+            "date": on,
             "time": None if minutes is None else f"{minutes // 60:02d}:{minutes % 60:02d}",
-            "row": int(label.line[plant]),
-            "plant": int(label.number[plant]),
-            "lon": round(lonlat[k][0], 7),
-            "lat": round(lonlat[k][1], 7),
-            "result": RESULT_NAMES[int(done.result[k])],
+            "row": row,
+            "plant": number,
+            "lon": lon,
+            "lat": lat,
+            "result": result,
             "count": None if math.isnan(count) else count,
-            "who": str(done.who[k]),
-            "notes": str(done.notes[k]),
+            "who": who,
+            "notes": notes,
         }
 
 
@@ -99,17 +116,23 @@ TABLES = {"treatments": treatments_table, "inspections": inspections_table, "log
 
 def csv_bytes(lines: Iterable[Line]) -> bytes:
     """Return lines as CSV in UTF-8, as spreadsheets open it; empty of none."""
-    kept = list(lines)
-    if not kept:
-        return b""
+    cells: dict[str, str] = {}  # most texts stand in thousands of lines
     text = io.StringIO(newline="")
-    table = csv.DictWriter(text, list(kept[0]))
-    table.writeheader()
-    table.writerows([{name: _cell(value) for name, value in line.items()} for line in kept])
-    return text.getvalue().encode("utf-8-sig")
+    table = csv.writer(text)
+    for k, line in enumerate(lines):
+        if k == 0:
+            table.writerow(line)
+        table.writerow([_cell(value, cells) for value in line.values()])
+    data = text.getvalue()
+    return data.encode("utf-8-sig") if data else b""
 
 
-def _cell(value: object) -> object:
+def _cell(value: object, cells: dict[str, str]) -> object:
+    """Return what stands in a cell; `cells` are texts that were made safe before."""
     if value is None:
         return ""
-    return safe_cell(value) if isinstance(value, str) else value
+    if not isinstance(value, str):
+        return value
+    if value not in cells:
+        cells[value] = safe_cell(value)
+    return cells[value]

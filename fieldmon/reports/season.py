@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.cautions import label_of, waits
@@ -66,11 +67,7 @@ class _Facts:
             status.estimate.low, status.estimate.high, status.estimate.chance_clean,
         )  # fmt: skip
         days = (*(one for one in season.days() if one.on < on), today)
-        history, settings = season.history, season.settings
-        found_by = [
-            int(np.count_nonzero(history.states(settings.day(one.on)) == PRESENT)) for one in days
-        ]
-        return cls(season, on, units, status, days, np.array(found_by))
+        return cls(season, on, units, status, days, _found_by(season, days))
 
     @property
     def name(self) -> str:
@@ -89,6 +86,18 @@ class _Facts:
         )  # fmt: skip
         yield Illustration("", map_alt(self.name, state, 0), what.draw, what.heights(75.0, 200.0))
         yield legend_block(by_state=by_state)
+
+
+def _found_by(season: Season, days: tuple[DayFigures, ...]) -> NDArray[np.int64]:
+    """Return how many plants were found infested up to the evening of each day."""
+    history, settings = season.history, season.settings
+    finds = np.flatnonzero(history.inspections.result == FOUND)
+    _, first = np.unique(history.inspections.plant[finds], return_index=True)
+    asked = [settings.day(one.on) for one in days]
+    found_by: NDArray[np.int64] = np.searchsorted(
+        np.sort(history.days[finds[first]]), asked, side="right"
+    )
+    return found_by
 
 
 def season_report(season: Season, on: date, units: Units) -> Report:

@@ -1,11 +1,17 @@
 """A season's file is read anew whenever it changed, whoever changed it."""
 
+import shutil
+import sqlite3
+from contextlib import closing
+from dataclasses import replace
+
+import pytest
+
+from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring import Season
-from tests.monitoring.seasons import (
-    BEGINS,
-    on,
-    some_results,
-)
+from fieldmon.monitoring.history import BeliefSettings, History
+from fieldmon.plot.robot import Robot
+from tests.monitoring.seasons import BEGINS, on, some_results, three_results
 
 
 def test_two_windows_see_each_others_work(season):
@@ -30,3 +36,103 @@ def test_findings_that_come_late_change_every_day_after_them(season):
 def test_nights_pass_on_days_on_which_nobody_works(season):
     season.record(some_results(season, found=[0]), "x")
     assert season.morning(on(5)).sum() > season.morning(on(1)).sum()
+
+
+def layers(season):
+    """Return what follows from the causes, as the file says it, without the numbers of rows."""
+    wanted = {
+        "days": "day, date, inspected, found, expected_left, low, high, chance_clean, digest, "
+        "causes",
+        "plant_state": "fid, chance, state, last_inspected, hot_spot",
+        "hot_spots": "geom, spot, found, inspected, plants, expected, p, q",
+        "learnt": "name, value, low, high",
+        "mornings": "day, causes, content, chances",
+    }
+    with season.store.reading() as db:
+        return {
+            table: db.execute(f"SELECT {names} FROM {table} ORDER BY 1").fetchall()  # noqa: S608
+            for table, names in wanted.items()
+        }
+
+
+@pytest.fixture
+def three_weeks(season):
+    for day in range(0, 21, 3):
+        season.record(some_results(season, day=day, found=[day % 5]), f"day {day}")
+    return season
+
+
+@pytest.fixture
+def nights(monkeypatch):
+    """Count the nights that are worked out."""
+    worked, night = [], History.night_after
+    monkeypatch.setattr(
+        History, "night_after", lambda *given: (worked.append(given[-1]), night(*given))[1]
+    )
+    return worked
+
+
+def as_if_all_was_worked_out_again(season):
+    made = layers(season)
+    with season.store.writing() as db:  # nor is any morning taken from the file
+        db.execute("DELETE FROM mornings")
+    season = Season(season.path)
+    season.rebuild()
+    return layers(season) == made
+
+
+def test_hours_and_samplers_change_no_morning_and_none_is_worked_out(three_weeks, nights):
+    season = Season(three_weeks.path)
+    seen = season.settings
+    season.change(replace(seen, robot=Robot(hours=3), sampler="naive"), seen)
+    season.undo_change()
+    assert nights == []
+    assert as_if_all_was_worked_out_again(season)
+
+
+def test_another_spread_changes_all_mornings(three_weeks, nights):
+    season = Season(three_weeks.path)
+    seen = season.settings
+    faster = BeliefSettings(Spread(rate_per_day=0.05))
+    season.change(replace(seen, belief=faster), seen)
+    assert set(nights) == set(range(18))
+    assert as_if_all_was_worked_out_again(season)
+
+
+def test_a_copy_with_results_of_the_last_day_changes_only_that_one(three_weeks, nights, tmp_path):
+    copy = Season(shutil.copy(three_weeks.path, tmp_path / "copy.gpkg"))
+    copy.record(three_results(18), "the copy's")
+    nights.clear()
+    season = Season(three_weeks.path)
+    assert season.merge(copy).new == 3
+    assert nights == []
+    assert as_if_all_was_worked_out_again(season)
+
+
+@pytest.mark.parametrize("day", [0, 7, 16])
+def test_a_copy_with_earlier_results_changes_every_day_after_them(three_weeks, tmp_path, day):
+    copy = Season(shutil.copy(three_weeks.path, tmp_path / "copy.gpkg"))
+    copy.record(three_results(day), "the copy's")
+    three_weeks.merge(copy)
+    assert as_if_all_was_worked_out_again(three_weeks)
+
+
+def test_a_day_that_was_only_planned_in_a_copy_has_its_figures(three_weeks, tmp_path):
+    copy = Season(shutil.copy(three_weeks.path, tmp_path / "copy.gpkg"))
+    copy.plan(on(7))
+    three_weeks.merge(copy)
+    assert on(7) in [one.on for one in three_weeks.days()]
+    assert as_if_all_was_worked_out_again(three_weeks)
+
+
+@pytest.mark.parametrize("row", [1, 12, 33])
+def test_a_correction_changes_every_day_from_its_own_on(three_weeks, row):
+    with closing(sqlite3.connect(three_weeks.path)) as db:
+        other = "CASE result WHEN 'found' THEN 'clean' ELSE 'found' END"
+        db.execute(f"UPDATE inspections SET result = {other} WHERE fid = ?", (row,))  # noqa: S608
+        db.commit()
+    season = Season(three_weeks.path)
+    assert season.correct("Ann") == 1
+    assert as_if_all_was_worked_out_again(season)
+    season.undo()
+    assert as_if_all_was_worked_out_again(season)

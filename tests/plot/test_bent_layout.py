@@ -69,6 +69,41 @@ def test_a_lane_goes_straight_on_before_its_aisle_turns_to_a_row_far_off():
     check_lanes(bent_grid(FRAME, rows, plants, Ground(None, shapely.MultiPolygon()), planting))
 
 
+def test_a_row_is_cut_where_a_pond_reaches_by_centimetres_into_its_bent_aisle():
+    # found by the property: the plants of the outer row that a pond leaves, and an inner row whole
+    turn = np.arange(-9, 10) * 2.0 / 33.0
+    inner, outer = (r * np.stack([np.sin(turn), np.cos(turn)], axis=1) for r in (30.0, 33.0))
+    aisle_m, at = 31.5, np.deg2rad(-3.0)
+    pond = shapely.buffer(shapely.Point((aisle_m + 2.95) * np.array([np.sin(at), np.cos(at)])), 3.0)
+    dry = ~shapely.contains_xy(shapely.buffer(pond, 3.0), outer)
+    rows = RowLines(Polylines.each([inner, outer]), np.zeros(2, int))
+    plants = np.concatenate([inner, outer[dry]]), np.repeat([0, 1], [19, dry.sum()])
+    for faces in (1, 2):
+        planting = Planting(row_spacing_m=3.0, plant_spacing_m=2.0, headland_m=1.0, faces=faces)
+        grid = bent_grid(FRAME, rows, plants, Ground(None, pond), planting)
+        check_lanes(grid)
+        ends = grid.lane_x_m[grid.row_line == 0]
+        assert len(ends) == 2 * faces  # the inner row, on either side of the pond
+
+
+def test_a_pond_that_took_all_but_a_plant_of_a_measured_row_cuts_the_next_one():
+    # found by the property, its pond found again
+    plants = np.array([[2.66313063, -22.91438111], [2.41662116, -19.62005056],
+                       [3.07992533, -2.09725196], [5.14523714, 4.64422381],
+                       [6.09204402, 8.04159754], [7.69324891, 10.97480571],
+                       [10.6662094, 17.18542862], [0.13801428, -19.33443149]])  # fmt: skip
+    middle, radius_m = np.array([62.1397, -13.9763]), 60.0879
+    lines = []
+    for at_m, first, n in ((radius_m, -2.99015, 13), (radius_m + 2.1875, -3.05341, 4)):
+        turn = first - np.arange(n) * 3.5 / at_m
+        lines.append(middle + at_m * np.stack([np.cos(turn), np.sin(turn)], axis=1))
+    pond = shapely.buffer(shapely.Point(-0.67423203, -11.08635208), 1.789964, quad_segs=3)
+    rows = RowLines(Polylines.each(lines), np.zeros(2, int))
+    planting = Planting(row_spacing_m=2.1875, plant_spacing_m=3.5, headland_m=5.285681)
+    measured = plants, np.array([0, 0, 0, 0, 0, 0, 0, 1])
+    check_lanes(bent_grid(FRAME, rows, measured, Ground(None, pond), planting))
+
+
 @given(bent_grids())
 def test_places_ascend_along_each_row_and_are_metres_driven(grid):
     step_m = np.diff(grid.along_m)

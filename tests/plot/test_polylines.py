@@ -77,6 +77,25 @@ def test_corners_between_places_are_those_driven_past(drawn, a, b):
     assert shapely.hausdorff_distance(part, shapely.linestrings(driven)) < 1e-6
 
 
+@given(gentle_lines(), st.floats(-2, 2), st.floats(-2, 2))
+def test_stretches_are_driven_past_the_same_corners_each_on_its_line(drawn, from_m, to_m):
+    lines, rng = drawn
+    known = Polylines.each(lines)
+    which = np.sort(rng.integers(0, len(lines), 8))
+    # some begin before the line or end beyond it
+    low, high = (rng.random(8) * known.length_m[which] + m for m in (from_m, to_m))
+    parts = known.stretches(which, low, high)
+    assert len(parts) == 8
+    for i, line in enumerate(which):
+        ends = known.points(np.full(2, line), np.array([low[i], high[i]]))
+        inner = known.corners_between(line, low[i], high[i])
+        driven = np.concatenate([ends[:1], inner, ends[1:]])
+        assert parts.line(i)[[0, -1]] == pytest.approx(ends, abs=1e-9)
+        assert parts.length_m[i] == pytest.approx(abs(high[i] - low[i]), abs=1e-9)
+        shapes = [shapely.linestrings(line_m) for line_m in (parts.line(i), driven)]
+        assert shapely.hausdorff_distance(*shapes) < 1e-9
+
+
 @given(gentle_lines(), st.floats(0.1, 9.0))
 def test_longer_lines_go_straight_on_and_samples_reach_both_ends(drawn, by_m):
     lines, _ = drawn

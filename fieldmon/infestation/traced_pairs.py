@@ -101,7 +101,7 @@ class TracedPairs:
     latency
         For how many nights infestations hide, as far as inspections tell; None: a pest was named.
     slope_sums
-        ``(5,)`` how far differences between chances came true, see `calibration_slope`.
+        ``(6,)`` how far differences between chances came true, see `calibration_slope`.
     """
 
     grid: PlantGrid
@@ -126,10 +126,9 @@ class TracedPairs:
         together = pair_chances(chance, grid, clustering)
         unseen, mean = np.full(len(chance), _SENT), float(chance.mean())
         counts = OriginCounts.none()
-        latency = Latency.none(chance)
-        return cls(
-            grid, chance, together, shares, unseen, counts, no_evidence(), mean, latency=latency
-        )
+        begun = cls(grid, chance, together, shares, unseen, counts, no_evidence(), mean)
+        told = no_inspections(chance)
+        return replace(begun, latency=Latency.none(chance), slope_sums=told)
 
     def of_pest(self, pest: Pest) -> TracedPairs:
         """Return the same, of a plot on which this pest lives."""

@@ -44,7 +44,7 @@ class Traces(NamedTuple):
     evidence
         ``(4,)`` of how infested plants stand, see `ClusterEstimate`.
     slope_sums
-        ``(5,)`` how far differences between chances came true, see `calibration_slope`.
+        ``(6,)`` how far differences between chances came true, see `calibration_slope`.
     """
 
     cells: Cells

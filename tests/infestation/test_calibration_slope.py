@@ -64,3 +64,16 @@ def test_plants_known_to_be_infested_and_finds_everywhere_tell_no_difference():
     assert slope(*known) == slope(said, found)
     assert slope(SPREAD, np.ones(60, np.bool_)) == 0.0
     assert slope(np.full(60, -1.0), SPREAD > 0.0) == 0.0
+
+
+def test_what_records_say_is_relied_on_at_first_and_given_up_where_it_is_not_so():
+    flat, told = np.full(100, 0.2), np.where(np.arange(100) < 30, 0.7, 0.05)
+    assert no_inspections(flat)[-1] == 0.0
+    first = no_inspections(told)
+    assert 0.6 < first[-1] < 1.0
+    nothing = np.empty(0), np.empty(0, np.bool_)
+    assert _slope(*nothing, first.copy()) == first[-1]
+    said, found = drawn(0.0, 20)
+    assert _slope(chances_of(said), found, first.copy()) < 0.1
+    said, found = drawn(1.0, 20)
+    assert _slope(chances_of(said), found, first.copy()) > 0.6

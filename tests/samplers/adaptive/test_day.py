@@ -134,12 +134,14 @@ def test_a_plan_that_takes_plants_for_clean_learns_nothing_of_how_many_are_infes
 
 
 def test_where_few_are_infested_differences_count_and_where_many_are_they_must_have_come_true():
-    nothing, proved = no_inspections(), np.array([400.0, -400.0, 160.0, 1200.0, 80.0])
+    nothing, proved = no_inspections(), np.array([400.0, -400.0, 160.0, 1200.0, 80.0, 0.0])
     assert [trust(share, nothing) for share in (0.0, 0.015, 0.03)] == [1.0] * 3
     assert trust(0.1, nothing) == pytest.approx(0.5)
     assert 0.0 < trust(0.6, nothing) < 0.002
     assert trust(0.6, proved) > 0.6
     assert trust(0.1, proved) > trust(0.1, nothing)
+    told = no_inspections(np.where(np.arange(N) < 20, 0.6, 0.1))
+    assert trust(0.6, told) > 0.4
 
 
 def test_odds_are_multiplied_and_chances_stay_chances():

@@ -29,7 +29,7 @@ _KNOWN = 0.99
 _PRIOR_INFORMATION, _ERRORS = 6.0, 1.0
 # the differences of a first map count by half where the logarithm of its odds has this variance
 # (our choice)
-_HALF = 0.5
+_HALF = 0.1
 
 
 def no_inspections(chance: Floats | None = None) -> Floats:

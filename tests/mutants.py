@@ -4,14 +4,15 @@
     python tests/mutants.py infestation --again mutants.csv --output again.csv
 
 A mutant is one small change of a module: ``<`` made ``<=``, ``+`` made ``-``, a number another, a
-condition turned round, a call left out. The tests of the module are run on it, then the files of
-tests that reach the changed function, the nearest first. A mutant that no test notices survives:
-write what must hold, or say why it changes nothing.
+condition turned round, a call left out. It is tried on the tests that reach the changed function
+when nothing is wrong (measured once, for a copy that is kept): those of the module first, the quick
+before the slow. A mutant that no test notices survives: write what must hold, or say why it changes
+nothing.
 
 Ours, since both kept tools fail on compiled loops: mutmut leaves decorated functions alone, so all
 loops; cosmic-ray starts Python for every mutant and marks every file as changed, so that each
-time all loops compile again. Here a warm process forks for every mutant, only loops that the
-change reaches are compiled, and nothing of it is kept.
+time all loops compile again. Here a process that has imported and collected all forks for every
+mutant (tests/mutants_warm.py).
 """
 
 from __future__ import annotations
@@ -20,16 +21,11 @@ import argparse
 import ast
 import copy
 import csv
-import importlib
 import os
 import random
 import shutil
-import signal
-import sys
 import tempfile
 import time
-import traceback
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -45,12 +41,6 @@ ROOMS = {
     "writers": "fieldmon/io/writers",
     "simulation": "fieldmon/simulation",
 }
-#: promises about all modules at once: they take a second
-_OF_ALL = (ROOT / "tests" / "test_dataclasses.py",)
-#: tests that start programs, browsers or take minutes: they are not run on mutants
-_LEFT_OUT = ("tests/app/", "tests/real/", "tests/benchmarks/", "tests/docs/", "tests/drive/")
-_WARM = ("numpy", "numba", "scipy.sparse", "scipy.stats", "shapely", "pyproj", "pandas",
-         "geopandas", "pytest", "pyogrio", "jinja2")  # fmt: skip
 _SWAPPED = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
     ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
@@ -209,10 +199,10 @@ def _other_name(node):
 
 
 def mutated(source, place):
-    """Return a module's source with one place changed, and how the change reads."""
+    """Return a module's tree with one place changed, and how the change reads."""
     places = _Places(place)
     tree = ast.fix_missing_locations(places.visit(ast.parse(source)))
-    return ast.unparse(tree), places.changed
+    return tree, places.changed
 
 
 def mutants_of(path):
@@ -223,52 +213,9 @@ def mutants_of(path):
     return [Mutant(path, k, line, "") for k, line in enumerate(places.found)]
 
 
-def own_tests(module):
-    """Return the test file of a module, or of the package it lies in."""
-    named = ROOT / "tests" / module.relative_to("fieldmon").with_name(f"test_{module.name}")
-    if named.is_file():
-        return named
-    folder = ROOT / "tests" / module.parent.relative_to("fieldmon")
-    beside = folder / f"test_{module.parent.name}.py"
-    return beside if beside.is_file() else folder
-
-
-class Reached:
-    """Which files of tests reach a function, the nearest first: who names it, or who names those.
-
-    By the words that stand in functions, since nobody sees Python call a compiled loop. A method
-    or a function of a common name is found too often: that costs time, not a verdict.
-    """
-
-    def __init__(self):
-        self.names = {}  # each definition of the program: the words in it
-        for file in sorted((ROOT / "fieldmon").rglob("*.py")):
-            for top in ast.parse(file.read_text("utf-8")).body:
-                for one in _definitions(top):
-                    self.names[file, one.name] = _words(one)
-        self.tests = {
-            file: _words(ast.parse(file.read_text("utf-8")))
-            for file in sorted((ROOT / "tests").rglob("test_*.py"))
-            if not str(file.relative_to(ROOT)).startswith(_LEFT_OUT)
-        }
-
-    def at(self, mutant, most, farthest=4):
-        """Return the nearest files of tests for a mutant, at most so many."""
-        reached, found = {(mutant.path, mutant_function(mutant))}, []
-        room = ROOT / "tests" / mutant.path.parent.relative_to(ROOT / "fieldmon")
-        for _ in range(farthest):
-            public = {name for _, name in reached if name and not name.startswith("_")}
-            near = [file for file, words in self.tests.items() if words & public]
-            near.sort(key=lambda file: (room not in file.parents, -len(self.tests[file] & public)))
-            found += [file for file in near if file not in found]
-            if len(found) >= most:
-                break
-            reached |= {
-                (file, name)
-                for (file, name), words in self.names.items()
-                if words & public or any(at == file and one in words for at, one in reached)
-            }
-        return tuple(found[:most])
+@cache
+def _top_of(path):
+    return ast.parse(path.read_text("utf-8")).body
 
 
 def _definitions(node):
@@ -284,102 +231,106 @@ def _words(node):
     return found | {one.attr for one in ast.walk(node) if isinstance(one, ast.Attribute)}
 
 
-@cache
-def _top_of(path):
-    return ast.parse(path.read_text("utf-8")).body
+def _inside(mutant):
+    """Return what a mutant stands in, from the outside: a class, a function, or nothing."""
+    return [one for top in _top_of(mutant.path) for one in _definitions(top)
+            if one.lineno <= mutant.line <= (one.end_lineno or 0)]  # fmt: skip
 
 
 def mutant_function(mutant):
     """Return the name of the function that a mutant changes, of its class where that makes it."""
     name = None
-    for top in _top_of(mutant.path):
-        for one in _definitions(top):
-            if one.lineno <= mutant.line <= (one.end_lineno or 0):
-                special = one.name.startswith("__") and name is not None
-                name = name if special else one.name
+    for one in _inside(mutant):
+        special = one.name.startswith("__") and name is not None
+        name = name if special else one.name
     return name
 
 
-def _begin_session():
-    """Begin a session of its own, that gives way to other programs as this one does."""
-    told = Path("/proc/self/autogroup")  # where Linux shares time out by sessions
-    gives_way = told.read_text().split()[-1] if told.is_file() else ""
-    os.setsid()
-    if gives_way:
-        with suppress(OSError):  # nobody may ask for more than before
-            told.write_text(gives_way)
+@cache
+def _all_words(root):
+    """Return the words in each function of the library, by its file and name."""
+    found = {}
+    for file in sorted((root / "fieldmon").rglob("*.py")):
+        for top in _top_of(file):
+            for one in _definitions(top):
+                of = f"{top.name}." if one is not top else ""
+                found[f"{file.relative_to(root)}:{of}{one.name}"] = _words(one)
+    return found
 
 
-def _tests_in(log, tests, copied):
-    """Run tests in this process, a child that ends with their exit code."""
-    _begin_session()
-    os.chdir(copied)
-    sys.path.insert(0, str(copied))
-    sys.dont_write_bytecode = True
-    quiet = os.open(log or os.devnull, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-    for stream in (1, 2):
-        os.dup2(quiet, stream)
-    import pytest
-
-    loops = importlib.import_module("fieldmon.compute.jit")
-    loops._KeptLoops.save_overload = lambda *_: None  # what a fault compiles to is not kept
-    words = ["-x", "-q", "-p", "no:cacheprovider", "--timeout=0", "--assert=plain"]
-    os._exit(int(pytest.main([*words, *(str(copied / one.relative_to(ROOT)) for one in tests)])))
+def _is_in_function(mutant):
+    inside = _inside(mutant)
+    return bool(inside) and isinstance(inside[-1], ast.FunctionDef)
 
 
-def run(tests, copied, seconds, log=None):
-    """Return how tests ended in a process of their own: an exit code, or None if it took longer."""
-    child = os.fork()
-    if child == 0:
-        try:
-            _tests_in(log, tests, copied)
-        except Exception:  # noqa: BLE001 - whatever it is, this process ends
-            traceback.print_exc()
-        finally:
-            os._exit(70)
-    until = time.monotonic() + seconds
-    while time.monotonic() < until:
-        done, status = os.waitpid(child, os.WNOHANG)
-        if done:
-            return os.waitstatus_to_exitcode(status)
-        time.sleep(0.05)
-    os.killpg(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-    return None
+def functions_changed(mutant):
+    """Return the functions in which a mutant shows; of a constant, those that name it."""
+    inside, module = _inside(mutant), mutant.path.relative_to(ROOT)
+    if _is_in_function(mutant):
+        return {f"{module}:{'.'.join(one.name for one in inside)}"}
+    names = {one.name for one in inside}
+    for top in _top_of(mutant.path):
+        if (
+            isinstance(top, (ast.Assign, ast.AnnAssign))
+            and top.lineno <= mutant.line <= top.end_lineno
+        ):
+            names |= _words(top.targets[0] if isinstance(top, ast.Assign) else top.target)
+    own = tuple(f"{module}:{name}." for name in names)
+    return {one for one, words in _all_words(ROOT).items() if words & names or one.startswith(own)}
 
 
-class Trial:
-    """Tries mutants in a copy of the tree."""
+def own_tests(module):
+    """Return the test file of a module, or the folder of its room."""
+    named = ROOT / "tests" / module.relative_to("fieldmon").with_name(f"test_{module.name}")
+    return named.relative_to(ROOT) if named.is_file() else named.parent.relative_to(ROOT)
 
-    def __init__(self, copied):
-        self.copied, self._takes = copied, {}
 
-    def takes_s(self, tests):
-        """Return how long tests take without a fault; None where they fail by themselves."""
-        if tests not in self._takes:
-            began = time.monotonic()
-            good = run(tests, self.copied, 600) == 0
-            self._takes[tests] = time.monotonic() - began if good else None
-        return self._takes[tests]
+class Nearest:
+    """Chooses tests for a mutant: who reaches it, the nearest and quickest first."""
 
-    def outcome(self, mutant, lots):
-        """Return which lot of tests noticed a mutant, "slow", or nobody: "survived"."""
-        path = self.copied / mutant.path.relative_to(ROOT)
-        stat, source = path.stat(), path.read_text("utf-8")
-        text, said = mutated(source, mutant.place)
-        for name, tests in lots.items():
-            usual_s = self.takes_s(tests)
-            if usual_s is None:
-                continue  # they fail or take too long without a fault: they say nothing
-            path.write_text(text, "utf-8")
-            try:
-                code = run(tests, self.copied, 60 + 4 * usual_s)
-            finally:
-                path.write_text(source, "utf-8")
-                os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # or all loops compile
-            if code != 0:
-                return ("slow" if code is None else name), said
-        return "survived", said
+    def __init__(self, known):
+        self.known, self.kills = known, {}
+
+    def of(self, mutant, most_s):
+        """Return the names of tests that take so long together at most."""
+        module, changed = mutant.path.relative_to(ROOT), functions_changed(mutant)
+        own, room = str(own_tests(module)), f"{own_tests(module).parent}/"
+        found = [one for one, it in self.known.items() if it["ok"] and changed & set(it["reach"])]
+        anew = not _is_in_function(mutant)
+        if anew:
+            found += [one for one in self.known if one.startswith("tests/test_dataclasses")]
+
+        def far(one):
+            return 0 if one.startswith(own) else 1 if one.startswith(room) else 2
+
+        def cost(one):
+            return (far(one), self.known[one]["s"] / (1 + 4 * self.kills.get(one, 0)))
+
+        sum_s, chosen, files = 0.0, [], set()
+        for one in sorted(found, key=cost):
+            files.add(one.split("::")[0])
+            if anew and len(files) > 6:  # files that would be imported anew
+                break
+            sum_s += self.known[one]["s"]
+            if sum_s > most_s and chosen:
+                break
+            chosen.append(one)
+        return chosen
+
+    def tell(self, test):
+        """Hear which test noticed a mutant: it is tried earlier on the next."""
+        self.kills[test] = self.kills.get(test, 0) + 1
+
+
+def copied_tree(folder):
+    """Copy the tree; what was compiled in an older copy is kept."""
+    tree, left_out = folder / "tree", [".git", "node_modules", "_build"]
+    left_out += ["*.nbi", "*.nbc"] if tree.exists() else []
+    shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(*left_out), dirs_exist_ok=True)
+    shared = folder / "shared"
+    if not shared.exists():
+        shared.symlink_to(ROOT.parent / "shared")
+    return tree
 
 
 def chosen(room, each, seed):
@@ -394,8 +345,8 @@ def chosen(room, each, seed):
 def survivors(file, room):
     """Return the mutants of a room that a file of outcomes says survived, as they are now."""
     with file.open(newline="", encoding="utf-8") as lines:
-        told = [(ROOT / module, int(line), said) for r, outcome, module, line, said
-                in csv.reader(lines) if (r, outcome) == (room, "survived")]  # fmt: skip
+        rows = [row for row in csv.reader(lines) if row[:2] == [room, "survived"]]
+    told = [(ROOT / module, int(line), said) for _, _, module, line, said, *_ in rows]
     found = []
     for path, line, said in told:
         source = path.read_text("utf-8")
@@ -414,45 +365,54 @@ def main():
     asked.add_argument("--seed", type=int, default=1)
     asked.add_argument("--minutes", type=float, default=10**6, help="most minutes a room")
     asked.add_argument("--again", type=Path, help="only those that this file says survived")
-    asked.add_argument("--files", type=int, default=6, help="most files of tests that reach it")
-    asked.add_argument("--room-tests", action="store_true", help="try survivors on all of the room")
+    asked.add_argument("--tests-s", type=float, default=60, help="most seconds of tests a mutant")
+    asked.add_argument("--kept", type=Path, help="folder of a copy and what was measured of it")
     asked.add_argument("--output", type=Path, default=Path("mutants.csv"))
     told = asked.parse_args()
-    for name in _WARM:
-        importlib.import_module(name)
-    with tempfile.TemporaryDirectory(prefix="mutants-") as folder, told.output.open("a") as file:
-        copied = Path(folder) / "tree"
-        shutil.copytree(
-            ROOT, copied, ignore=shutil.ignore_patterns(".git", "node_modules", "_build")
-        )
-        (Path(folder) / "shared").symlink_to(ROOT.parent / "shared")
-        table, trial, reached = csv.writer(file), Trial(copied), Reached()
+    with tempfile.TemporaryDirectory(prefix="mutants-") as passing, told.output.open("a") as file:
+        folder = (told.kept or Path(passing)).absolute()
+        folder.mkdir(exist_ok=True)
+        tree = copied_tree(folder)
+        from mutants_warm import Warm
+
+        out = os.fdopen(os.dup(1), "w")
+        warm = Warm(tree)
+        warm.measure(folder / "reached.json")
+        nearest = Nearest(warm.known)
         for room in told.rooms:
-            until, counted = time.monotonic() + 60 * told.minutes, {}
-            mutants, n_all = (
-                chosen(room, told.each, told.seed)
-                if told.again is None
-                else survivors(told.again, room)
-            )
-            for mutant in mutants:
-                if time.monotonic() > until:
-                    break
-                module = mutant.path.relative_to(ROOT)
-                lots = {"all": _OF_ALL, "module": (own_tests(module),)}
-                for k, near in enumerate(reached.at(mutant, told.files), 1):
-                    if near != own_tests(module):
-                        lots[f"reached {k}"] = (near,)
-                if told.room_tests:
-                    lots["room"] = (ROOT / "tests" / module.parent.relative_to("fieldmon"),)
-                outcome, said = trial.outcome(mutant, lots)
-                counted[outcome] = counted.get(outcome, 0) + 1
-                table.writerow((room, outcome, module, mutant.line, said))
-                file.flush()
-            n = sum(counted.values())
-            noticed = n - counted.get("survived", 0)
-            said = f"{room}: {noticed} of {n} noticed ({n_all} there are): {counted}"
-            sys.stdout.write(f"{said}\n")
-            sys.stdout.flush()
+            out.write(f"{room}: {_tried_room(room, warm, nearest, told, file)}\n")
+            out.flush()
+
+
+def _tried_room(room, warm, nearest, told, file):
+    """Try mutants of a room, write a line a mutant; return the score in words."""
+    began, counted, table = time.monotonic(), {}, csv.writer(file)
+    mutants, n_all = (
+        chosen(room, told.each, told.seed) if told.again is None else survivors(told.again, room)
+    )
+    for mutant in mutants:
+        if time.monotonic() > began + 60 * told.minutes:
+            break
+        module = mutant.path.relative_to(ROOT)
+        source = (warm.tree / module).read_text("utf-8")
+        new, said = mutated(source, mutant.place)
+        tests, by, cpu_s = nearest.of(mutant, told.tests_s), None, 0.0
+        if tests:
+            by, cpu_s = warm.tried(warm.tree / module, ast.parse(source), new, tests, 150)
+        ended = (by or "survived").split(":")[0]
+        # what was not tried to the end counts as not noticed
+        outcome = {"slow": "slow", "survived": ended, "unfinished": "survived"}.get(
+            ended, "noticed"
+        )
+        if outcome == "noticed":
+            nearest.tell(by)
+        counted[outcome] = counted.get(outcome, 0) + 1
+        row = (room, outcome, module, mutant.line, said, by, round(cpu_s, 1), len(tests))
+        table.writerow(row)
+        file.flush()
+    n = sum(counted.values())
+    noticed, each_s = n - counted.get("survived", 0), (time.monotonic() - began) / max(n, 1)
+    return f"{noticed} of {n} noticed ({n_all} there are), {each_s:.1f} s each: {counted}"
 
 
 if __name__ == "__main__":

@@ -72,8 +72,8 @@ def tried(path, functions, begins):
     n_noticed = n = 0
     for mutant in mutants_of(file):
         if mutant_function(mutant) in functions:
-            text, said = mutated(source, mutant.place)
-            exec(compile(text, str(file), "exec"), vars(module))  # noqa: S102 - our own source
+            tree, said = mutated(source, mutant.place)
+            exec(compile(tree, str(file), "exec"), vars(module))  # noqa: S102 - our own source
             vars(tests).update({one: vars(module)[one] for one in names})
             noticed = is_noticed(calls)
             n_noticed, n = n_noticed + noticed, n + 1

@@ -45,7 +45,7 @@ def settings(choices: Choices, pest: PestInWeather | None = None) -> ComparisonS
         Strategy(name, float(h), float(s), k)
         for name, h, s, k in product(samplers, hours, seconds, sorted(robots))
     )
-    first, *others = st.columns(4)
+    first, *others = st.columns(4, vertical_alignment="bottom")
     seeds = first.number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")
     return ComparisonSettings(strategies, *season(others, pest), int(seeds))
 

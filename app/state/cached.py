@@ -260,7 +260,6 @@ def season_plan(
 
 
 @st.cache_resource(max_entries=_FEW)
-@st.cache_resource(max_entries=_FEW)
 def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:  # noqa: ARG001
     """Return what is known and believed on a season's day before it is planned."""
     return _season.plan(np.datetime64(day).item(), keep=False).scene

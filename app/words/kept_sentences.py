@@ -48,6 +48,11 @@ class KeptWords:
                 made += f"(?P<{name}>.+?)"
         return re.compile(made, re.DOTALL)
 
+    @cached_property
+    def longest(self) -> str:
+        """Return the most that stands between two blanks: of other sentences, few hold it."""
+        return max(self.literals, key=len, default="")
+
     def blanks(self, sentence: str) -> dict[str, str] | None:
         """Return what stands in the blanks of a sentence; None if these are not its words."""
         if not all(literal in sentence for literal in self.literals):
@@ -62,13 +67,13 @@ class KnownSentences:
     def __init__(self, words: Iterable[str]) -> None:
         kept = [KeptWords(one) for one in words]
         many = [one for one in kept if one.letters >= _LEAST]
-        self._most_letters_first = sorted(many, key=lambda one: -one.letters)
+        most_letters_first = sorted(many, key=lambda one: -one.letters)
+        self._by_longest = [(one.longest, one) for one in most_letters_first]
 
     def told(self, sentence: str) -> tuple[str, dict[str, str]] | None:
         """Return the words of a sentence and what stands in their blanks; None: not known."""
-        for one in self._most_letters_first:
-            blanks = one.blanks(sentence)
-            if blanks is not None:
+        for longest, one in self._by_longest:
+            if longest in sentence and (blanks := one.blanks(sentence)) is not None:
                 return one.words, blanks
         return None
 

@@ -191,7 +191,7 @@ def kept(function: F) -> F:
 
 def routine(function: F) -> F:
     """Compile a function that may make arrays of its own."""
-    options: dict[str, Any] = {"nogil": True}
+    options: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True}
     compiled: F = nb.njit(**options)(function)
     return kept(compiled)
 

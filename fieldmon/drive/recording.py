@@ -64,7 +64,7 @@ class Recording:
         asked, visit = stop.stop, stop.visit
         done_s = asked.arrive_s + asked.inspect_s if visit.done_s is None else visit.done_s
         noted = Noted(done_s, asked.plant, visit.found, np.concatenate(planned))
-        if not len(self.track.poses) or self.track.poses[-1, 0] < done_s - asked.inspect_s - 1.0:
+        if self.track.last_s < done_s - asked.inspect_s - 1.0:
             self.take(noted, done_s - asked.inspect_s, errand.line_m)
         else:
             self.stops.append(noted)

@@ -45,6 +45,12 @@ class Track:
             self._last = row
 
     @property
+    def last_s(self) -> float:
+        """When the robot was last seen, seconds since the day began; -inf before it was."""
+        last = self._last or (self._rows[-1] if self._rows else None)
+        return -np.inf if last is None else last[0]
+
+    @property
     def poses(self) -> Float:
         """Seconds, x, y and heading, ``(k, 4)``; the last one is always there."""
         rows = self._rows + ([] if self._last is None else [self._last])

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 #: for how many nights infestations may hide, and how likely each is at first (our choice)
 HIDDEN_NIGHTS = (0, 2, 4, 7)
-_LIKELY = np.log(np.array([0.70, 0.10, 0.13, 0.07]))
+_LIKELY = np.log(np.array([0.85, 0.05, 0.065, 0.035]))
 #: infestations of so many nights are told apart
 NIGHTS = max(HIDDEN_NIGHTS)
 # ``(candidates, NIGHTS)`` whether each hides what came so many nights ago
@@ -31,7 +31,7 @@ _HIDES = np.arange(NIGHTS)[None, :] < np.array(HIDDEN_NIGHTS)[:, None]
 _PRIOR_FINDS = 5.0
 # finds of one colony share their fate, so each counts half; and nothing is settled for good: what
 # hides is not looked for, so that little speaks for it once it is taken to be unlikely
-_TEMPER, _SETTLED = 0.5, 2.0
+_TEMPER, _SETTLED = 0.5, 2.5
 # no find is less likely than this; nothing hides where that is less likely
 _LEAST_SHOWN, _LEAST = 1e-4, 1e-3
 _NOTHING, _MOST = 1e-12, 0.9

@@ -8,7 +8,7 @@ own inspections tell (`clustering`, `origins`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from fieldmon.compute.jit import loop, part
 from fieldmon.infestation.belief import LEAST_CHANCE, MOST_CHANCE, lesser
+from fieldmon.infestation.calibration_slope import no_inspections, note_inspection
 from fieldmon.infestation.clustering import (
     CLUSTERING,
     ClusterEstimate,
@@ -99,6 +100,8 @@ class TracedPairs:
         Where the wind has gone of late, by which finds are traced.
     latency
         For how many nights infestations hide, as far as inspections tell; None: a pest was named.
+    slope_sums
+        ``(6,)`` how far differences between chances came true, see `calibration_slope`.
     """
 
     grid: PlantGrid
@@ -112,6 +115,7 @@ class TracedPairs:
     cohorts: Cohorts | None = None
     wind_m_s: tuple[float, float] = (0.0, 0.0)
     latency: Latency | None = None
+    slope_sums: Floats = field(default_factory=no_inspections)
 
     @classmethod
     def of(cls, grid: PlantGrid, chance: Floats, clustering: float = CLUSTERING) -> TracedPairs:
@@ -122,10 +126,9 @@ class TracedPairs:
         together = pair_chances(chance, grid, clustering)
         unseen, mean = np.full(len(chance), _SENT), float(chance.mean())
         counts = OriginCounts.none()
-        latency = Latency.none(chance)
-        return cls(
-            grid, chance, together, shares, unseen, counts, no_evidence(), mean, latency=latency
-        )
+        begun = cls(grid, chance, together, shares, unseen, counts, no_evidence(), mean)
+        told = no_inspections(chance)
+        return replace(begun, latency=Latency.none(chance), slope_sums=told)
 
     def of_pest(self, pest: Pest) -> TracedPairs:
         """Return the same, of a plot on which this pest lives."""
@@ -194,7 +197,8 @@ class TracedPairs:
         """What a day needs to trace a find."""
         kernel = np.einsum("k,kij->ij", self.beyond, self.reach.kernels)
         afar = self.shares[:, JUMPED:].sum(axis=1, dtype=np.float64)
-        return Traces(self.reach.cells, kernel, self.unseen, afar, self.evidence)
+        so_far = self.unseen, afar, self.evidence, self.slope_sums
+        return Traces(self.reach.cells, kernel, *so_far)
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
@@ -224,7 +228,7 @@ class TracedPairs:
         _learn(believed, self.grid.linked, inspections_of, rule, (day, traces), room)
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
-            unseen=traces.unseen, evidence=evidence,
+            unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency
             and self.latency.inspected(plants, found, told, believed[0] / self.chance),
@@ -470,6 +474,7 @@ def _learn(
     for k in range(plants.size):
         i = 0 + plants[k]
         p, unseen = chance[i], traces.unseen[i]
+        note_inspection(traces.slope_sums, p, found[k])
         _count(day, i, found[k], detects[k] * p)
         n = update_neighbourhood(believed, linked, (i, found[k]), (detects[k], treated), room.near)
         for t in range(n):

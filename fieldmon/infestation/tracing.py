@@ -8,6 +8,7 @@ import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.infestation.belief import bounded_chance, lesser
+from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.cells import Cells
 from fieldmon.infestation.clustering import no_evidence
 
@@ -42,6 +43,8 @@ class Traces(NamedTuple):
         ``(n,)`` the share of each plant's chance that jumps brought.
     evidence
         ``(4,)`` of how infested plants stand, see `ClusterEstimate`.
+    slope_sums
+        ``(6,)`` how far differences between chances came true, see `calibration_slope`.
     """
 
     cells: Cells
@@ -49,6 +52,7 @@ class Traces(NamedTuple):
     unseen: Floats
     from_afar: Floats
     evidence: Floats
+    slope_sums: Floats
 
     def __repr__(self) -> str:
         return f"<Traces on {self.cells!r}>"
@@ -56,11 +60,13 @@ class Traces(NamedTuple):
     @classmethod
     def none(cls, n: int) -> Traces:
         """Return what traces nothing."""
-        return cls(Cells.none(), np.zeros((1, 1)), np.zeros(n), np.zeros(n), no_evidence())
+        nothing = np.zeros(n), np.zeros(n), no_evidence(), no_inspections()
+        return cls(Cells.none(), np.zeros((1, 1)), *nothing)
 
     def own(self) -> Traces:
         """Return the same with arrays that may be changed."""
-        return self._replace(unseen=self.unseen.copy(), from_afar=self.from_afar.copy())
+        changing = {k: getattr(self, k).copy() for k in ("unseen", "from_afar", "slope_sums")}
+        return self._replace(**changing)
 
 
 class Raised(NamedTuple):

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.monitoring.history import History
+    from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
 
 STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
@@ -105,14 +106,32 @@ def _write_spots(db: sqlite3.Connection, plot: Plot, history: History, day: int)
 def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
     """Return the ground of a hot spot, lon/lat: its plants and half a row around them."""
     grid = plot.grid
-    around = _ground_around(grid.xy_m[spots.of_plant == h].tobytes(), grid.row_spacing_m)
+    plants = np.flatnonzero(spots.of_plant == h)
+    starts = np.concatenate([[0], np.flatnonzero(~_beside_the_next(grid, plants)) + 1])
+    stretch = tuple(starts.tolist())
+    around = _ground_around(grid.xy_m[plants].tobytes(), stretch, grid.row_spacing_m)
     parts = shapely.get_parts(grid.frame.geometry_lonlat(around))
     return MultiPolygon(list(parts))
 
 
+def _beside_the_next(grid: PlantGrid, plants: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Return whether each plant but the last stands in a row just before the next one given."""
+    far_m = np.hypot(*np.diff(grid.xy_m[plants], axis=0).T)
+    same_row = np.diff(grid.row[plants]) == 0
+    beside: NDArray[np.bool_] = (np.diff(plants) == 1) & same_row & (far_m <= grid.row_spacing_m)
+    return beside
+
+
 @lru_cache(maxsize=64)  # a tap changes one spot of many
-def _ground_around(xy_m: bytes, row_m: float) -> shapely.Geometry:
-    plants = shapely.MultiPoint(np.frombuffer(xy_m).reshape(-1, 2))
+def _ground_around(xy_m: bytes, starts: tuple[int, ...], row_m: float) -> shapely.Geometry:
+    """Return the ground around plants; from each of `starts` on they stand in one line.
+
+    Around lines it takes a tenth of what it takes around each plant: circles overlap many times.
+    """
+    stretches = np.split(np.frombuffer(xy_m).reshape(-1, 2), starts[1:])
+    # a line of one plant begins and ends there
+    lines = [np.repeat(m, 2, axis=0) if len(m) == 1 else m for m in stretches]
+    plants = shapely.MultiLineString(lines)
     around = shapely.buffer(plants, 1.5 * row_m, quad_segs=4)
     return shapely.buffer(around, -row_m, quad_segs=4)
 

@@ -209,6 +209,7 @@ def _arrays(morning: Belief) -> Arrays | None:
         "shares": morning.shares,
         "unseen": morning.unseen,
         "evidence": morning.evidence,
+        "slope_sums": morning.slope_sums,
         "counts": np.array([morning.counts.found, morning.counts.expected]),
         **{f"{_LATENCY}{name}": values for name, values in latency.items()},
     }

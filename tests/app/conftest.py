@@ -18,12 +18,14 @@ import pytest
 import streamlit as st
 from streamlit import config
 from streamlit.components.v2 import manifest_scanner
+from streamlit.runtime.scriptrunner.script_cache import ScriptCache
+from streamlit.testing.v1 import local_script_runner
 
 from app.words import language
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
-from tests.app.on_screen import dressed
+from tests.app.on_screen import dressed, picture
 from tests.paths import ROOT, SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
@@ -39,10 +41,29 @@ def components():
 
 
 @pytest.fixture(scope="session", autouse=True)
+def harness():
+    """Compile the script once, not for each run; wait for it asleep, not a thousand looks a second.
+
+    Each look takes the interpreter from the script's own thread.
+    """
+    scripts, look = ScriptCache(), local_script_runner.require_widgets_deltas
+
+    def wait(runner, timeout=3):
+        runner._script_thread.join(timeout)
+        if not runner.script_stopped():
+            look(runner, 0)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(local_script_runner, "ScriptCache", lambda: scripts)
+        patch.setattr(local_script_runner, "require_widgets_deltas", wait)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def as_served():
     """Run pages by the app's own settings, which a session without a server does not read."""
     told = tomllib.loads((ROOT / "app" / ".streamlit" / "config.toml").read_text(encoding="utf-8"))
-    for part in ("global", "runner"):
+    for part in ("global", "runner", "browser"):
         for name, value in told[part].items():
             config.set_option(f"{part}.{name}", value)
 
@@ -168,7 +189,7 @@ def page(new_tab, request):
     yield page
     SHOTS.mkdir(exist_ok=True)
     dressed(page)
-    page.screenshot(path=SHOTS / f"{request.node.name.replace('/', '_')}.png")
+    (SHOTS / f"{request.node.name.replace('/', '_')}.png").write_bytes(picture(page))
     page.close()
 
 

@@ -17,3 +17,11 @@ def test_ten_places_a_second_and_the_last_one():
 
 def test_an_empty_track_has_no_places():
     assert Track().poses.shape == (0, 4)
+
+
+def test_when_the_robot_was_last_seen_is_known_without_all_its_places():
+    track = Track()
+    assert track.last_s == -np.inf
+    for at_s in (0.0, 0.01, 0.1, 0.15):
+        track.add(at_s, 0.0, 0.0, 0.0)
+        assert track.last_s == track.poses[-1, 0] == at_s

@@ -63,3 +63,13 @@ def test_undoing_the_inspections_of_a_batch_one_by_one_undoes_the_batch(db):
     assert [batch.undone for batch in batches.all_of(db)] == [True]
     with pytest.raises(SettingError, match="inspection 2 that still counts"):
         batches.undo_one(db, 2)
+
+
+def test_findings_are_added_to_batches_of_findings_that_count_and_to_no_others(db):
+    counts, undone = recorded(db, 2), recorded(db, 1, "y")
+    soap = recorded(db, 1, kind="treatment")
+    batches.undo(db, undone)
+    batches.must_count(db, counts)
+    for other in (undone, soap, soap + 1):
+        with pytest.raises(SettingError, match=f"batch {other} does not"):
+            batches.must_count(db, other)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from shapely import Point
+from shapely import MultiPoint, Point, buffer
 
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
@@ -79,6 +79,29 @@ def test_hot_spots_are_areas_that_hold_their_plants(season):
     assert all(geometry(kept[0][0]).contains(Point(p)) for p in lonlat)
     whole = spot_area(season.plot, spots, 0)
     assert geometry(kept[0][0]).equals(whole)
+
+
+def test_a_hot_spots_ground_is_what_lies_around_each_of_its_plants(season):
+    cluster(season)
+    grid = season.plot.grid
+    spots = hot_spots(grid, season.history.states(0))
+    own, row_m = grid.xy_m[spots.of_plant == 0], grid.row_spacing_m
+    # circles around plants, which takes a hundred times as long for a spot of a thousand
+    circles = buffer(buffer(MultiPoint(own), 1.5 * row_m, quad_segs=16), -row_m, quad_segs=16)
+    ground = grid.frame.geometry_m(spot_area(season.plot, spots, 0))
+    assert ground.buffer(0.1 * row_m).covers(circles)
+    assert circles.buffer(0.1 * row_m).covers(ground)
+
+
+def test_a_gap_in_a_row_is_no_ground_of_a_hot_spot(season):
+    grid = season.plot.grid
+    row = np.arange(*grid.row_start[:2])
+    ends = np.concatenate([row[:3], row[-3:]])
+    at = np.split(grid.xy_m[ends], 2)
+    middle = Point(grid.xy_m[row].mean(axis=0))
+    apart = derived_layers._ground_around(np.concatenate(at).tobytes(), (0, 3), grid.row_spacing_m)
+    assert not apart.covers(middle)
+    assert derived_layers._beside_the_next(grid, ends).tolist() == [True] * 2 + [False] + [True] * 2
 
 
 def test_a_tap_writes_only_the_plants_of_which_something_else_is_known(season, monkeypatch):

@@ -13,7 +13,7 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
-from fieldmon.plot.travel import Aisles
+from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
@@ -147,3 +147,12 @@ def test_finds_that_are_only_flagged_stay_infested(plot):
         day.tell(found=True)
     assert monitor.chance[plant] > 0.99
     assert Learning().treated
+
+
+def test_the_robot_stands_at_the_last_plant_that_was_told_of(plot):
+    with Monitor(plot, robot=Robot(hours=1)).day() as day:
+        assert day.at == GATE
+        for found in (False, None, True):
+            plant = day.ask().plant
+            day.tell(found=found)
+            assert day.at == plant

@@ -4,6 +4,7 @@ import random
 from datetime import date, timedelta
 
 import numpy as np
+import pyogrio
 import pytest
 
 from fieldmon.errors import AccessError, LimitError
@@ -147,3 +148,11 @@ def test_more_than_anybody_can_inspect_is_not_taken(season, key, monkeypatch):
     with pytest.raises(LimitError, match="3 findings a day"):
         take(season, key, [a_telling(4)], NOW)
     assert len(told(season)[0]) == 3
+
+
+def test_a_gis_sees_where_a_phone_stood_and_nothing_where_it_did_not_know(season, key):
+    at = {0: (35.0123456, 32.5), 1: None, 2: (-70.25, -33.75)}
+    take(season, key, [a_telling(plant, lonlat=place) for plant, place in at.items()], NOW)
+    points = pyogrio.read_dataframe(season.path, layer="tellings").geometry
+    seen = [None if one is None else (one.x, one.y) for one in points]
+    assert seen == [at[plant] for plant in sorted(at)]

@@ -49,8 +49,7 @@ def check(plan):
     assert plan.expected_found <= plan.bound
 
 
-@pytest.mark.parametrize("faces", [1, 2])
-@pytest.mark.parametrize("n", [1, 2, 3, 5])
+@pytest.mark.parametrize(("n", "faces"), [(1, 2), (2, 1), (3, 2), (5, 1)])
 def test_a_team_shares_a_plot_and_nobody_meets(n, faces):
     plot = plot_of(faces=faces)
     plan = plan_team(plot, chances(plot), team_of(n, Robot(hours=0.4)))
@@ -89,7 +88,7 @@ def test_different_members_have_their_own_hours_gates_and_eyes():
     assert plan.starts_s[1] >= 600.0
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_two_are_never_worse_than_one_of_the_same_hours(seed):
     plot = plot_of()
     one, two = (

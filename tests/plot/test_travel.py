@@ -171,7 +171,7 @@ def test_paths_on_crooked_plots_are_as_long_as_said_and_cross_no_row(grid, seed)
     tilt_m=st.floats(-0.5, 0.5),
     n_rows=st.sampled_from((1, 5, 9)),
 )
-@settings(max_examples=30)
+@settings(max_examples=20)
 def test_paths_between_rows_measured_roughly_cross_none(jitter_m, tilt_m, n_rows):
     planting = Planting(row_spacing_m=2.5, plant_spacing_m=1.4, headland_m=2.0)
     grid = rectangle(n_rows, 90 // n_rows, planting)
@@ -182,7 +182,7 @@ def test_paths_between_rows_measured_roughly_cross_none(jitter_m, tilt_m, n_rows
 
 
 @given(seed=st.integers(0, 10_000), row_spacing_m=st.floats(1.8, 5.0), skew=st.floats(-1.5, 1.5))
-@settings(max_examples=30)
+@settings(max_examples=12)
 def test_paths_between_plants_taken_from_gps_cross_no_row(seed, row_spacing_m, skew):
     rng = np.random.default_rng(seed)
     row, place = np.nonzero(rng.random((12, 30)) < 0.85)
@@ -342,7 +342,7 @@ def test_the_way_from_part_to_part_crosses_the_gap_squarely():
 
 
 @given(st.floats(-60.0, 60.0), st.floats(-60.0, 60.0))
-@settings(max_examples=30)
+@settings(max_examples=20)
 def test_work_can_start_anywhere(x, y):
     grid = SHAPES["hole"]
     aisles = Aisles.of(grid, tuple(grid.frame.xy_m(FRAME.lonlat([[x, y]]))[0].tolist()))

@@ -107,9 +107,11 @@ class MapPage {
   // the page reads in the language of its words; the panel's handle is then on the other side
   speak({ language, direction, working }) {
     const page = document.documentElement, turned = page.dir !== direction;
-    page.lang = language;
-    page.dir = direction;
-    page.style.setProperty("--working", JSON.stringify(working)); // for a wait: see every_page.css
+    const said = JSON.stringify(working); // for a wait: see every_page.css
+    // written where it is another: the browser lays the whole page out again for it
+    if (page.lang !== language) page.lang = language;
+    if (turned) page.dir = direction;
+    if (page.style.getPropertyValue("--working") !== said) page.style.setProperty("--working", said);
     listed();
     if (turned) window.dispatchEvent(new Event("resize"));
   }

@@ -49,9 +49,9 @@ class BeliefArrays(NamedTuple):
     clusters
         What the inspections since say of how much infested plants stand together.
     scale
-        ``(4,)`` what was made of that: how much closer they stand than was believed, the chance
-        that insects jump beyond the plants next to them, and how much they lean along the row; and
-        the power of chances by which plans are made.
+        ``(5,)`` what was made of that: how much closer they stand than was believed, the chance
+        that insects jump beyond the plants next to them, and how much they lean along the row; the
+        power of chances by which plans are made, and the share believed infested.
     level
         ``(3,)`` finds of the day, finds that were expected of it, and how many times as likely as
         in the morning plants are taken to be infested because of that.

@@ -8,6 +8,7 @@ import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.infestation.belief import bounded_chance, bounded_pair_chance
+from fieldmon.infestation.calibration_slope import note_inspection, proved_slope
 from fieldmon.infestation.clustering import (
     chance_apart,
     clustering_scale,
@@ -43,8 +44,16 @@ if TYPE_CHECKING:
 _NOTABLE = 0.1
 #: how many finds the morning's idea of how many plants are infested is worth (our choice)
 LEVEL_FINDS = 3.0
-# where this share is infested, chances count by their roots when a day is planned (our choice)
-_HEAVY = 0.2
+#: as if so many finds had told how many plants are infested: a day whose results are supposed tells
+#: nothing more
+SETTLED_FINDS = 1e12
+# where this share is infested, half of the trust in differences must have been earned; and the
+# least that is left (our choice)
+_HEAVY, _LEAST_TRUST = 0.1, 1e-3
+# all of it, from here on
+_NEARLY_ALL = 0.99
+# how much less or more differences must be trusted to think again
+_NOTABLE_TRUST = 0.05
 
 
 @loop
@@ -165,6 +174,7 @@ def _learn(
     i, found, detects = result
     believed = belief.chance, belief.pair_chance
     p = belief.chance[i]
+    note_inspection(belief.traces.slope_sums, p, found)
     belief.level[0] += found
     belief.level[1] += detects * p / belief.level[2]
     n = update_neighbourhood(believed, linked, (i, found), (detects, True), belief.near)
@@ -206,6 +216,7 @@ def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> N
     """Believe how much infested plants stand together, once it differs enough from what was."""
     _learn_jumps(linked, belief, rows)
     _learn_level(linked, belief, rows)
+    _learn_trust(belief, rows)
     scale = clustering_scale(belief.clusters)
     # where finds are not traced, no direction is told from another
     lean = 0.5 if belief.traces.kernel.size == 1 else leaning(belief.clusters.evidence)
@@ -243,18 +254,33 @@ def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     for i in range(chance.size):
         chance[i] = times_odds(chance[i], ratio)
     belief.level[2] = level
-    belief.scale[3] = trust_in_differences(chance.mean())
+    belief.scale[4] = chance.mean()
+    rows.stale[:], rows.most[:] = True, -1.0
+
+
+@part
+def _learn_trust(belief: BeliefArrays, rows: RowTours) -> None:
+    """Rely on differences between plants as far as they have come true, where many are infested."""
+    if belief.traces.kernel.size == 1 or belief.level[1] >= SETTLED_FINDS:
+        return
+    trust = trust_in_differences(belief.scale[4], belief.traces.slope_sums)
+    if abs(trust - belief.scale[3]) < _NOTABLE_TRUST:
+        return
+    belief.scale[3] = trust
     rows.stale[:], rows.most[:] = True, -1.0
 
 
 @inlined
-def trust_in_differences(share: float) -> float:
-    """Return the power of chances by which plans are made where such a share is infested.
+def trust_in_differences(share: float, slope_sums: Float) -> float:
+    """Return the power of a find's chance and worth by which plans are made.
 
-    Where a tenth is infested a good order may find ten times as much as a sweep, where most are
-    it finds hardly more: there small differences do not pay for the drive, and many are mistaken.
+    Where few are infested a good order may find ten times as much as a sweep. Where many are, it
+    finds little more: there differences count as far as they have come true this season, and
+    until then the day is a sweep.
     """
-    return float(1.0 / (1.0 + (share / _HEAVY) ** 2))
+    few = 1.0 / (1.0 + (share / _HEAVY) ** 4)
+    trust = few + (1.0 - few) * proved_slope(slope_sums)
+    return 1.0 if trust > _NEARLY_ALL else float(max(trust, _LEAST_TRUST))
 
 
 @inlined
@@ -294,7 +320,8 @@ def _next_in(
         i = travel.row_start[stretch.row + 1] - 1
     step = 1 if up else -1
     while (i <= stretch.last) if up else (i >= stretch.last):
-        gain, time = best_time(times, belief.worth[i], trusted(belief, belief.chance[i]), price)
+        worth, chance = trusted(belief, belief.worth[i]), trusted(belief, belief.chance[i])
+        gain, time = best_time(times, worth, chance, price)
         if gain > 0.0:
             return int(i), time
         i += step
@@ -322,7 +349,7 @@ def _best_left(
             if sharp * most_in(belief, rows, block) <= best_rate * (least_s + quick_s):
                 continue
             for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
-                worth = belief.worth[i] * trusted(belief, belief.chance[i])
+                worth = trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i])
                 if sharp * worth <= best_rate * quick_s:
                     continue
                 way_s = travel_s(travel, clock, at, i)

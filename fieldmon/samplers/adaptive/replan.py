@@ -33,7 +33,7 @@ def first_price(
     for k in range(times.stop_s.size):
         most = LEAST
         for i in range(belief.worth.size):
-            worth = belief.worth[i] * trusted(belief, belief.chance[i])
+            worth = trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i])
             most = max(most, times.detects[k] * worth)
         high = max(high, most / times.stop_s[k])
     low = high * 1e-7

@@ -49,12 +49,13 @@ def value_row(
         if most_in(belief, rows, block) < pays:
             continue
         for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
-            if belief.worth[i] * trusted(belief, belief.chance[i]) < pays:
+            worth, chance = trusted(belief, belief.worth[i]), trusted(belief, belief.chance[i])
+            if worth * chance < pays:
                 continue
-            gain, time = best_time(times, belief.worth[i], trusted(belief, belief.chance[i]), price)
+            gain, time = best_time(times, worth, chance, price)
             if gain > 0.0 and previous == i - 1 and previous >= 0:
                 chance = trusted(belief, _after_clean(belief, i, times.detects[before]))
-                gain, time = best_time(times, belief.worth[i], chance, price)
+                gain, time = best_time(times, worth, chance, price)
             if gain > 0.0:
                 rows.gain[first + n], rows.stop_s[first + n] = gain, times.stop_s[time]
                 previous, before = i, time
@@ -78,10 +79,10 @@ def _pays_from(times: InspectionTimes, price: float) -> float:
 
 
 @inlined
-def trusted(belief: BeliefArrays, chance: float) -> float:
-    """Return a chance as plans are made by it: differences count for less than is believed."""
+def trusted(belief: BeliefArrays, value: float) -> float:
+    """Return a find's chance or worth as plans are made by it: less apart than is believed."""
     trust = belief.scale[3]
-    return float(chance if trust == 1.0 else chance**trust)
+    return float(value if trust == 1.0 else value**trust)
 
 
 @inlined
@@ -91,7 +92,7 @@ def most_in(belief: BeliefArrays, rows: RowTours, block: int) -> float:
     if most < 0.0:
         most = 0.0
         for i in range(block * BLOCK, min((block + 1) * BLOCK, belief.worth.size)):
-            most = max(most, belief.worth[i] * trusted(belief, belief.chance[i]))
+            most = max(most, trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i]))
         rows.most[block] = most
     return float(most)
 

@@ -19,17 +19,18 @@ from fieldmon.samplers.adaptive.arrays import (
     OwnRow,
     RowTours,
 )
-from fieldmon.samplers.adaptive.day import LEVEL_FINDS, drive_day, trust_in_differences
+from fieldmon.samplers.adaptive.day import (
+    LEVEL_FINDS,
+    SETTLED_FINDS,
+    drive_day,
+    trust_in_differences,
+)
 from fieldmon.samplers.adaptive.tours import measure_ways
 from fieldmon.samplers.base import InspectionTimes, Sampler, Scene, Stops
 
 if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import WouldFind
-
-
-# as if so many finds had told how many plants are infested: a day tells nothing more
-_SETTLED_FINDS = 1e12
 
 
 @dataclass(frozen=True)
@@ -93,8 +94,10 @@ class Adaptive(Sampler):
         n, n_rows = len(scene.chance), scene.grid.n_rows
         traces = Traces.none(n) if scene.traces is None else scene.traces.own()
         lean = 0.5 if scene.traces is None else leaning(traces.evidence)
-        trust = 1.0 if scene.traces is None else trust_in_differences(scene.chance.mean())
-        finds = _SETTLED_FINDS if scene.supposed else LEVEL_FINDS
+        share = float(scene.chance.mean())
+        earned = trust_in_differences(share, traces.slope_sums)
+        trust = 1.0 if scene.traces is None else earned
+        finds = SETTLED_FINDS if scene.supposed else LEVEL_FINDS
         belief = BeliefArrays(
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
@@ -104,7 +107,7 @@ class Adaptive(Sampler):
             np.maximum(scene.chance, LEAST),
             pair_chance.copy(),
             ClusterEstimate.none(n, traces.evidence, lean),
-            np.array([1.0, chance_apart(traces.evidence), lean, trust]),
+            np.array([1.0, chance_apart(traces.evidence), lean, trust, share]),
             np.array([finds, finds, 1.0]),
             traces,
             Raised.of(n),

@@ -108,7 +108,7 @@ def test_the_library_knows_nothing_of_languages():
 # -- the app
 
 
-@pytest.mark.parametrize("code", OTHERS)
+@pytest.mark.parametrize("code", SPOKEN)
 def test_pages_speak_the_language_of_the_address(code, speaking):
     speaking(code)  # the harness asks boxes for the names of what they hold
     app = opened(lang=code)

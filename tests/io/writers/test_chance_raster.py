@@ -150,7 +150,8 @@ def test_each_pixel_is_the_nearest_plants_on_whose_ground_it_lies_by_trying_all(
     turn, shape, halves = rng.uniform(0.0, np.pi), (14, 17), np.array([1.4, 2.3])
     to_rows = 0.9 * np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     # every other plant is the other face of the one before
-    places = np.repeat(rng.uniform(0.0, 1.0, (6, 2)) * [17.0, 14.0], 2, axis=0)
+    anywhere = rng.uniform(0.0, 1.0, (4, 2)) * [17.0, 14.0]
+    places = np.repeat(np.vstack([anywhere, [[0.4, 0.4], [16.6, 13.6]]]), 2, axis=0)
     chance = rng.random(12).astype(np.float32)
     painted = np.full(shape, NODATA, np.float32)
     _paint(painted, places, chance, to_rows, halves)

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fieldmon.io.writers import write_handoff
 from fieldmon.io.writers.day_file import DECIMALS, faces, pieces, plain_text
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import Planting, rectangle
@@ -105,3 +106,10 @@ def test_degrees_have_as_many_decimals_as_mean_anything():
     stop = usual().stops[3]
     assert round(stop.lon, DECIMALS) == stop.lon
     assert 111_320 * 10.0**-DECIMALS < 0.002
+
+
+def test_a_block_is_written_where_there_are_several(plan, tmp_path):
+    (path,) = write_handoff(plan, tmp_path / "route.csv")
+    heads = path.read_text("utf-8-sig").splitlines()[0]
+    several = plan.grid.block is not None and len(set(plan.grid.block.tolist())) > 1
+    assert ("block" in heads.split(",")) == several

@@ -130,3 +130,43 @@ def test_a_sheet_is_white_in_a_dark_room_too(browser, tmp_path):
     assert page.evaluate(colours.format("backgroundColor")) == "rgb(255, 255, 255)"
     assert page.evaluate(colours.format("color")) == "rgb(0, 0, 0)"
     page.close()
+
+
+def test_a_plot_that_is_taller_than_wide_lies_on_its_side_and_is_true_to_scale(tmp_path):
+    test_the_map_is_true_to_scale_and_not_mirrored(tmp_path, day(rectangle(30, 4)))
+
+
+def on_paper(sheet, plan):
+    """Return how a place on the plot comes on paper, from where the plants of the route stand."""
+    circles = np.array([(float(c["cx"]), float(c["cy"])) for c in sheet.all("circle")])
+    here, there = plan.grid.xy_m[plan.route.plant] @ (1, 1j), circles @ (1, -1j)
+    turn, off = np.polyfit(here, there, 1)
+
+    def placed(xy_m):
+        at = turn * (xy_m @ (1, 1j)) + off
+        return np.stack([at.real, -at.imag], axis=1)
+
+    return placed
+
+
+@pytest.mark.parametrize("shape", [(9, 14), (30, 4), (60, 5)])
+def test_numbers_on_the_map_stand_by_what_they_number(tmp_path, shape):
+    plan = day(rectangle(*shape))
+    sheet, path = sheet_of(plan, tmp_path)
+    placed, grid = on_paper(sheet, plan), plan.grid
+    word = r'<text x="(-?[\d.]+)" y="(-?[\d.]+)"( text-anchor="middle")?>(\d+)</text>'
+    said = re.findall(word, path.read_text("utf-8"))
+    at = np.array([(float(x), float(y)) for x, y, _, _ in said])
+    number = np.array([int(one[-1]) for one in said])
+    of_row = np.array([bool(one[2]) for one in said])
+    firsts = placed(grid.xy_m[grid.row_start[:-1]])
+    near = [np.hypot(*(firsts - one).T).argmin() for one in at[of_row]]
+    assert (grid.row_line[near] + 1).tolist() == number[of_row].tolist()
+    assert number[of_row][0] == 1
+    assert len(set(np.diff(number[of_row])[1:])) <= 1  # each, or each so many-th
+    stops = placed(grid.xy_m[plan.route.plant])[number[~of_row] - 1]
+    assert number[~of_row][0] == 1
+    assert np.hypot(*(at[~of_row] - stops).T).max() < 2  # millimetres
+    (begins,) = [one for one in sheet.all("rect") if one.get("width") == "2"]
+    middle = np.array([float(begins["x"]) + 1, float(begins["y"]) + 1])
+    assert middle == pytest.approx(placed(plan.route.line_m[:1])[0], abs=0.02)

@@ -56,3 +56,14 @@ def test_kml_is_read_by_gdal_to_the_centimetre(tmp_path):
 def test_kml_asks_nobody_for_a_picture(tmp_path, plan):
     (path,) = write_handoff(plan, tmp_path / "route.kml")
     assert "href" not in path.read_text("utf-8")
+
+
+def test_each_stop_is_drawn_by_a_style_of_the_file(tmp_path, plan):
+    (path,) = write_handoff(plan, tmp_path / "route.kml")
+    root = ET.parse(path).getroot()  # noqa: S314 - written a line above
+    icons = {
+        one.get("id") for one in root.iter(f"{KML}Style") if one.find(f"{KML}IconStyle") is not None
+    }
+    stops = [one for one in root.iter(f"{KML}Placemark") if one.find(f"{KML}Point") is not None]
+    assert len(stops) >= len(plan.route)
+    assert all(one.findtext(f"{KML}styleUrl", "")[1:] in icons for one in stops)

@@ -60,3 +60,7 @@ def test_the_narrowest_of_a_rectangle_is_half_its_shorter_side_however_it_lies(
     zone = shapely.transform(flat, lambda xy: xy / degrees + [35.15, 30.36])
     wider = shapely.box(35.16, 30.36, 35.161, 30.361)
     assert narrowest_m([MultiPolygon([zone, wider])]) == pytest.approx(wide_m / 2, rel=0.02)
+
+
+def test_a_cell_larger_than_the_plot_is_the_only_one():
+    assert zone_cells(PLOT, ZONES, 10_000.0).sprayed.shape == (1, 1)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
@@ -86,6 +86,7 @@ def test_no_order_of_few_plants_exceeds_the_bound_nor_is_missed_by_much(data):
     assert most <= route.bound + 1e-9
 
 
+@settings(max_examples=12)
 @given(st.data())
 def test_no_sampler_expects_more_than_the_bound(data):
     aisles = data.draw(crooked_aisles(max_radius_m=60.0, max_plants=1500))

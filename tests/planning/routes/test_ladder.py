@@ -92,7 +92,7 @@ def test_no_walk_of_all_there_are_holds_more(seed):
         assert walk.reward == pytest.approx(every_walk(reward, budget))
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_mixed_integer_program_proves_the_same(seed):
     rng = np.random.default_rng(100 + seed)
     reward = np.floor(rng.random((4 + seed % 3, 7)) ** 3 * 30)

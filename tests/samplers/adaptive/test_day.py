@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fieldmon.compute.jit import loop
+from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import plan_work, work_day
@@ -106,6 +108,11 @@ def test_where_all_plants_are_infested_unannounced_the_day_is_driven_as_a_sweep(
     assert len(work_day(scene, Adaptive(), every)) >= 0.95 * len(work_day(scene, Naive(), every))
 
 
+@loop
+def trust(share, slope_sums):
+    return trust_in_differences(share, slope_sums)
+
+
 def traced_scene(share, hours, **given):
     belief, robot = TracedPairs.of(GRID, np.full(N, share)), Robot(hours=hours)
     return replace(
@@ -126,12 +133,15 @@ def test_a_plan_that_takes_plants_for_clean_learns_nothing_of_how_many_are_infes
     assert chances[0] != chances[1]
 
 
-def test_differences_count_for_less_the_more_plants_are_infested():
-    trust = [trust_in_differences.py_func(share) for share in (0.0, 0.015, 0.2, 0.6)]
-    assert trust[0] == 1.0
-    assert trust[1] > 0.99
-    assert trust[2] == pytest.approx(0.5)
-    assert trust[3] == pytest.approx(0.1)
+def test_where_few_are_infested_differences_count_and_where_many_are_they_must_have_come_true():
+    nothing, proved = no_inspections(), np.array([400.0, -400.0, 160.0, 1200.0, 80.0, 0.0])
+    assert [trust(share, nothing) for share in (0.0, 0.015, 0.03)] == [1.0] * 3
+    assert trust(0.1, nothing) == pytest.approx(0.5)
+    assert 0.0 < trust(0.6, nothing) < 0.002
+    assert trust(0.6, proved) > 0.6
+    assert trust(0.1, proved) > trust(0.1, nothing)
+    told = no_inspections(np.where(np.arange(N) < 20, 0.6, 0.1))
+    assert trust(0.6, told) > 0.4
 
 
 def test_odds_are_multiplied_and_chances_stay_chances():

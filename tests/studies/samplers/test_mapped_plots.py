@@ -54,6 +54,21 @@ def test_adaptive_stays_beside_what_it_found():
     assert found["adaptive"].per_hour[-1] > found["naive"].per_hour[-1]
 
 
+def test_a_heavy_infestation_without_a_pattern_is_swept():
+    infested = np.random.default_rng(3).permutation(200)[:100]
+    found = {row.who: row for row in table([mapped(*infested)])}
+    hours = np.array(found["adaptive"].per_hour) / found["naive"].per_hour
+    assert (hours > 0.97).all()
+
+
+def test_a_heavy_infestation_in_clusters_is_swept_until_it_shows_that_it_is():
+    half = [row * 20 + k for row in range(10) for k in range(20) if (row // 5 + k // 5) % 2]
+    found = {row.who: row for row in table([mapped(*half)])}
+    hours = np.array(found["adaptive"].per_hour) / found["naive"].per_hour
+    assert hours.min() > 0.97
+    assert hours[-1] > 1.1
+
+
 def test_neighbours_of_a_chessboard_are_opposite_and_those_of_halves_alike():
     board = [k for k in range(200) if (k // 20 + k) % 2]
     assert correlation(mapped(*board)) == pytest.approx(-1.0)

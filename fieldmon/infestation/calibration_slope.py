@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 # inspections, and sums over them: of the logarithm of the odds, of finds, of the logarithm squared,
 # and of the logarithm where something was found; and the slope believed before them
 _N, _SAID, _FOUND, _SQUARED, _SAID_OF_FINDS, _FIRST = range(6)
-N_SUMS = 6
 # a plant known to be infested tells of no difference
 _KNOWN = 0.99
 # the first slope counts like so much information (of a logistic regression), and what is not known
@@ -38,7 +37,7 @@ def no_inspections(chance: Floats | None = None) -> Floats:
     What records, edges or a raster say of the plants' first `chance` ``(n,)`` is believed; of a map
     that tells no plant from another there is nothing to believe.
     """
-    sums = np.zeros(N_SUMS)
+    sums = np.zeros(_FIRST + 1)
     if chance is not None:
         varies = float(np.log(chance / (1.0 - chance)).var())
         sums[_FIRST] = varies / (varies + _HALF)

@@ -126,9 +126,10 @@ class TracedPairs:
         together = pair_chances(chance, grid, clustering)
         unseen, mean = np.full(len(chance), _SENT), float(chance.mean())
         counts = OriginCounts.none()
-        begun = cls(grid, chance, together, shares, unseen, counts, no_evidence(), mean)
-        told = no_inspections(chance)
-        return replace(begun, latency=Latency.none(chance), slope_sums=told)
+        return cls(
+            grid, chance, together, shares, unseen, counts, no_evidence(), mean,
+            latency=Latency.none(chance), slope_sums=no_inspections(chance),
+        )  # fmt: skip
 
     def of_pest(self, pest: Pest) -> TracedPairs:
         """Return the same, of a plot on which this pest lives."""

@@ -21,7 +21,7 @@ from fieldmon.infestation.tracing import rescale_traced, trace
 from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NEARLY, NOWHERE
 from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
-from fieldmon.samplers.adaptive.rows import best_time, most_in, trusted
+from fieldmon.samplers.adaptive.rows import best_time, most_in, trusted, trusted_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -349,7 +349,7 @@ def _best_left(
             if sharp * most_in(belief, rows, block) <= best_rate * (least_s + quick_s):
                 continue
             for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
-                worth = trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i])
+                worth = trusted_value(belief, i)
                 if sharp * worth <= best_rate * quick_s:
                     continue
                 way_s = travel_s(travel, clock, at, i)

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.jit import part
 from fieldmon.samplers.adaptive.arrays import LEAST, NOWHERE, Stretch
-from fieldmon.samplers.adaptive.rows import trusted, value_row
+from fieldmon.samplers.adaptive.rows import trusted_value, value_row
 from fieldmon.samplers.adaptive.tours import best_from, extend_tours
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def first_price(
     for k in range(times.stop_s.size):
         most = LEAST
         for i in range(belief.worth.size):
-            worth = trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i])
+            worth = trusted_value(belief, i)
             most = max(most, times.detects[k] * worth)
         high = max(high, most / times.stop_s[k])
     low = high * 1e-7

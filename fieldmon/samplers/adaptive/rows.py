@@ -86,13 +86,19 @@ def trusted(belief: BeliefArrays, value: float) -> float:
 
 
 @inlined
+def trusted_value(belief: BeliefArrays, i: int) -> float:
+    """Return what a find at plant i is expected to be worth, as plans are made by it."""
+    return trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i])
+
+
+@inlined
 def most_in(belief: BeliefArrays, rows: RowTours, block: int) -> float:
     """Return the most that a find in a block is expected to be worth."""
     most = rows.most[block]
     if most < 0.0:
         most = 0.0
         for i in range(block * BLOCK, min((block + 1) * BLOCK, belief.worth.size)):
-            most = max(most, trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i]))
+            most = max(most, trusted_value(belief, i))
         rows.most[block] = most
     return float(most)
 

@@ -95,8 +95,7 @@ class Adaptive(Sampler):
         traces = Traces.none(n) if scene.traces is None else scene.traces.own()
         lean = 0.5 if scene.traces is None else leaning(traces.evidence)
         share = float(scene.chance.mean())
-        earned = trust_in_differences(share, traces.slope_sums)
-        trust = 1.0 if scene.traces is None else earned
+        trust = 1.0 if scene.traces is None else trust_in_differences(share, traces.slope_sums)
         finds = SETTLED_FINDS if scene.supposed else LEVEL_FINDS
         belief = BeliefArrays(
             np.maximum(scene.chance, LEAST),

@@ -52,6 +52,8 @@ SETTLED_FINDS = 1e12
 _HEAVY, _LEAST_TRUST = 0.1, 1e-3
 # all of it, from here on
 _NEARLY_ALL = 0.99
+# and how much more or less likely jumps must be
+_NOTABLE_JUMPS = 0.005
 # how much less or more differences must be trusted to think again
 _NOTABLE_TRUST = 0.05
 
@@ -293,7 +295,8 @@ def times_odds(chance: float, ratio: float) -> float:
 def _learn_jumps(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in jumps beyond neighbours, once that differs enough from what was."""
     jumps = chance_apart(belief.clusters.evidence)
-    if belief.traces.kernel.size == 1 or abs(jumps - belief.scale[1]) < _NOTABLE * belief.scale[1]:
+    least = max(_NOTABLE * belief.scale[1], _NOTABLE_JUMPS)
+    if belief.traces.kernel.size == 1 or abs(jumps - belief.scale[1]) < least:
         return
     believed, ratio = (belief.chance, belief.pair_chance), jumps / belief.scale[1]
     rescale_traced(believed, linked, belief.traces.from_afar, ratio)

@@ -23,13 +23,13 @@ def value(travel, clock, work, state):
 
 
 @loop
-def chosen_time(times, worth, chance, price):
-    return best_time(times, worth, chance, price)
+def chosen_time(times, value, price):
+    return best_time(times, value, price)
 
 
 @loop
 def most(belief, rows, block):
-    return most_in(belief, rows, block)
+    return most_in(belief, rows, ONE_TIME, block)
 
 
 def valued(chance, price, times=ONE_TIME, together=0.0, row=1):
@@ -107,7 +107,7 @@ def test_the_second_of_two_neighbours_counts_as_after_a_clean_first():
 @pytest.mark.parametrize("price", [1e-4, 0.003, 0.01, 0.03])
 def test_a_plant_gets_the_time_that_is_worth_most_beyond_what_it_costs(price):
     for chance in (0.01, 0.2, 0.9):
-        gain, time = chosen_time(TIMES, 1.0, chance, price)
+        gain, time = chosen_time(TIMES, chance, price)
         each = TIMES.detects * chance - price * TIMES.stop_s
         assert gain == pytest.approx(each.max())
         assert time == each.argmax()

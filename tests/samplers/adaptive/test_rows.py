@@ -8,7 +8,7 @@ import pytest
 from fieldmon.compute.jit import loop
 from fieldmon.plot.layout import rectangle
 from fieldmon.samplers.adaptive.arrays import BLOCK
-from fieldmon.samplers.adaptive.rows import best_time, most_in, value_row
+from fieldmon.samplers.adaptive.rows import best_time, mark_changed, most_in, value_row
 from tests.samplers.adaptive.working import belief_on, scene_with, times_of, workspace
 
 ROWS, PLANTS = 3, 8
@@ -25,6 +25,11 @@ def value(travel, clock, work, state):
 @loop
 def chosen_time(times, value, price):
     return best_time(times, value, price)
+
+
+@loop
+def mark(travel, rows, i):
+    mark_changed(travel, rows, i)
 
 
 @loop
@@ -124,3 +129,20 @@ def test_the_most_in_a_block_is_remembered_until_it_is_marked_as_changed():
     assert most(belief, rows, 1) < 2.0
     rows.most[1] = -1.0
     assert most(belief, rows, 1) == 2.0
+
+
+@pytest.mark.parametrize("changed", [BLOCK - 2, BLOCK - 1, BLOCK, 2 * BLOCK - 1])
+def test_a_plant_that_changed_changes_what_the_next_is_worth_after_it_too(changed):
+    grid = rectangle(1, 2 * BLOCK)
+    scene = scene_with(grid, np.random.default_rng(1).uniform(0.1, 0.5, 2 * BLOCK))
+    belief, rows, *_ = workspace(scene, ONE_TIME, 0.3)
+    for block in range(2):
+        most(belief, rows, block)
+    belief.chance[changed] *= 0.5
+    mark(scene.aisles.travel, rows, changed)
+    anew = rows._replace(most=np.full_like(rows.most, -1.0), value=rows.value.copy(),
+                         after_clean=rows.after_clean.copy())  # fmt: skip
+    for block in range(2):
+        assert most(belief, rows, block) == most(belief, anew, block)
+    np.testing.assert_array_equal(rows.value, anew.value)
+    np.testing.assert_array_equal(rows.after_clean, anew.after_clean)

@@ -91,7 +91,9 @@ def nobody_head_on(routes, starts_s, passing_m, step_s=1.0):
         apart_m = np.hypot(*(a - b))
         towards &= np.diff(apart_m) < 0.0
         near = apart_m < passing_m / 2 - CORNER_M
-        met = np.flatnonzero(free[:-1] & free[1:] & near[:-1] & near[1:] & towards)
+        step = free[:-1] & free[1:] & near[:-1] & near[1:] & towards
+        # the last centimetres of a lane, up to where one waits, are no headland yet
+        met = np.flatnonzero(step[:-1] & step[1:])
         grid = routes[one].aisles.grid
         for k in met.tolist():
             here = shapely.Point(a[:, k])

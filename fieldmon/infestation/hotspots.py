@@ -228,7 +228,8 @@ def hot_spots(
     radius_m = settings.radius_m or _learned_radius_m(inspected_m, grid.row_spacing_m)
     p = _window_p(inspected_m, finds_m, radius_m, settings.least_finds)
     q = _false_shares(p)
-    core = q <= settings.false_share
+    # a share that is met exactly is met, however the last digit was rounded
+    core = q <= settings.false_share * (1.0 + 1e-9)
     spot = _numbered(finds_m[core], p[core], radius_m)
     of_plant = _around(grid, finds_m[core], spot, radius_m)[vine]
     # each vine once, under its first face

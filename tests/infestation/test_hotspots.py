@@ -208,11 +208,30 @@ def test_hot_spots_are_the_windows_that_survive_the_false_discovery_rate(grid, s
     expected = np.zeros(len(grid), bool)
     q = false_discovery_control(p) if p else []
     for window, each in zip(windows, q, strict=True):
-        expected |= window & (each <= 0.05)
+        expected |= window & (each <= 0.05 * (1.0 + 1e-9))
     np.testing.assert_array_equal(spots.of_plant >= 0, expected)
     if len(spots):
         assert spots.p[0] == pytest.approx(min(p))
         assert spots.q[0] == pytest.approx(min(q))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_share_that_is_met_exactly_is_met_however_it_was_rounded(seed):
+    grid, rng = rectangle(9, 9), np.random.default_rng(seed)
+    state = with_cluster(strewn(rng, len(grid), 0.05, 1.0), grid, 40, 6.0, 0.7, rng)
+    finds = np.flatnonzero(state == PRESENT)
+    windows = [np.hypot(*(grid.xy_m - grid.xy_m[i]).T) <= 7.3 * 1.01 for i in finds]
+    found = np.array([np.count_nonzero(window & (state == PRESENT)) for window in windows])
+    plants = np.array([np.count_nonzero(window) for window in windows])
+    tail = hypergeom.sf(found - 2, len(grid) - 1, len(finds) - 1, plants - 1)
+    q = false_discovery_control(np.where(found >= 3, tail, 1.0))
+    for limit in np.unique(q[q < 0.5]):
+        for share in (np.nextafter(limit, 0.0), limit, np.nextafter(limit, 1.0)):
+            spots = hot_spots(grid, state, HotSpotSettings(radius_m=7.3, false_share=share))
+            inside = np.any(
+                [w for w, each in zip(windows, q, strict=True) if each <= limit], axis=0
+            )
+            np.testing.assert_array_equal(spots.of_plant >= 0, inside)
 
 
 def test_a_vine_found_on_both_faces_is_one_find():

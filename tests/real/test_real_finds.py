@@ -31,8 +31,8 @@ def test_on_mapped_plots_adaptive_finds_an_hour_at_least_what_a_plain_sweep_does
     ratio = np.array(
         [np.divide(rows[name, "adaptive"][2:], rows[name, "naive"][2:]) for name in names]
     )
-    assert ratio.min() > 0.97  # 1 is asked for: citrus 1991 comes to 0.98 after 40 %
-    assert (ratio > 0.995).sum() >= 16
+    assert ratio.min() > 0.985  # 1 is asked for: citrus 1991 comes to 0.989 after 40 %
+    assert (ratio > 0.99).sum() >= 17
     assert (ratio.min(axis=1) > 1.3).sum() >= 2
 
 

@@ -460,11 +460,14 @@ def _beyond(reach: shapely.Geometry, aisles: RowAisles, pieces: BentPieces) -> s
     An aisle beside a row that bends at its end may end farther out than the row's headland.
     """
     lane = np.repeat(pieces.aisle[:, _LEFT], 2)
-    ends = shapely.points(aisles.lines.points(lane, pieces.lane_m[:, _LEFT].ravel()))
+    ends_m = aisles.lines.points(lane, pieces.lane_m[:, _LEFT].ravel())
     shapely.prepare(reach)
-    beyond = ~shapely.covers(reach, ends)
+    beyond = ~shapely.covers(reach, shapely.points(ends_m))
     half_m = np.repeat(pieces.spacing_m[:, 0], 2)[beyond] / 2
-    return shapely.union_all(shapely.buffer(ends[beyond], half_m, quad_segs=2))
+    ground: shapely.Geometry = shapely.union_all(
+        shapely.buffer(shapely.points(ends_m[beyond]), half_m, quad_segs=2)
+    )
+    return ground
 
 
 def _polygons(area: shapely.Geometry) -> MultiPolygon:

@@ -396,7 +396,13 @@ def _plant_spacing(x: Float, line: NDArray[np.intp], near_m: float) -> float | N
     gaps = gaps[gaps > near_m / 4]
     if not len(gaps):
         return None
-    usual = float(np.median(gaps))
+    # where half are missing, the middle gap lies between that of none and that of one
+    spacings = [_step_of(gaps, usual) for usual in np.quantile(gaps, [0.5, 0.25])]
+    return min(spacings, key=lambda step: float(np.abs(gaps / step - np.round(gaps / step)).mean()))
+
+
+def _step_of(gaps: Float, usual: float) -> float:
+    """Return the distance of which gaps are multiples, from about what it is."""
     steps = np.round(gaps / usual)
     sure = (steps >= 1) & (steps <= 4)
     return float(np.median(gaps[sure] / steps[sure]))

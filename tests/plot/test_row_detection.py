@@ -47,6 +47,7 @@ def planted(n_rows, n_plants, row_spacing_m, plant_spacing_m):
 @example((10, 12), (2.5, 0.55), 170.0, 0.3, 1)
 @example((20, 8), (4.0, 0.75), 0.0, 0.1, 2)
 @example((12, 8), (2.0, 0.75), 0.0, 0.0, 12)
+@example((5, 8), (2.0, 0.5), 0.0, 0.25, 353)
 def test_rows_are_found_whatever_their_bearing_in_spite_of_missing_plants_and_gps_errors(
     size, spacing_m, bearing_deg, missing, seed
 ):

@@ -73,8 +73,8 @@ def nobody_together(routes, starts_s):
 def nobody_head_on(routes, starts_s, passing_m, step_s=1.0):
     """Tell whether no two drive towards each other in a headland without the room they need.
 
-    By two moments after each other: both are in no aisle, each moves against the other and they
-    come nearer, to less than half the room, where row and edge are nearer to each other than all
+    By moments after each other: both are in no aisle, each moves against the other and they come
+    nearer, to less than half the room; and there row and edge are nearer to each other than all
     of it.
     """
     routes, starts_s = zip(
@@ -95,8 +95,9 @@ def nobody_head_on(routes, starts_s, passing_m, step_s=1.0):
         # the last centimetres of a lane, up to where one waits, are no headland yet
         met = np.flatnonzero(step[:-1] & step[1:])
         grid = routes[one].aisles.grid
-        for k in met.tolist():
-            here = shapely.Point(a[:, k])
+        # each approach where they come nearest
+        for run in np.split(met, np.flatnonzero(np.diff(met) > 1) + 1) if len(met) else []:
+            here = shapely.Point(a[:, run[-1] + 2])
             row_m = shapely.distance(row_lines(grid), here).min()
             edge_m = shapely.distance(shapely.boundary(grid.drivable_m), here)
             if row_m + edge_m < passing_m - CORNER_M:

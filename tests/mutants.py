@@ -295,7 +295,9 @@ class Nearest:
         """Return the names of tests that take so long together at most."""
         module, changed = mutant.path.relative_to(ROOT), functions_changed(mutant)
         own, room = str(own_tests(module)), f"{own_tests(module).parent}/"
-        found = [one for one, it in self.known.items() if it["ok"] and changed & set(it["reach"])]
+        # other processes have no fault put in: they say something of who starts them alone
+        found = [one for one, it in self.known.items() if it["ok"] and changed & set(it["reach"])
+                 and (not it["elsewhere"] or one.startswith(f"{own}::"))]  # fmt: skip
         anew = not _is_in_function(mutant)
         if anew:
             found += [one for one in self.known if one.startswith("tests/test_dataclasses")]

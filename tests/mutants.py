@@ -263,18 +263,24 @@ def _is_in_function(mutant):
     return bool(inside) and isinstance(inside[-1], ast.FunctionDef)
 
 
+def _said_at(mutant):
+    """Return the constants that a mutant of a module changes, and those that are made of them."""
+    assigned = [one for one in _top_of(mutant.path) if isinstance(one, (ast.Assign, ast.AnnAssign))]
+    found = set()
+    for one in assigned:
+        named = _words(ast.Tuple(one.targets if isinstance(one, ast.Assign) else [one.target]))
+        stands = one.lineno <= mutant.line <= one.end_lineno
+        if stands or (one.value is not None and found & _words(one.value)):
+            found |= named
+    return found
+
+
 def functions_changed(mutant):
     """Return the functions in which a mutant shows; of a constant, those that name it."""
     inside, module = _inside(mutant), mutant.path.relative_to(ROOT)
     if _is_in_function(mutant):
         return {f"{module}:{'.'.join(one.name for one in inside)}"}
-    names = {one.name for one in inside}
-    for top in _top_of(mutant.path):
-        if (
-            isinstance(top, (ast.Assign, ast.AnnAssign))
-            and top.lineno <= mutant.line <= top.end_lineno
-        ):
-            names |= _words(top.targets[0] if isinstance(top, ast.Assign) else top.target)
+    names = {one.name for one in inside} | _said_at(mutant)
     own = tuple(f"{module}:{name}." for name in names)
     return {one for one, words in _all_words(ROOT).items() if words & names or one.startswith(own)}
 

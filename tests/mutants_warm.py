@@ -25,7 +25,7 @@ import threading
 import time
 import traceback
 from contextlib import contextmanager, suppress
-from functools import partial
+from functools import _lru_cache_wrapper, partial
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 
@@ -167,6 +167,12 @@ def functions_within(folder):
     return found
 
 
+def answers_kept(name):
+    """Return all functions of a library's modules that keep their answers (``@cache``)."""
+    every = [one for one in gc.get_objects() if isinstance(one, _lru_cache_wrapper)]
+    return [one for one in every if one.__module__.split(".")[0] == name]
+
+
 def put_in(pairs, functions):
     """Give functions their new code where they stand, so that whoever holds them has it.
 
@@ -281,6 +287,7 @@ class Warm:
         sys.settrace(None)
         self.items = {item.nodeid: item for item in self.session.items}
         self.functions = functions_within(tree / "fieldmon")
+        self.answers = answers_kept("fieldmon")
         self.names_of = {getattr(one, "__file__", None): vars(one) for one in sys.modules.values()}
         gc.freeze()
 
@@ -327,6 +334,7 @@ class Warm:
             for item, after in zip(items, [*items[1:], None], strict=True):
                 seen.clear()
                 others.clear()
+                self._forget_answers()  # what an earlier test had worked out is reached by none
                 before_s, began_s = compiling.sum_s, time.process_time()
                 threading.settrace(trace)
                 sys.settrace(trace)
@@ -341,6 +349,10 @@ class Warm:
                 lines.write(json.dumps((item.nodeid, values)) + "\n")
                 lines.flush()
         return 0
+
+    def _forget_answers(self):
+        for one in self.answers:
+            one.cache_clear()
 
     def _reached(self, seen):
         inside = str(self.tree / "fieldmon")
@@ -419,6 +431,7 @@ class Warm:
                 return self._noticed(self._imported_anew(file, now, tests))
             try:
                 changed = put_in(pairs, self.functions)
+                self._forget_answers()
                 _compile_anew(lambda one: one.__code__ in changed)
             except Exception:  # noqa: BLE001 - whatever it is, no test has noticed it
                 traceback.print_exc()

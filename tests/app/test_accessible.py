@@ -152,7 +152,12 @@ def test_a_wait_of_over_a_second_is_said_in_words(today):
       wait.pause();
       return [0, 999, 1002].map((ms) => {{ wait.currentTime = ms; return {said}; }}); }}""")
     assert seen == [[f'"{texts.WORKING}"', opacity] for opacity in ("0", "0", "1")]
-    assert today.evaluate(f"() => {{ {app}.dataset.testScriptState = 'notRunning'; return {said}[0]; }}") == "none"
+    assert (
+        today.evaluate(
+            f"() => {{ {app}.dataset.testScriptState = 'notRunning'; return {said}[0]; }}"
+        )
+        == "none"
+    )
 
 
 def test_a_day_is_done_by_keys_alone(today):

@@ -78,3 +78,19 @@ def test_one_pass_is_worth_as_much_as_any_choice_of_stops_that_turns_for_each_ch
         )
         best = max(best, (reward[at] - stop).sum() - turn * turns)
     assert best - 1e-12 <= found <= np.maximum(reward[inside] - stop, 0.0).sum() + 1e-12
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("row", [5, 7])
+def test_a_kind_of_drive_begins_and_ends_in_its_own_stretches(row, returns):
+    """All that pays is in one aisle: whoever begins below it or ends above it drives for nothing."""
+    aisles = Aisles.of(rectangle(12, 15))
+    robot = Robot(returns=returns)
+    reward = np.where(aisles.grid.row == row, 1.0, 0.0)
+    worth, held = Priced(ladder_below(aisles), reward, robot).kinds(1e-4)
+    at = np.unravel_index(np.argmax(worth), worth.shape)
+    assert worth[at] == pytest.approx(Priced(ladder_below(aisles), reward, robot).best(1e-4).worth)
+    assert held[at] == pytest.approx(reward.sum())
+    below, above = worth[: at[0] + 1, at[1]], worth[at[0], at[1] :]
+    assert (np.diff(below[np.isfinite(below)]) > 1e-9).all()
+    assert (np.diff(above[np.isfinite(above)]) < -1e-9).all()

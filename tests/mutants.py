@@ -24,6 +24,8 @@ import csv
 import os
 import random
 import shutil
+import signal
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -377,6 +379,7 @@ def main():
     asked.add_argument("--kept", type=Path, help="folder of a copy and what was measured of it")
     asked.add_argument("--output", type=Path, default=Path("mutants.csv"))
     told = asked.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # the child at work is ended, too
     with tempfile.TemporaryDirectory(prefix="mutants-") as passing, told.output.open("a") as file:
         folder = (told.kept or Path(passing)).absolute()
         folder.mkdir(exist_ok=True)

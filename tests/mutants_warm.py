@@ -494,6 +494,14 @@ class _Instead(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(self.code, vars(module))  # noqa: S102 - our own source
 
 
+def let_go(is_changed):
+    """Let no loop that reaches a change run as it was compiled before, as while tests were found."""
+    for one in [one for one in gc.get_objects() if isinstance(one, Dispatcher)]:
+        if one.overloads and any(is_changed(each) for each in loops_reached(one.py_func)):
+            one._make_finalizer()()
+            one._reset_overloads()
+
+
 def _compile_anew(is_changed):
     """Let loops that reach a change be compiled, all others be loaded, and nothing be kept."""
     # compiled for one use: quickly rather than well
@@ -506,6 +514,7 @@ def _compile_anew(is_changed):
             return None
         return load(self, sig, target_context)
 
+    let_go(is_changed)
     kept.load_overload = load_overload
     kept.save_overload = lambda self, *_: self.end_turn()
 

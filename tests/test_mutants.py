@@ -146,3 +146,35 @@ def test_a_fault_is_put_in_where_a_function_stands_and_taken_out_again(tmp_path,
             shown.append([held[0](3), held[1](2)])
         assert [held[0](3), held[1](2)] == before
     assert shown == [None, [True, [2, 3]], [False, [2, 1]]]
+
+
+LOOPS = """
+from fieldmon.compute.jit import loop, part
+
+@part
+def twice(x):
+    return 2 * x
+
+@loop
+def seats(x):
+    return twice(x) + 1
+"""
+
+
+def test_a_fault_shows_in_loops_that_were_compiled_before(tmp_path, monkeypatch):
+    file = tmp_path / "loops_of_mutants.py"
+    file.write_text(LOOPS)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    import loops_of_mutants
+
+    assert loops_of_mutants.seats(4) == 9
+    monkeypatch.setattr("fieldmon.compute.jit._KeptLoops.load_overload", lambda *_: None)
+    monkeypatch.setattr("fieldmon.compute.jit._KeptLoops.save_overload", lambda *_: None)
+    standing = mutants_warm.functions_within(file)
+    was = mutants_warm.code_of(mutated(LOOPS, None)[0], file)
+    now = mutants_warm.code_of(mutated(LOOPS, 0)[0], file)
+    pairs = [*mutants_warm.changed_functions(was, now)]
+    with mutants_warm.fault(pairs, standing):
+        changed = mutants_warm.put_in(pairs, standing)
+        mutants_warm.let_go(lambda one: one.__code__ in changed)
+        assert loops_of_mutants.seats(4) == 13

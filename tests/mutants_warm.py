@@ -495,7 +495,7 @@ class _Instead(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 
 def let_go(is_changed):
-    """Let no loop that reaches a change run as it was compiled before, as while tests were found."""
+    """Let no loop that reaches a change run as it was compiled while tests were found."""
     for one in [one for one in gc.get_objects() if isinstance(one, Dispatcher)]:
         if one.overloads and any(is_changed(each) for each in loops_reached(one.py_func)):
             one._make_finalizer()()

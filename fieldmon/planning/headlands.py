@@ -148,18 +148,21 @@ def _nearest(one: Steps, other: Steps, within_m: float) -> Float:
     if not len(i):
         return np.empty((0, 3))
     speed = [(s.to_m - s.from_m) / (s.until_s - s.since_s)[:, None] for s in (one, other)]
-    towards = (speed[0][i] * speed[1][j]).sum(axis=1) < 0.0
-    i, j = i[towards], j[towards]
+    against = (speed[0][i] * speed[1][j]).sum(axis=1) < 0.0
+    i, j = i[against], j[against]
     begin = np.maximum(one.since_s[i], other.since_s[j])
     end = np.minimum(one.until_s[i], other.until_s[j])
     here = one.from_m[i] + speed[0][i] * (begin - one.since_s[i])[:, None]
     there = other.from_m[j] + speed[1][j] * (begin - other.since_s[j])[:, None]
     gap, closing = here - there, speed[0][i] - speed[1][j]
+    # who drive away from each other have met before, or not at all
+    nearer = (gap * closing).sum(axis=1) < 0.0
+    begin, end, here, gap, closing = (v[nearer] for v in (begin, end, here, gap, closing))
     # the moment at which the gap, which changes evenly, is least
     fast = np.maximum((closing**2).sum(axis=1), _STILL_M**2)
     later = np.clip(-(gap * closing).sum(axis=1) / fast, 0.0, end - begin)
     least = np.hypot(*(gap + closing * later[:, None]).T)
     near = least < within_m
-    place = here + speed[0][i] * later[:, None]
+    place = here + speed[0][i][nearer] * later[:, None]
     when: Float = np.column_stack([begin + later, place])[near]
     return when

@@ -6,7 +6,6 @@ looks at every part of every room, and at every room in the dark.
 
 import io
 import os
-import time
 from contextlib import contextmanager, suppress
 
 import numpy as np
@@ -144,20 +143,18 @@ def test_words_on_a_picture_of_the_ground_stand_on_a_ground_of_their_own(today):
 
 def test_a_wait_of_over_a_second_is_said_in_words(today):
     app = "document.querySelector('[data-testid=stApp]')"
+    state = f"{app}.dataset.testScriptState"
     said = f"(({{content, opacity}}) => [content, opacity])(getComputedStyle({app}, '::after'))"
     assert today.evaluate(f"() => {said}[0]") == "none"
     # by the animation's own clock, as a browser without a screen draws no frame for seconds
-    seen = today.evaluate(f"""() => {{ {app}.dataset.testScriptState = 'running';
-      const wait = {app}.getAnimations({{subtree: true}}).find((one) => one.animationName === "said");
+    seen = today.evaluate(f"""() => {{
+      {state} = "running";
+      const wait = {app}.getAnimations({{subtree: true}})
+        .find((one) => one.animationName === "said");
       wait.pause();
       return [0, 999, 1002].map((ms) => {{ wait.currentTime = ms; return {said}; }}); }}""")
     assert seen == [[f'"{texts.WORKING}"', opacity] for opacity in ("0", "0", "1")]
-    assert (
-        today.evaluate(
-            f"() => {{ {app}.dataset.testScriptState = 'notRunning'; return {said}[0]; }}"
-        )
-        == "none"
-    )
+    assert today.evaluate(f"() => {{ {state} = 'notRunning'; return {said}[0]; }}") == "none"
 
 
 def test_a_day_is_done_by_keys_alone(today):

@@ -92,6 +92,12 @@ class RowTours(NamedTuple):
     most
         ``(n // BLOCK + 1,)`` the most that a find in each block of plants in line is expected to
         be worth, -1 where that has changed.
+    value
+        ``(n,)`` what a find at each plant is expected to be worth, as plans are made by it; as old
+        as `most`.
+    after_clean
+        ``(n, k)`` the same once the plant before it in the row was inspected, for each of k times,
+        and seemed clean.
     """
 
     net: Float
@@ -103,16 +109,20 @@ class RowTours(NamedTuple):
     gain: Float
     stop_s: Float
     most: Float
+    value: Float
+    after_clean: Float
 
     @classmethod
-    def of(cls, n: int, n_rows: int) -> RowTours:
-        """Return room for so many plants and rows."""
+    def of(cls, n: int, n_rows: int, n_times: int) -> RowTours:
+        """Return room for so many plants, rows and inspection times."""
         ways = n_rows, N_WAYS
         last, stale = np.full(ways, NOWHERE), np.ones(n_rows, np.bool_)
         n_pays, pays = np.zeros(n_rows, np.int64), np.empty(n, np.int32)
         most = np.full(n // BLOCK + 1, -1.0)
         room = np.empty(n), np.empty(n)
-        return cls(np.zeros(ways), np.zeros(ways), last, stale, n_pays, pays, *room, most)
+        values = np.empty(n), np.empty((n, n_times))
+        tours = np.zeros(ways), np.zeros(ways), last
+        return cls(*tours, stale, n_pays, pays, *room, most, *values)
 
 
 class BestTours(NamedTuple):

@@ -21,7 +21,7 @@ from fieldmon.infestation.tracing import rescale_traced, trace
 from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NEARLY, NOWHERE
 from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
-from fieldmon.samplers.adaptive.rows import best_time, most_in, trusted, trusted_value
+from fieldmon.samplers.adaptive.rows import best_time, mark_changed, most_in, trusted_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -52,6 +52,8 @@ SETTLED_FINDS = 1e12
 _HEAVY, _LEAST_TRUST = 0.1, 1e-3
 # all of it, from here on
 _NEARLY_ALL = 0.99
+# and how much more or less likely jumps must be
+_NOTABLE_JUMPS = 0.005
 # how much less or more differences must be trusted to think again
 _NOTABLE_TRUST = 0.05
 
@@ -190,8 +192,7 @@ def _learn(
     )
     belief.worth[i] = 0.0
     for t in range(n):
-        near_it = belief.near.plant[t]
-        rows.stale[travel.row[near_it]], rows.most[near_it // BLOCK] = True, -1.0
+        mark_changed(travel, rows, belief.near.plant[t])
 
 
 @part
@@ -206,8 +207,7 @@ def _trace(
     believed, traces = (belief.chance, belief.pair_chance), belief.traces
     n = trace(believed, linked, traces, (*find, belief.scale[1]), belief.raised)
     for t in range(n):
-        j = belief.raised.plant[t]
-        rows.stale[travel.row[j]], rows.most[j // BLOCK] = True, -1.0
+        mark_changed(travel, rows, belief.raised.plant[t])
     traces.unseen[find[0]] = 0.0
 
 
@@ -227,7 +227,7 @@ def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> N
     ratios = ratio * lean / belief.scale[2], ratio * (1.0 - lean) / (1.0 - belief.scale[2])
     scale_clustering((belief.chance, belief.pair_chance), linked, ratios)
     belief.scale[0], belief.scale[2] = scale, lean
-    rows.stale[:] = True
+    rows.stale[:], rows.most[:] = True, -1.0
 
 
 @part
@@ -293,7 +293,8 @@ def times_odds(chance: float, ratio: float) -> float:
 def _learn_jumps(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in jumps beyond neighbours, once that differs enough from what was."""
     jumps = chance_apart(belief.clusters.evidence)
-    if belief.traces.kernel.size == 1 or abs(jumps - belief.scale[1]) < _NOTABLE * belief.scale[1]:
+    least = max(_NOTABLE * belief.scale[1], _NOTABLE_JUMPS)
+    if belief.traces.kernel.size == 1 or abs(jumps - belief.scale[1]) < least:
         return
     believed, ratio = (belief.chance, belief.pair_chance), jumps / belief.scale[1]
     rescale_traced(believed, linked, belief.traces.from_afar, ratio)
@@ -320,8 +321,7 @@ def _next_in(
         i = travel.row_start[stretch.row + 1] - 1
     step = 1 if up else -1
     while (i <= stretch.last) if up else (i >= stretch.last):
-        worth, chance = trusted(belief, belief.worth[i]), trusted(belief, belief.chance[i])
-        gain, time = best_time(times, worth, chance, price)
+        gain, time = best_time(times, trusted_value(belief, i), price)
         if gain > 0.0:
             return int(i), time
         i += step
@@ -346,10 +346,10 @@ def _best_left(
             continue
         first, end = travel.row_start[row], travel.row_start[row + 1]
         for block in range(first // BLOCK, (end - 1) // BLOCK + 1):
-            if sharp * most_in(belief, rows, block) <= best_rate * (least_s + quick_s):
+            if sharp * most_in(belief, rows, times, block) <= best_rate * (least_s + quick_s):
                 continue
             for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
-                worth = trusted_value(belief, i)
+                worth = rows.value[i]
                 if sharp * worth <= best_rate * quick_s:
                     continue
                 way_s = travel_s(travel, clock, at, i)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.jit import part
-from fieldmon.samplers.adaptive.arrays import LEAST, NOWHERE, Stretch
-from fieldmon.samplers.adaptive.rows import trusted_value, value_row
+from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NOWHERE, Stretch
+from fieldmon.samplers.adaptive.rows import most_in, value_row
 from fieldmon.samplers.adaptive.tours import best_from, extend_tours
 
 if TYPE_CHECKING:
@@ -28,14 +28,12 @@ def first_price(
     at: int,
 ) -> float:
     """Return the price of a second at which the plan just fills the day."""
-    belief, times = work[0], work[3]
-    high = 0.0
+    belief, rows, times = work[0], work[1], work[3]
+    most, high = LEAST, 0.0
+    for block in range((belief.worth.size - 1) // BLOCK + 1):
+        most = max(most, most_in(belief, rows, times, block))
     for k in range(times.stop_s.size):
-        most = LEAST
-        for i in range(belief.worth.size):
-            worth = trusted_value(belief, i)
-            most = max(most, times.detects[k] * worth)
-        high = max(high, most / times.stop_s[k])
+        high = max(high, times.detects[k] * most / times.stop_s[k])
     low = high * 1e-7
     if _plan_at(travel, clock, work, (at, low)).seconds <= clock.seconds_left:
         return low

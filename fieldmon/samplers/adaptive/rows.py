@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 
 @inlined
 def best_time(
-    times: InspectionTimes, worth: float, chance: float, price: float
+    times: InspectionTimes, value: float, price: float
 ) -> tuple[float, int]:
-    """Return what the best inspection time gains at a price, and which it is."""
+    """Return what the best inspection time gains at a price, and which it is.
+
+    `value` is what a find there is expected to be worth.
+    """
     best, time = -np.inf, 0
     for k in range(times.stop_s.size):
-        gain = times.detects[k] * worth * chance - price * times.stop_s[k]
+        gain = times.detects[k] * value - price * times.stop_s[k]
         if gain > best:
             best, time = gain, k
     return best, time
@@ -46,16 +49,15 @@ def value_row(
     pays = _pays_from(times, price)
     previous, before, n = NOWHERE, 0, 0
     for block in range(first // BLOCK, (end - 1) // BLOCK + 1):
-        if most_in(belief, rows, block) < pays:
+        if most_in(belief, rows, times, block) < pays:
             continue
         for i in range(max(first, block * BLOCK), min(end, (block + 1) * BLOCK)):
-            worth, chance = trusted(belief, belief.worth[i]), trusted(belief, belief.chance[i])
-            if worth * chance < pays:
+            value = rows.value[i]
+            if value < pays:
                 continue
-            gain, time = best_time(times, worth, chance, price)
+            gain, time = best_time(times, value, price)
             if gain > 0.0 and previous == i - 1 and previous >= 0:
-                chance = trusted(belief, _after_clean(belief, i, times.detects[before]))
-                gain, time = best_time(times, worth, chance, price)
+                gain, time = best_time(times, rows.after_clean[i, before], price)
             if gain > 0.0:
                 rows.gain[first + n], rows.stop_s[first + n] = gain, times.stop_s[time]
                 previous, before = i, time
@@ -92,15 +94,27 @@ def trusted_value(belief: BeliefArrays, i: int) -> float:
 
 
 @inlined
-def most_in(belief: BeliefArrays, rows: RowTours, block: int) -> float:
-    """Return the most that a find in a block is expected to be worth."""
+def most_in(belief: BeliefArrays, rows: RowTours, times: InspectionTimes, block: int) -> float:
+    """Return the most that a find in a block is expected to be worth; value its plants for that."""
     most = rows.most[block]
     if most < 0.0:
         most = 0.0
         for i in range(block * BLOCK, min((block + 1) * BLOCK, belief.worth.size)):
-            most = max(most, trusted_value(belief, i))
+            worth = trusted(belief, belief.worth[i])
+            rows.value[i] = worth * trusted(belief, belief.chance[i])
+            most = max(most, rows.value[i])
+            for k in range(times.detects.size):
+                chance = _after_clean(belief, i, times.detects[k])
+                rows.after_clean[i, k] = worth * trusted(belief, chance)
         rows.most[block] = most
     return float(most)
+
+
+@inlined
+def mark_changed(travel: TravelTable, rows: RowTours, i: int) -> None:
+    """Mark a plant, and the one after it, as ones of which something else is believed."""
+    rows.stale[travel.row[i]] = True
+    rows.most[i // BLOCK] = rows.most[(i + 1) // BLOCK] = -1.0
 
 
 # copied: handing over all of a belief takes longer than this

@@ -117,7 +117,7 @@ class Adaptive(Sampler):
             scene.aisles.travel,
             scene.clock,
             (scene.grid.linked, belief, would_find.view(np.uint8)),
-            (RowTours.of(n, n_rows), tours, times, OwnRow.blank()),
+            (RowTours.of(n, n_rows, times.stop_s.size), tours, times, OwnRow.blank()),
             (scene.at, self.spares, scene.last_inspected == scene.day),
             (stops.plant, stops.arrive_s, taken),
         )

@@ -8,7 +8,7 @@ import pytest
 from fieldmon.compute.jit import loop
 from fieldmon.plot.layout import rectangle
 from fieldmon.samplers.adaptive.arrays import BLOCK
-from fieldmon.samplers.adaptive.rows import best_time, most_in, value_row
+from fieldmon.samplers.adaptive.rows import best_time, mark_changed, most_in, value_row
 from tests.samplers.adaptive.working import belief_on, scene_with, times_of, workspace
 
 ROWS, PLANTS = 3, 8
@@ -23,13 +23,18 @@ def value(travel, clock, work, state):
 
 
 @loop
-def chosen_time(times, worth, chance, price):
-    return best_time(times, worth, chance, price)
+def chosen_time(times, value, price):
+    return best_time(times, value, price)
+
+
+@loop
+def mark(travel, rows, i):
+    mark_changed(travel, rows, i)
 
 
 @loop
 def most(belief, rows, block):
-    return most_in(belief, rows, block)
+    return most_in(belief, rows, ONE_TIME, block)
 
 
 def valued(chance, price, times=ONE_TIME, together=0.0, row=1):
@@ -107,7 +112,7 @@ def test_the_second_of_two_neighbours_counts_as_after_a_clean_first():
 @pytest.mark.parametrize("price", [1e-4, 0.003, 0.01, 0.03])
 def test_a_plant_gets_the_time_that_is_worth_most_beyond_what_it_costs(price):
     for chance in (0.01, 0.2, 0.9):
-        gain, time = chosen_time(TIMES, 1.0, chance, price)
+        gain, time = chosen_time(TIMES, chance, price)
         each = TIMES.detects * chance - price * TIMES.stop_s
         assert gain == pytest.approx(each.max())
         assert time == each.argmax()
@@ -124,3 +129,20 @@ def test_the_most_in_a_block_is_remembered_until_it_is_marked_as_changed():
     assert most(belief, rows, 1) < 2.0
     rows.most[1] = -1.0
     assert most(belief, rows, 1) == 2.0
+
+
+@pytest.mark.parametrize("changed", [BLOCK - 2, BLOCK - 1, BLOCK, 2 * BLOCK - 1])
+def test_a_plant_that_changed_changes_what_the_next_is_worth_after_it_too(changed):
+    grid = rectangle(1, 2 * BLOCK)
+    scene = scene_with(grid, np.random.default_rng(1).uniform(0.1, 0.5, 2 * BLOCK))
+    belief, rows, *_ = workspace(scene, ONE_TIME, 0.3)
+    for block in range(2):
+        most(belief, rows, block)
+    belief.chance[changed] *= 0.5
+    mark(scene.aisles.travel, rows, changed)
+    anew = rows._replace(most=np.full_like(rows.most, -1.0), value=rows.value.copy(),
+                         after_clean=rows.after_clean.copy())  # fmt: skip
+    for block in range(2):
+        assert most(belief, rows, block) == most(belief, anew, block)
+    np.testing.assert_array_equal(rows.value, anew.value)
+    np.testing.assert_array_equal(rows.after_clean, anew.after_clean)

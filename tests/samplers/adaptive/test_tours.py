@@ -26,7 +26,7 @@ def best_tour(travel, clock, rows, tours, start):
 
 def rows_worth(rng):
     """Return rows of random worth, some of which do not pay one way or another."""
-    rows = RowTours.of(len(GRID), N_ROWS)
+    rows = RowTours.of(len(GRID), N_ROWS, 1)
     rows.net[:] = rng.normal(0.5, 1.0, (N_ROWS, 4))
     rows.seconds[:] = rng.uniform(50, 200, (N_ROWS, 4))
     rows.last[:] = np.where(rng.random((N_ROWS, 4)) < 0.3, NOWHERE, 1)
@@ -90,7 +90,7 @@ def test_it_is_the_best_of_all_tours_up_and_down_the_plot(seed, returns):
 
 def test_where_nothing_pays_the_day_goes_home_at_once():
     scene = scene_with(GRID, np.full(len(GRID), 0.1))
-    rows = RowTours.of(len(GRID), N_ROWS)
+    rows = RowTours.of(len(GRID), N_ROWS, 1)
     start = (3, -1, 0.01)
     net, seconds, onto = best_tour(scene.aisles.travel, scene.clock, rows, tours_on(scene), start)
     home_s = scene.aisles.travel.between_m[3, -1] / scene.clock.speed_m_s

@@ -50,4 +50,4 @@ def workspace(scene, times, together=0.0):
     tours = BestTours.of(n_rows)
     measure_ways(scene.aisles.travel, scene.clock, tours.next_s, tours.home_s)
     belief = belief_on(scene.grid, scene.chance, together)
-    return belief, RowTours.of(n, n_rows), tours, times, OwnRow.blank()
+    return belief, RowTours.of(n, n_rows, times.stop_s.size), tours, times, OwnRow.blank()

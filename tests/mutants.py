@@ -24,6 +24,8 @@ import csv
 import os
 import random
 import shutil
+import signal
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -263,18 +265,24 @@ def _is_in_function(mutant):
     return bool(inside) and isinstance(inside[-1], ast.FunctionDef)
 
 
+def _said_at(mutant):
+    """Return the constants that a mutant of a module changes, and those that are made of them."""
+    assigned = [one for one in _top_of(mutant.path) if isinstance(one, (ast.Assign, ast.AnnAssign))]
+    found = set()
+    for one in assigned:
+        named = _words(ast.Tuple(one.targets if isinstance(one, ast.Assign) else [one.target]))
+        stands = one.lineno <= mutant.line <= one.end_lineno
+        if stands or (one.value is not None and found & _words(one.value)):
+            found |= named
+    return found
+
+
 def functions_changed(mutant):
     """Return the functions in which a mutant shows; of a constant, those that name it."""
     inside, module = _inside(mutant), mutant.path.relative_to(ROOT)
     if _is_in_function(mutant):
         return {f"{module}:{'.'.join(one.name for one in inside)}"}
-    names = {one.name for one in inside}
-    for top in _top_of(mutant.path):
-        if (
-            isinstance(top, (ast.Assign, ast.AnnAssign))
-            and top.lineno <= mutant.line <= top.end_lineno
-        ):
-            names |= _words(top.targets[0] if isinstance(top, ast.Assign) else top.target)
+    names = {one.name for one in inside} | _said_at(mutant)
     own = tuple(f"{module}:{name}." for name in names)
     return {one for one, words in _all_words(ROOT).items() if words & names or one.startswith(own)}
 
@@ -295,7 +303,9 @@ class Nearest:
         """Return the names of tests that take so long together at most."""
         module, changed = mutant.path.relative_to(ROOT), functions_changed(mutant)
         own, room = str(own_tests(module)), f"{own_tests(module).parent}/"
-        found = [one for one, it in self.known.items() if it["ok"] and changed & set(it["reach"])]
+        # other processes have no fault put in: they say something of who starts them alone
+        found = [one for one, it in self.known.items() if it["ok"] and changed & set(it["reach"])
+                 and (not it["elsewhere"] or one.startswith(f"{own}::"))]  # fmt: skip
         anew = not _is_in_function(mutant)
         if anew:
             found += [one for one in self.known if one.startswith("tests/test_dataclasses")]
@@ -369,6 +379,7 @@ def main():
     asked.add_argument("--kept", type=Path, help="folder of a copy and what was measured of it")
     asked.add_argument("--output", type=Path, default=Path("mutants.csv"))
     told = asked.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # the child at work is ended, too
     with tempfile.TemporaryDirectory(prefix="mutants-") as passing, told.output.open("a") as file:
         folder = (told.kept or Path(passing)).absolute()
         folder.mkdir(exist_ok=True)

@@ -6,6 +6,7 @@ For functions that have an oracle of their own (`HELD`), on tiny plots: nothing 
 mutant takes milliseconds. `tests/mutants.py` draws from all the others.
 """
 
+import ast
 import importlib
 import itertools
 import os
@@ -19,6 +20,7 @@ sys.path.insert(0, str(ROOT))
 import pytest  # noqa: E402
 
 from tests.mutants import mutant_function, mutants_of, mutated  # noqa: E402
+from tests.mutants_warm import changed_functions, code_of, fault, functions_within  # noqa: E402
 
 #: a module, the functions that are changed, and which tests of its file are to notice it
 HELD = (
@@ -63,24 +65,21 @@ def tried(path, functions, begins):
     """Return how many mutants of some functions were noticed, of how many; print the others."""
     dotted = path.replace("/", ".")
     folder, _, name = dotted.rpartition(".")
-    module = importlib.import_module(f"fieldmon.{dotted}")
+    importlib.import_module(f"fieldmon.{dotted}")
     tests = importlib.import_module(f"tests.{folder}.test_{name}")
     calls, file = [*calls_in(tests, begins)], ROOT / "fieldmon" / f"{path}.py"
     assert not is_noticed(calls), f"the tests of {path} fail without a fault"
-    source, own = file.read_text("utf-8"), dict(vars(module))
-    names = [one for one in vars(tests) if own.get(one) is vars(tests)[one]]
+    source, standing = file.read_text("utf-8"), functions_within(file)
+    was = code_of(ast.parse(source), file)
     n_noticed = n = 0
     for mutant in mutants_of(file):
         if mutant_function(mutant) in functions:
             tree, said = mutated(source, mutant.place)
-            exec(compile(tree, str(file), "exec"), vars(module))  # noqa: S102 - our own source
-            vars(tests).update({one: vars(module)[one] for one in names})
-            noticed = is_noticed(calls)
+            with fault([*changed_functions(was, code_of(tree, file))], standing):
+                noticed = is_noticed(calls)
             n_noticed, n = n_noticed + noticed, n + 1
             if not noticed:
                 print(f"{path}:{mutant.line}  {said}")  # noqa: T201 - a command
-    vars(module).update(own)
-    vars(tests).update({one: own[one] for one in names})
     return n_noticed, n
 
 

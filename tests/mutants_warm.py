@@ -24,8 +24,8 @@ import tempfile
 import threading
 import time
 import traceback
-from contextlib import suppress
-from functools import partial
+from contextlib import contextmanager, suppress
+from functools import _lru_cache_wrapper, partial
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 
@@ -50,6 +50,7 @@ _SLOW, _UNFINISHED, _BROKEN = (
 
 
 _END = os._exit  # tests may replace it
+_KILL = os.kill
 _LITTLE = numba_config._OptLevel(1)
 
 
@@ -126,6 +127,99 @@ def function_name(tree, code):
     return f"{Path(code.co_filename).relative_to(tree)}:{code.co_qualname}"
 
 
+def end_as(work):
+    """Do a child's work and end this process, whatever the work raises or returns."""
+    code = 70
+    try:
+        code = int(work())
+    except BaseException:  # noqa: BLE001 - SystemExit, Ctrl-C and pytest's own are none of ours
+        traceback.print_exc()
+    finally:
+        try:
+            _END(code & 255)
+        finally:
+            _KILL(os.getpid(), signal.SIGKILL)
+
+
+def forget_script():
+    """Let no process that this one starts run the script again that began all.
+
+    Python does so for each process that Dask or a pool starts ("spawn"): where the script has no
+    guard it tried mutants once more, beside the first, and wrote to the same file.
+    """
+    script = sys.modules["__main__"]
+    script.__spec__ = None
+    vars(script).pop("__file__", None)
+
+
+def refuse_second():
+    """End this process where another Python started it and ran the script again."""
+    if "--multiprocessing-fork" in sys.orig_argv:
+        raise SystemExit("a process that a test started does not try mutants itself")
+
+
+def functions_within(folder):
+    """Return all functions whose code stands in a folder, by their code."""
+    inside, found = str(folder), {}
+    for one in gc.get_objects():
+        if isinstance(one, FunctionType) and one.__code__.co_filename.startswith(inside):
+            found.setdefault(one.__code__, []).append(one)
+    return found
+
+
+def answers_kept(name):
+    """Return all functions of a library's modules that keep their answers (``@cache``)."""
+    every = [one for one in gc.get_objects() if isinstance(one, _lru_cache_wrapper)]
+    return [one for one in every if one.__module__.split(".")[0] == name]
+
+
+def put_in(pairs, functions):
+    """Give functions their new code where they stand, so that whoever holds them has it.
+
+    ``pairs`` are those of `changed_functions`, ``functions`` those of `functions_within`. Returns
+    what is put in.
+    """
+    for old, new in pairs:
+        for one in functions[old]:
+            one.__code__ = new
+    return {new for _, new in pairs}
+
+
+@contextmanager
+def fault(pairs, functions):
+    """Put a change in for a while."""
+    put_in(pairs, functions)
+    try:
+        yield
+    finally:
+        put_in([(old, old) for old, _ in pairs], functions)
+
+
+def code_of(tree, file):
+    """Return what a module's tree is compiled to."""
+    return compile(tree, str(file), "exec", dont_inherit=True)
+
+
+def starts_another(frame):
+    """Tell whether a frame hands work to another process, which has no fault put in.
+
+    A mutant that changes a result would differ from what such a process makes of it: that is no
+    test's merit. The reading process only reads files.
+    """
+    code = frame.f_code
+    if f"{os.sep}distributed{os.sep}" in code.co_filename:
+        return True
+    if code.co_name not in ("_execute_child", "_launch"):
+        return False
+    if not code.co_filename.endswith(("subprocess.py", "popen_spawn_posix.py")):
+        return False
+    while frame is not None:
+        if f"{os.sep}sandbox{os.sep}" in frame.f_code.co_filename:
+            return False
+        frame = frame.f_back
+    return True
+
+
 def _inner(code):
     return [one for one in code.co_consts if isinstance(one, CodeType)]
 
@@ -181,6 +275,8 @@ class Warm:
     """The library and its tests, imported once; mutants are tried in children."""
 
     def __init__(self, tree, rooms=TESTED):
+        refuse_second()
+        self.pid = os.getpid()
         self.tree, self.shared = tree, _Shared()
         self.files = [tree / "tests" / one for one in rooms if (tree / "tests" / one).exists()]
         os.chdir(tree)
@@ -190,11 +286,8 @@ class Warm:
         self.session = collected(tree, self.files)
         sys.settrace(None)
         self.items = {item.nodeid: item for item in self.session.items}
-        self.functions = {}
-        inside = str(tree / "fieldmon")
-        for one in gc.get_objects():
-            if isinstance(one, FunctionType) and one.__code__.co_filename.startswith(inside):
-                self.functions.setdefault(one.__code__, []).append(one)
+        self.functions = functions_within(tree / "fieldmon")
+        self.answers = answers_kept("fieldmon")
         self.names_of = {getattr(one, "__file__", None): vars(one) for one in sys.modules.values()}
         gc.freeze()
 
@@ -229,15 +322,19 @@ class Warm:
         return {function_name(self.tree, one.__code__) for one in reached}
 
     def _measured(self, items, at, told):
-        seen, compiling = set(), _Compiling(self.shared)
+        seen, others, compiling = set(), [], _Compiling(self.shared)
         event.register("numba:compile", compiling)
 
         def trace(frame, *_):
             seen.add(frame.f_code)
+            if not others and starts_another(frame):
+                others.append(frame.f_code.co_filename)
 
         with Path(told).open("a") as lines:
             for item, after in zip(items, [*items[1:], None], strict=True):
                 seen.clear()
+                others.clear()
+                self._forget_answers()  # what an earlier test had worked out is reached by none
                 before_s, began_s = compiling.sum_s, time.process_time()
                 threading.settrace(trace)
                 sys.settrace(trace)
@@ -248,9 +345,14 @@ class Warm:
                 reached = self._reached(seen)
                 good = not said.failed and not said.skipped
                 values = {"at": at, "s": round(takes_s, 3), "ok": good, "reach": sorted(reached)}
+                values["elsewhere"] = bool(others)
                 lines.write(json.dumps((item.nodeid, values)) + "\n")
                 lines.flush()
         return 0
+
+    def _forget_answers(self):
+        for one in self.answers:
+            one.cache_clear()
 
     def _reached(self, seen):
         inside = str(self.tree / "fieldmon")
@@ -272,27 +374,25 @@ class Warm:
 
     def _forked(self, work, limit_s, most_cpu_s=1e9, log=None):
         """Return the exit code of a child, or `_SLOW`; and the processor time it took."""
+        assert os.getpid() == self.pid, "a child went on beside its parent"
         self.shared.tell(test=0, from_cpu_s=0, from_s=time.monotonic(), is_compiling=0,
                          compiled_s=0, from_compiled_s=0)  # fmt: skip
         folder = tempfile.mkdtemp(prefix="mutant-")
         child = os.fork()
         if child == 0:
-            code = 70
-            try:
-                self._settle(Path(folder), log)
-                code = work()
-            except BaseException:  # noqa: BLE001 - whatever it is, this process ends
-                traceback.print_exc()
-            finally:
-                _END(code)
+            end_as(lambda: self._settle(Path(folder), log) or work())
         try:
             return self._waited(child, limit_s, most_cpu_s)
         finally:
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(child, signal.SIGKILL)  # what a test left running
             shutil.rmtree(folder, ignore_errors=True)
 
     def _settle(self, folder, log):
         with suppress(OSError):
             os.setpgid(0, 0)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        forget_script()
         quiet = os.open(log or os.devnull, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         for stream in (1, 2):
             os.dup2(quiet, stream)
@@ -322,7 +422,7 @@ class Warm:
         ``old`` and ``new`` are the module's trees.
         """
         file = str(source_path)
-        was, now = (compile(tree, file, "exec", dont_inherit=True) for tree in (old, new))
+        was, now = code_of(old, file), code_of(new, file)
         pairs = [*changed_functions(was, now)]
         is_swapped = all(self._can_swap(pair) for pair in pairs)
         usual = [self.known.get(one, {}).get("s", 1.0) for one in tests]
@@ -331,7 +431,8 @@ class Warm:
             if not is_swapped:
                 return self._noticed(self._imported_anew(file, now, tests))
             try:
-                changed = self._swapped(pairs)
+                changed = put_in(pairs, self.functions)
+                self._forget_answers()
                 _compile_anew(lambda one: one.__code__ in changed)
             except Exception:  # noqa: BLE001 - whatever it is, no test has noticed it
                 traceback.print_exc()
@@ -350,14 +451,6 @@ class Warm:
 
     def _can_swap(self, pair):
         return pair is not None and pair[0] in self.functions and pair[0] not in self.at_import
-
-    def _swapped(self, pairs):
-        changed = set()
-        for old, new in pairs:
-            for one in self.functions[old]:
-                one.__code__ = new
-            changed.add(new)
-        return changed
 
     def _imported_anew(self, file, now, tests):
         """Import the library and the tests once more, with another code of one module."""
@@ -401,6 +494,14 @@ class _Instead(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(self.code, vars(module))  # noqa: S102 - our own source
 
 
+def let_go(is_changed):
+    """Let no loop that reaches a change run as it was compiled while tests were found."""
+    for one in [one for one in gc.get_objects() if isinstance(one, Dispatcher)]:
+        if one.overloads and any(is_changed(each) for each in loops_reached(one.py_func)):
+            one._make_finalizer()()
+            one._reset_overloads()
+
+
 def _compile_anew(is_changed):
     """Let loops that reach a change be compiled, all others be loaded, and nothing be kept."""
     # compiled for one use: quickly rather than well
@@ -413,6 +514,7 @@ def _compile_anew(is_changed):
             return None
         return load(self, sig, target_context)
 
+    let_go(is_changed)
     kept.load_overload = load_overload
     kept.save_overload = lambda self, *_: self.end_turn()
 

@@ -78,8 +78,11 @@ def test_dates_outside_the_season_are_a_sentence(on, says):
 
 
 def test_a_sampler_must_exist_and_look_equally_long_at_every_plant():
-    with pytest.raises(SettingError, match="equally long"):
-        MonitoringSettings(BEGINS, sampler="adaptive-looks")
+    two = Robot(viewpoints=Viewpoints(((20.0, 0.5), (60.0, 0.9))))
+    for robot in (Robot(), two):
+        with pytest.raises(SettingError, match="equally long"):
+            MonitoringSettings(BEGINS, robot=robot, sampler="adaptive-looks")
+        MonitoringSettings(BEGINS, robot=robot, sampler="adaptive")
     with pytest.raises(SettingError, match="must be one of"):
         MonitoringSettings(BEGINS, sampler="best")
 

@@ -6,6 +6,8 @@ import pytest
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import worked_route
 from fieldmon.monitoring.settings import seconds
+from fieldmon.planning.members import TeamMember
+from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, driven_s
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -39,6 +41,21 @@ def test_one_time_missing_leaves_the_order_of_recording_and_what_the_work_costs(
     gone = np.cumsum(np.array(legs) + season.settings.robot.visit_s)
     assert route.leave_s == pytest.approx(gone)
     assert route.end_s > route.leave_s[-1]
+
+
+def test_of_a_team_each_ones_clock_begins_when_it_starts(tmp_path):
+    robot, late_s = Robot(hours=1.0), 1800.0
+    team = (TeamMember("Ana", robot), TeamMember("Ben", robot, starts_s=late_s))
+    season = a_season(tmp_path / "s.gpkg", team=team)
+    begins = seconds(season.settings.starts)
+    second = begins + late_s + np.array([600.0, 900.0])
+    for who in ("Ana", "Ben"):
+        plants = PLANTS[:2] if who == "Ana" else PLANTS[1:] + 1
+        names, clean = np.full(2, who, object), np.zeros(2, np.int8)
+        noted = Inspections.of(plants, clean, np.datetime64(BEGINS), second=second, who=names)
+        season.record(noted, who)
+    assert worked_route(season, BEGINS, "Ana").leave_s.tolist() == [late_s + 600.0, late_s + 900.0]
+    assert worked_route(season, BEGINS, "Ben").leave_s.tolist() == [600.0, 900.0]
 
 
 def test_a_day_of_which_nothing_was_recorded_has_no_route(tmp_path):

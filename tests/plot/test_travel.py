@@ -420,3 +420,21 @@ def test_only_where_plants_stand_in_no_rows_none_are_changed():
     among_trees = Aisles.of(trees_grid(grid.lonlat()))
     assert among_trees.worked_by(robot) == replace(robot, row_change_s=0.0)
     assert among_trees.worked_by(quick) is quick
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "skew", "hole", "C", "two faces", "one row"])
+def test_the_way_on_is_that_to_the_nearest_row_of_all_that_lie_beyond(shape):
+    """Between lane ends; of rows beyond which one shares the aisle nothing is promised."""
+    aisles = Aisles.of(SHAPES[shape])
+    between_m, corridor = aisles.travel.between_m, aisles.travel.corridor
+    n_rows = aisles.grid.n_rows
+    for own, row in np.argwhere(~np.eye(n_rows, dtype=bool)):
+        beyond = np.arange(row, n_rows) if row > own else np.arange(row + 1)
+        ends = 2 * beyond[:, None] + np.arange(2)
+        least_m = between_m[[2 * own, 2 * own + 1]][:, ends.ravel()].min()
+        told_m = aisles.onward_m[own, row]
+        if (corridor[beyond] == corridor[own]).any():
+            assert told_m == -np.inf
+        else:
+            assert told_m == pytest.approx(least_m, rel=1e-5)
+            assert told_m <= least_m

@@ -98,3 +98,4 @@ def test_impossible_designs_are_refused(settings):
 def test_one_seed_and_one_day_are_enough():
     alone = Design(("naive",), n_days=1, n_seeds=1)
     assert (alone.n_days, alone.n_seeds, alone.first_seed) == (1, 1, alone.first_seed)
+    assert Design(first_seed=0).first_seed == 0

@@ -125,6 +125,25 @@ def test_while_the_robot_works_insects_move_in_their_hours():
     assert found_at(8 * 3600) == pytest.approx(0.9, abs=0.15)
 
 
+def test_the_day_is_worked_anew_where_one_of_a_team_would_find_what_is_new():
+    """The other detects nothing, so nothing changes for it."""
+    pest = Pest("fast", movement=Movement("adjacent", 1.0, hours=(8.0, 10.0), by_hour=True))
+    settings = SeasonSettings(n_days=1, pest=PestInWeather(pest))
+    start = Start(at(40), np.full(N, 0.01))
+    on_its_way = SeasonOnItsWay(AISLES, Robot(), sampler("naive"), start, settings)
+    one, walked = np.ones(1), []
+
+    def walk(would_find):
+        found = np.array([would_find[1][41] > 0])
+        walked.append(bool(found[0]))
+        return Workday(np.array([41], np.int32), one * 8 * 3600.0, found, one, one, 9 * 3600.0), ()
+
+    day = on_its_way.by_hour(0, walk, [np.zeros(1), one], (key(0), key(1)))
+    assert walked[0] is False
+    assert walked[-1] is True
+    assert day.found == 1
+
+
 @pytest.mark.parametrize(
     ("end_s", "passed"), [(3599.5, 0), (3600.0, 1), (7199.5, 1), (7200.0, 2), (25 * 3600.0, 24)]
 )

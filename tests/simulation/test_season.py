@@ -172,3 +172,12 @@ def test_a_level_that_is_reached_exactly_counts_as_reached():
     metrics = season_metrics(season(robot=Robot(hours=24.0, detection=1.0)))
     assert metrics.detection_pct[0] == 100.0
     assert metrics.first_day(100.0) == 1
+
+
+def test_plants_visited_on_the_first_day_are_visited():
+    days = season()
+    seen = np.zeros(N, bool)
+    for day in days:
+        seen[day.work.plant] = True
+        assert day.ever_visited_pct == pytest.approx(100 * seen.mean())
+    assert days[0].ever_visited_pct == days[0].visited_pct > 0

@@ -49,3 +49,17 @@ def test_of_one_season_there_is_no_interval_and_of_one_team_nothing_to_say():
     (gain,) = marginal_gains({1: np.array([10.0]), 2: np.array([4.0])})
     assert told([gain]) == "A second robot would save 6.0 infested plant-days."
     assert told(marginal_gains({1: np.array([10.0])})) == ""
+
+
+def test_the_second_to_the_eighth_have_words_of_their_own_and_the_ninth_is_counted():
+    said = told(marginal_gains({k: np.array([100.0 - k]) for k in range(1, 10)}))
+    words = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+    assert [said.count(word) for word in words] == [1] * 7
+    assert "9 robots instead of 8" in said
+
+
+def test_what_saves_little_but_surely_is_known_to_save():
+    lost = np.array([10.0, 12.0, 9.0])
+    (gain,) = marginal_gains({1: lost + np.array([0.4, 0.5, 0.6]), 2: lost})
+    assert 0.0 < gain.saved.low < 1.0
+    assert gain.known

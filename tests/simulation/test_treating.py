@@ -81,6 +81,14 @@ def test_rules_that_cannot_be_are_refused(made, said):
         made()
 
 
+@pytest.mark.parametrize("every_days", [1, 2, 3])
+def test_where_all_evenings_call_for_it_it_is_treated_as_often_as_the_rule_lets(every_days):
+    made = days(TreatmentRule(1e-9, WHOLE, costs=COSTS, every_days=every_days))
+    evenings = [day.number for day in made if day.sprayed is not None]
+    assert evenings == list(range(0, len(made), every_days))
+    assert len(evenings) > 1
+
+
 def test_the_first_evening_of_the_rule_treats_and_then_not_for_its_days():
     made = days(TreatmentRule(0.02, WHOLE, costs=COSTS, every_days=2))
     evenings = [day.number for day in made if day.sprayed is not None]

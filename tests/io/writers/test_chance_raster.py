@@ -1,5 +1,6 @@
 import struct
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from fieldmon.errors import FileProblem, PlotError
 from fieldmon.io.rasters.read import read_raster
 from fieldmon.io.writers.chance_raster import NODATA, _paint, chance_raster, write_chance_raster
 from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.projection import Frame
 from tests.crooked import crooked_grids
 from tests.io.rasters.raster_files import PLOT
 
@@ -167,3 +169,14 @@ def test_each_pixel_is_the_nearest_plants_on_whose_ground_it_lies_by_trying_all(
         else:
             expected = NODATA
         assert painted[r, c] == np.float32(expected), (r, c)
+
+
+@pytest.mark.parametrize(
+    ("lon", "zone"), [(-180.0, 1), (-0.5, 30), (0.5, 31), (179.9, 60), (180.0, 60)]
+)
+def test_the_zone_is_that_of_the_longitude_and_the_last_one_ends_the_world(lon, zone, tmp_path):
+    for lat, north in ((30.0, 6), (-30.0, 7)):
+        grid = replace(rectangle(3, 4), frame=Frame(lon, lat))
+        write_chance_raster(grid, chances(grid), tmp_path / "map.tif")
+        with opened(tmp_path / "map.tif") as picture:
+            assert picture.crs.to_epsg() == 32_000 + 100 * north + zone

@@ -149,7 +149,7 @@ def on_paper(sheet, plan):
     return placed
 
 
-@pytest.mark.parametrize("shape", [(9, 14), (30, 4), (60, 5)])
+@pytest.mark.parametrize("shape", [(9, 14), (30, 4), (60, 5), (130, 6)])
 def test_numbers_on_the_map_stand_by_what_they_number(tmp_path, shape):
     plan = day(rectangle(*shape))
     sheet, path = sheet_of(plan, tmp_path)
@@ -164,9 +164,24 @@ def test_numbers_on_the_map_stand_by_what_they_number(tmp_path, shape):
     assert (grid.row_line[near] + 1).tolist() == number[of_row].tolist()
     assert number[of_row][0] == 1
     assert len(set(np.diff(number[of_row])[1:])) <= 1  # each, or each so many-th
+    # so many that they have room
+    crowded = max(shape) > 100
+    assert (number[of_row][2] - number[of_row][1] > 1) == crowded
+    assert len(set(np.diff(number[~of_row])[1:])) <= 1
+    assert len(plan.stops) / 5 < sum(~of_row) <= 61
     stops = placed(grid.xy_m[plan.route.plant])[number[~of_row] - 1]
     assert number[~of_row][0] == 1
     assert np.hypot(*(at[~of_row] - stops).T).max() < 2  # millimetres
     (begins,) = [one for one in sheet.all("rect") if one.get("width") == "2"]
     middle = np.array([float(begins["x"]) + 1, float(begins["y"]) + 1])
     assert middle == pytest.approx(placed(plan.route.line_m[:1])[0], abs=0.02)
+
+
+def test_each_stop_is_drawn_on_the_page(tmp_path, plan):
+    sheet, path = sheet_of(plan, tmp_path)
+    wide, high = map(
+        float, re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', path.read_text()).groups()
+    )
+    circles = [(float(c["cx"]), float(c["cy"])) for c in sheet.all("circle")]
+    assert len(circles) == len(plan.stops)
+    assert all(0.0 <= x <= wide and 0.0 <= y <= high for x, y in circles)

@@ -68,12 +68,16 @@ def test_where_nothing_is_to_be_gained_nothing_is_proposed():
     assert [*proposals(priced_by(Robot(), aisles, nothing), 0.006, 2000.0)] == []
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(4))
 def test_the_sweep_finds_the_most_of_all_offers_at_every_number_of_steps(seed):
     """Against the same walk up the ladder with every offer tried, whatever its neighbours take."""
     rng, never = np.random.default_rng(seed), -np.inf
-    priced = priced_by(Robot(), Aisles.of(rectangle(4, 3)), rng.random(12))
+    # from the first row, or from the middle of the plot
+    grid = rectangle(4, 3)
+    gate = (-2.0, float(np.median(grid.lane_y_m))) if seed % 2 else None
+    priced = priced_by(Robot(), Aisles.of(grid, gate_xy_m=gate), rng.random(12))
     ladder, tables, n_steps, n_prices = priced.ladder, priced.tables, 40, 4
+    assert (ladder.gate > 0) == bool(seed % 2)
     n, n_states = len(ladder.across_m), len(tables.passes)
     n_ways = 1 + max(int(tables.aisle[:, 1].max()), int(tables.gate[:, 1].max()))
     # dearer drives hold and take less; some take as much as the next, some are not possible
@@ -101,3 +105,16 @@ def test_the_sweep_finds_the_most_of_all_offers_at_every_number_of_steps(seed):
     reached = most[1] > never
     assert reached.any()
     np.testing.assert_allclose(ends[reached], most[1][reached])
+    assert (ends[~reached] < -1e200).all()
+    # what was chosen leads back to the beginning, and holds that much in so many steps
+    for b in np.flatnonzero(reached):
+        after, left, held = 1, int(b), 0.0
+        for k in range(n - 1, -1, -1):
+            t, p = divmod(int(room[1][k, after, left]), n_prices)
+            before, way, to = (tables.gate if k == ladder.gate else tables.aisle)[t]
+            assert to == after
+            held += reward[k, way, p]
+            left -= steps[k, way, p] + int(up[tables.passes[after], k, [0, 1]].sum())
+            after = before
+        assert (after, held) == (0, pytest.approx(ends[b]))
+        assert left >= 0

@@ -11,7 +11,7 @@ from shapely import MultiPolygon, box
 
 from fieldmon.planning.routes import best, bound
 from fieldmon.planning.routes.best_route import upper_bound
-from fieldmon.planning.routes.blocks import Blocks, blockings
+from fieldmon.planning.routes.blocks import _MOST_BLOCKS, _NEAR_M, Blocks, blockings
 from fieldmon.planning.routes.hung import hung
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
@@ -96,6 +96,31 @@ def test_a_price_for_each_set_of_parts_bounds_no_less_sharply_than_one_for_all(r
     middle = float(min(prices, key=lambda p: parts.bound(parts.best(p), p, robot.day_s)))
     by_set = parts.bound_by_kind(robot.day_s, middle, np.inf)
     assert best(aisles, reward, robot).reward <= by_set <= at_one * (1 + 1e-3)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_two_aisles_in_different_blocks_lie_further_apart_than_any_step_within_one(seed):
+    """At each way of taking them together, steps of one length lead to all of a block."""
+    rng = np.random.default_rng(seed)
+    at = np.cumsum(rng.choice([2.0, 9.0, 45.0, 70.0, 130.0, 300.0], 13))
+    metres = np.abs(at[:, None] - at)
+    # the nearest ends may be any of four, and a way there need not be a way back
+    apart_m = metres + rng.uniform(0.0, 500.0, (2, 2, 13, 13))
+    low, high = np.triu_indices(13, 1)
+    ends = rng.integers(0, 2, (2, len(low)))
+    apart_m[*ends, low, high] = metres[low, high]
+    apart_m[:, :, range(13), range(13)] = np.inf
+    apart_m = np.pad(apart_m, ((0, 0), (0, 0), (0, 1), (0, 1)), constant_values=1.0)  # the gate
+    found = [block.tolist() for block in blockings(SimpleNamespace(apart_m=apart_m))]
+    told = []
+    for cut_m in np.unique(np.diff(at)[np.diff(at) > _NEAR_M]):
+        block = np.concatenate([[0], np.cumsum(np.diff(at) >= cut_m)])
+        told += [block] if 1 < block[-1] + 1 <= _MOST_BLOCKS else []
+    assert len(found) == len(told)
+    assert told or seed
+    for one, other in zip(found, told, strict=True):
+        same = np.array(one)[:, None] == np.array(one)
+        assert (same == (other[:, None] == other)).all()
 
 
 def test_two_aisles_that_lie_apart_are_two_blocks_and_two_that_touch_are_none():

@@ -72,6 +72,13 @@ def test_whatever_is_put_together_can_be_driven_from_the_gate(returns, gate):
     assert count > 50
 
 
+@pytest.mark.parametrize(("ways", "odd"), [(GATE_CLOSED, 0), (GATE_OPEN, 1)])
+def test_the_gate_is_passed_in_all_ways_of_at_most_two_passes_a_side(ways, odd):
+    """Who comes back passes it an even number of times, who does not an odd one."""
+    every = {pair for pair in product(range(3), repeat=2) if sum(pair) and sum(pair) % 2 == odd}
+    assert sorted(ways) == sorted(every)
+
+
 def test_states_between_aisles_are_the_five_of_ratliff_and_rosenthal():
     passes = tables(returns=True).passes
     used = {int(k) for k in tables(returns=True).aisle[:, 2]} - {0, 1}

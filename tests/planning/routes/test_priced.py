@@ -78,3 +78,26 @@ def test_one_pass_is_worth_as_much_as_any_choice_of_stops_that_turns_for_each_ch
         )
         best = max(best, (reward[at] - stop).sum() - turn * turns)
     assert best - 1e-12 <= found <= np.maximum(reward[inside] - stop, 0.0).sum() + 1e-12
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("row", [1, 3, 8])
+def test_a_kind_of_drive_begins_and_ends_in_its_own_stretches(row, returns):
+    """All that pays is in one row: whoever begins below it or ends above it gets less."""
+    grid = rectangle(12, 15)
+    aisles = Aisles.of(grid, gate_xy_m=(-2.0, float(np.median(grid.lane_y_m))))
+    reward = np.where(grid.row == row, 1.0, 0.0)
+    priced = Priced(ladder_below(aisles), reward, Robot(returns=returns))
+    worth, held = priced.kinds(1e-4)
+    at = np.unravel_index(np.argmax(worth), worth.shape)
+    assert worth[at] == pytest.approx(priced.best(1e-4).worth)
+    assert held[at] == pytest.approx(reward.sum())
+    assert min(worth.shape) > 3
+    below, above = worth[: at[0] + 1, at[1]], worth[at[0], at[1] :]
+    # the gate may lie where an aisle ends
+    for less in (np.diff(below), -np.diff(above)):
+        assert (less >= 0.0).all()
+        assert (less < 1e-9).sum() <= 1
+    # nor does it take what lies out of its stretches
+    assert (worth[at[0] + 1 :] < worth[at]).all()
+    assert (worth[:, : at[1]] < worth[at]).all()

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from fieldmon.planning.routes import relaxation
 from fieldmon.planning.routes.relaxation import (
     Ladders,
     _from_left_to_right,
@@ -52,6 +53,14 @@ def truly(aisles):
 @given(crooked_aisles(max_radius_m=60.0, max_plants=400), st.booleans())
 def test_no_way_on_the_ladder_is_longer_than_the_true_one(aisles, hanging):
     ladder = Ladders(aisles).whole(hanging=hanging)
+    assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
+
+
+@given(crooked_aisles(max_radius_m=60.0, max_plants=400))
+def test_where_no_cross_links_are_found_each_element_may_be_crossed_and_none_is_too_long(aisles):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(relaxation, "_ROUNDS", 0)
+        ladder = ladder_below(aisles)
     assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
 
 

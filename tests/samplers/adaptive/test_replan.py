@@ -13,6 +13,7 @@ from tests.samplers.adaptive.working import scene_with, times_of, workspace
 GRID = rectangle(8, 12)
 ONE_TIME = times_of((40.0, 0.84))
 _plan_at = replan._plan_at
+_along = replan._along
 
 
 @loop
@@ -28,6 +29,13 @@ def plan_at(travel, clock, work, state):
 @loop
 def planned_on(travel, clock, work, state):
     return plan_on(travel, clock, work, state)
+
+
+@loop
+def valued_along(travel, clock, work, state):
+    at, end, price = state
+    plan_on(travel, clock, work, (at, price, clock.seconds_left))
+    _along(travel, clock, work[1], work[4], (at, end, price))
 
 
 @loop
@@ -120,3 +128,28 @@ def test_from_the_gate_the_plan_leads_to_the_row_that_is_worth_it_the_first_as_a
     travel, work = scene.aisles.travel, workspace(scene, ONE_TIME)
     stretch = plan_at(travel, scene.clock, work, (GATE, 1e-3))
     assert stretch.row == row
+
+
+@pytest.mark.parametrize("at", [12, 17, 23, 53])
+@pytest.mark.parametrize("price", [1e-5, 4e-4, 2e-3, 6e-3])
+def test_along_its_row_it_turns_back_where_no_other_plant_is_a_better_turn(at, price):
+    scene = scene_of(3, 1.0)
+    travel, work = scene.aisles.travel, workspace(scene, ONE_TIME)
+    _, rows, _, _, own = work
+    first = travel.row_start[GRID.row[at]]
+    for end, step in ((0, -1), (1, 1)):
+        valued_along(travel, scene.clock, work, (at, end, price))
+        n = rows.n_pays[GRID.row[at]]
+        pays = rows.pays[first : first + n]
+        gain, stop_s = (each[first : first + n] for each in (rows.gain, rows.stop_s))
+        passed = [k for k in range(n)[::step] if (pays[k] - at) * step > 0]
+        turns = {(0.0, 0.0, -1)}
+        for m in range(1, len(passed) + 1):
+            far = pays[passed[m - 1]]
+            drive_s = 2 * abs(travel.x_m[far] - travel.x_m[at]) / scene.robot.speed_m_s
+            net = gain[passed[:m]].sum() - price * drive_s
+            turns.add((net, drive_s + stop_s[passed[:m]].sum(), far))
+        net, seconds, turn = max(turns)
+        assert own.fetch[end] == pytest.approx(net)
+        assert own.fetch_s[end] == pytest.approx(seconds)
+        assert own.turn[end] == turn

@@ -172,6 +172,13 @@ class _Worker:
         assert plan is not None  # noqa: S101 - it has a target
         return self.until_s - arrive_s - float(plan.stop_s[self.next]) - self.home_s(plant)
 
+    def under_way(self, now_s: float) -> int:
+        """Return how many of its stops it has made, or begun to drive to."""
+        for k in range(self.visit + 1, len(self.done)):
+            if self.done[k - 1].leave_s > now_s + _ROUNDING_S:
+                return k
+        return len(self.done)
+
     def share_out(self) -> float:
         """Return how much of the way to its next plant, or home, is driven in its own aisle."""
         leg = self.leg
@@ -482,13 +489,12 @@ class _Day:
         if worker.over:
             return
         worker.anew = True
-        for k in range(worker.visit + 1, len(worker.done)):
-            if worker.done[k - 1].leave_s > now_s:
-                del worker.done[k:]
-                worker.at = worker.done[-1].plant
-                worker.version += 1
-                self._at(worker.done[-1].leave_s, worker, self._ready)
-                return
+        k = worker.under_way(now_s)
+        if k < len(worker.done):
+            del worker.done[k:]
+            worker.at = worker.done[-1].plant
+            worker.version += 1
+            self._at(worker.done[-1].leave_s, worker, self._ready)
 
     # -- who goes where
 
@@ -589,11 +595,9 @@ class _Day:
         Stops that others are yet to make in their aisles hang on what they will find.
         """
         for worker in self.workers:
-            for k in range(worker.begun, len(worker.done)):
-                if k > worker.visit and worker.done[k - 1].leave_s > now_s + _ROUNDING_S:
-                    break
-                self.today[worker.done[k].plant] = True
-                worker.begun = k + 1
+            n = worker.under_way(now_s)
+            self.today[[stop.plant for stop in worker.done[worker.begun : n]]] = True
+            worker.begun = max(worker.begun, n)
         return self.today
 
     def _walk(self, worker: _Worker, now_s: float) -> None:

@@ -114,15 +114,16 @@ def _rows(db: sqlite3.Connection, table: GeoPackageTable, after: int = 0) -> lis
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
-def _write(
-    db: sqlite3.Connection, table: GeoPackageTable, rows: list[Row], after: int = 0
-) -> None:
+def _write(db: sqlite3.Connection, table: GeoPackageTable, rows: list[Row], after: int = 0) -> None:
     """Let these be the rows of a table after number `after`, numbered in their order."""
     names = ("fid", *table.names)
     db.execute(f"DELETE FROM {table.name} WHERE fid > ? OR fid < 1", (after,))  # noqa: S608 - names of ours
     db.executemany(
         f"INSERT INTO {table.name} ({', '.join(names)}) VALUES ({', '.join('?' * len(names))})",  # noqa: S608 - ours
-        [(number, *(row[name] for name in table.names)) for number, row in enumerate(rows, after + 1)],
+        [
+            (number, *(row[name] for name in table.names))
+            for number, row in enumerate(rows, after + 1)
+        ],
     )
     touch(db, table.name)
 
@@ -188,7 +189,9 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
             break
         digests.add(our[2])
         n += 1
-    rest = "SELECT DISTINCT batch FROM (SELECT batch FROM inspections ORDER BY fid LIMIT -1 OFFSET ?)"
+    rest = (
+        "SELECT DISTINCT batch FROM (SELECT batch FROM inspections ORDER BY fid LIMIT -1 OFFSET ?)"
+    )
     later = [
         batch_of.get(number, batch + 1)
         for one, batch_of in zip(both, numbers, strict=True)

@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 
 
 @inlined
-def best_time(
-    times: InspectionTimes, value: float, price: float
-) -> tuple[float, int]:
+def best_time(times: InspectionTimes, value: float, price: float) -> tuple[float, int]:
     """Return what the best inspection time gains at a price, and which it is.
 
     `value` is what a find there is expected to be worth.

@@ -64,10 +64,17 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
         copy = _padded_copy(source, Path(folder))
         with closing(sqlite3.connect(copy)) as db, Store.new(to) as new:
             new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
+            # nobody else has the file yet: it need not note row by row what comes in
+            noting = "SELECT name, sql FROM sqlite_master WHERE type = 'trigger'"
+            triggers = new.execute(noting).fetchall()
+            for name, _ in triggers:
+                new.execute(f"DROP TRIGGER {name}")
             for table in schema.CAUSES:
                 if table is not schema.META:
                     rows[table.name], complete = _taken(db, new, table)
                     lost += [] if complete else [table.name]
+            for _, sql in triggers:
+                new.execute(sql)
             if not any(rows.values()):
                 raise FileProblem(
                     worded(

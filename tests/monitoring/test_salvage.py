@@ -124,6 +124,17 @@ def test_layers_of_a_season_that_lost_rows_are_those_of_a_rebuilt_one(weeks, tmp
     assert days_of(tmp_path / "rescued.gpkg") == days
 
 
+def test_a_rescued_file_notes_what_is_changed_in_it_as_any_other(path, tmp_path):
+    salvage(path, tmp_path / "rescued.gpkg")
+    wanted = "SELECT sql FROM sqlite_master WHERE type = 'trigger' ORDER BY name"
+    told = []
+    for file in (path, tmp_path / "rescued.gpkg"):
+        with closing(sqlite3.connect(file)) as db:
+            told.append(db.execute(wanted).fetchall())
+    assert told[0] == told[1]
+    assert len(told[0]) > 30
+
+
 def test_what_is_no_file_or_no_season_cannot_be_saved(tmp_path):
     with pytest.raises(FileProblem, match="there is none"):
         salvage(tmp_path / "none.gpkg", tmp_path / "x.gpkg")

@@ -47,11 +47,12 @@ def in_aisles(routes, starts_s, step_s=2.0):
             continue
         grid = route.aisles.grid
         times, places = moments(route, begins)
-        x = np.interp(clock, times, places[:, 0])
+        x, y = (np.interp(clock, times, places[:, k]) for k in range(2))
         leg = np.clip(np.searchsorted(times, clock, "right"), 1, len(times) - 1)
         ends_y = places[:, 1][np.stack((leg - 1, leg))]
-        # all begin at the gate, which may lie between two ends of a lane
+        # all begin at the gate, and may wait there, though it may lie between two ends of a lane
         there = (clock > begins) & (clock <= begins + route.end_s)
+        there &= np.hypot(x - places[0, 0], y - places[0, 1]) > 0.01
         for row in range(grid.n_rows):
             low, high = grid.lane_x_m[row]
             # a way to a lane's end from a gate close beside the lane is not a way in it
@@ -72,8 +73,9 @@ def nobody_together(routes, starts_s):
 def nobody_head_on(routes, starts_s, passing_m, step_s=1.0):
     """Tell whether no two drive towards each other in a headland without the room they need.
 
-    By two moments after each other: both are in no aisle, each moves against the other, and they
-    are nearer than half the room, where row and edge are nearer to each other than all of it.
+    By two moments after each other: both are in no aisle, each moves against the other and they
+    come nearer, to less than half the room, where row and edge are nearer to each other than all
+    of it.
     """
     routes, starts_s = zip(
         *((route, at) for route, at in zip(routes, starts_s, strict=True) if len(route)),
@@ -86,7 +88,9 @@ def nobody_head_on(routes, starts_s, passing_m, step_s=1.0):
         (a, out_a), (b, out_b) = where[one], where[other]
         free = out_a & out_b & (aisle[one] < 0) & (aisle[other] < 0)
         towards = (np.diff(a) * np.diff(b)).sum(axis=0) < -1e-6
-        near = np.hypot(*(a - b)) < passing_m / 2 - CORNER_M
+        apart_m = np.hypot(*(a - b))
+        towards &= np.diff(apart_m) < 0.0
+        near = apart_m < passing_m / 2 - CORNER_M
         met = np.flatnonzero(free[:-1] & free[1:] & near[:-1] & near[1:] & towards)
         grid = routes[one].aisles.grid
         for k in met.tolist():

@@ -115,7 +115,7 @@ class Headlands:
 
         `times_s` are the seconds ``(m,)`` at which it comes to each vertex and leaves it.
         """
-        from_m, to_m = line_m[:-1], line_m[1:]
+        from_m, to_m, since_s, until_s = self._cut(line_m, times_s)
         middle = (from_m + to_m) / 2
         on_lane = np.abs(middle[:, 1, None] - self._lane_m) <= _ON_LANE_M
         on_lane &= (self._end_m[:, 0] < middle[:, 0, None]) & (
@@ -124,8 +124,24 @@ class Headlands:
         along = np.abs(to_m[:, 1] - from_m[:, 1]) <= _ON_LANE_M
         moves = np.hypot(*(to_m - from_m).T) > _STILL_M
         keep = moves & ~(along & on_lane.any(axis=1))
+        return Steps(from_m[keep], to_m[keep], since_s[keep], until_s[keep])
+
+    def _cut(self, line_m: Float, times_s: tuple[Float, Float]) -> Steps:
+        """Return all steps of a line, cut where one drives into an aisle or out of it."""
         arrive_s, leave_s = times_s
-        return Steps(from_m[keep], to_m[keep], leave_s[:-1][keep], arrive_s[1:][keep])
+        x, low, high = line_m[:, 0], *np.sort([line_m[:-1, 0], line_m[1:, 0]], axis=0)
+        level = (np.abs(line_m[:, 1, None] - self._lane_m) <= _ON_LANE_M)[:, :, None]
+        ends = self._end_m[None]
+        cuts = (low[:, None, None] + _STILL_M < ends) & (ends < high[:, None, None] - _STILL_M)
+        step, row, end = np.nonzero(cuts & level[:-1] & level[1:])
+        share = (self._end_m[row, end] - x[step]) / (x[step + 1] - x[step])
+        at_s = leave_s[step] + share * (arrive_s[step + 1] - leave_s[step])
+        order = np.lexsort((share, step))
+        step, share, at_s = step[order], share[order], at_s[order]
+        cut_m = line_m[step] + share[:, None] * (line_m[step + 1] - line_m[step])
+        line_m = np.insert(line_m, step + 1, cut_m, axis=0)
+        arrive_s, leave_s = (np.insert(one, step + 1, at_s) for one in times_s)
+        return Steps(line_m[:-1], line_m[1:], leave_s[:-1], arrive_s[1:])
 
     def meet(self, one: Steps, other: Steps, passing_m: float) -> Float:
         """Return when and where ``(k, 3)`` two meet head-on with less room than they need."""
@@ -148,18 +164,21 @@ def _nearest(one: Steps, other: Steps, within_m: float) -> Float:
     if not len(i):
         return np.empty((0, 3))
     speed = [(s.to_m - s.from_m) / (s.until_s - s.since_s)[:, None] for s in (one, other)]
-    towards = (speed[0][i] * speed[1][j]).sum(axis=1) < 0.0
-    i, j = i[towards], j[towards]
+    against = (speed[0][i] * speed[1][j]).sum(axis=1) < 0.0
+    i, j = i[against], j[against]
     begin = np.maximum(one.since_s[i], other.since_s[j])
     end = np.minimum(one.until_s[i], other.until_s[j])
     here = one.from_m[i] + speed[0][i] * (begin - one.since_s[i])[:, None]
     there = other.from_m[j] + speed[1][j] * (begin - other.since_s[j])[:, None]
     gap, closing = here - there, speed[0][i] - speed[1][j]
+    # who drive away from each other have met before, or not at all
+    nearer = (gap * closing).sum(axis=1) < 0.0
+    begin, end, here, gap, closing = (v[nearer] for v in (begin, end, here, gap, closing))
     # the moment at which the gap, which changes evenly, is least
     fast = np.maximum((closing**2).sum(axis=1), _STILL_M**2)
     later = np.clip(-(gap * closing).sum(axis=1) / fast, 0.0, end - begin)
     least = np.hypot(*(gap + closing * later[:, None]).T)
     near = least < within_m
-    place = here + speed[0][i] * later[:, None]
+    place = here + speed[0][i][nearer] * later[:, None]
     when: Float = np.column_stack([begin + later, place])[near]
     return when

@@ -180,7 +180,9 @@ def _around(
         shapely.prepare(grown)
         if shapely.covers(grown, shapely.points(ends)).all():
             return ground.area
-    reach = shapely.difference(_reach(rows, planting), ground.obstacles)
+    reach = _reach(rows, planting)
+    reach = shapely.union(reach, _beyond(reach, aisles, pieces))
+    reach = shapely.difference(reach, ground.obstacles)
     return _polygons(reach if ground.area is None else shapely.union(ground.area, reach))
 
 
@@ -450,6 +452,19 @@ def _reach(rows: RowLines, planting: Planting) -> shapely.Geometry:
     half_m = 0.9 * rows.spacings(planting)[:, 0]
     wide = shapely.buffer(long, half_m, cap_style="flat", quad_segs=2)
     return shapely.union_all(wide)
+
+
+def _beyond(reach: shapely.Geometry, aisles: RowAisles, pieces: BentPieces) -> shapely.Geometry:
+    """Return the ground about lane ends that lie beyond what rows reach.
+
+    An aisle beside a row that bends at its end may end farther out than the row's headland.
+    """
+    lane = np.repeat(pieces.aisle[:, _LEFT], 2)
+    ends = shapely.points(aisles.lines.points(lane, pieces.lane_m[:, _LEFT].ravel()))
+    shapely.prepare(reach)
+    beyond = ~shapely.covers(reach, ends)
+    half_m = np.repeat(pieces.spacing_m[:, 0], 2)[beyond] / 2
+    return shapely.union_all(shapely.buffer(ends[beyond], half_m, quad_segs=2))
 
 
 def _polygons(area: shapely.Geometry) -> MultiPolygon:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # lanes of neighbouring rows that were measured lie at slightly different y: of the row spacing
 _SAME_AISLE = 0.25
+# a way from a lane's end on only touches its aisle
+_TOUCHES_M = 0.1
 
 
 class Leg(NamedTuple):
@@ -90,20 +92,30 @@ class Legs:
         """Return the aisles on the way between two lane ends, as numbered in `TravelTable`."""
         key = min(a, b), max(a, b)
         if key not in self._through:
-            found = (self._along(u, v) for u, v in pairwise(trace(self._aisles, *key)))
-            self._through[key] = tuple(dict.fromkeys(c for c in found if c >= 0))
+            steps = pairwise(trace(self._aisles, *key))
+            found = (aisle for u, v in steps for aisle in self._along(u, v))
+            self._through[key] = tuple(dict.fromkeys(found))
         return self._through[key]
 
-    def _along(self, u: int, v: int) -> int:
-        """Return the aisle that a way between two nodes next to each other lies in, -1 if none."""
+    def _along(self, u: int, v: int) -> list[int]:
+        """Return the aisles that a way between two nodes next to each other lies in, in its order.
+
+        One way may lie in several, where parts of a plot have their rows in line.
+        """
         known = self._lane.get((min(u, v), max(u, v)))
         grid = self._aisles.grid
         if known is not None or grid.aisles_m is not None:
-            return -1 if known is None else known
+            return [] if known is None else [known]
         (ax, ay), (bx, by) = self._aisles.roads.xy_m[[u, v]].tolist()
-        x, y, across, up = (ax + bx) / 2, (ay + by) / 2, abs(bx - ax), abs(by - ay)
+        if abs(by - ay) > abs(bx - ax):
+            return []
+        low, high = (
+            np.maximum(grid.lane_x_m[:, 0], min(ax, bx)),
+            np.minimum(grid.lane_x_m[:, 1], max(ax, bx)),
+        )
+        middle = (low + high) / 2
+        y = ay + (by - ay) * (middle - ax) / (bx - ax) if bx != ax else np.full(len(middle), ay)
         near = np.abs(grid.lane_y_m - y) <= _SAME_AISLE * grid.row_spacing_m
-        near &= (grid.lane_x_m[:, 0] < x) & (x < grid.lane_x_m[:, 1])
-        if up > across or not near.any():
-            return -1
-        return int(grid.corridor[np.argmax(near)])
+        rows = np.flatnonzero(near & (high - low > _TOUCHES_M))
+        rows = rows[np.argsort(middle[rows] if bx > ax else -middle[rows], kind="stable")]
+        return [int(corridor) for corridor in grid.corridor[rows]]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.planning.headlands import head_on
+from fieldmon.planning.headlands import head_on, headlands_of
 from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.planning.team import plan_team
 from fieldmon.plot.field import Field
@@ -87,3 +87,22 @@ def test_two_need_some_room_or_none():
     plot = Plot(Field("even", grid.frame.geometry_lonlat(grid.drivable_m)), Aisles.of(grid))
     with pytest.raises(SettingError, match="0 m or more to pass"):
         plan_team(plot, np.full(15, 0.1), team_of(2), passing_m=-1.0)
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_line_straight_through_an_aisle_is_in_the_headlands_before_it_and_after_it(back):
+    grid = rectangle(4, 10)
+    (low, high), y = grid.lane_x_m[1], grid.lane_y_m[1]
+    line_m = np.array([[low - 5.0, y], [high + 10.0, y], [high + 10.0, y + 3.0]])
+    times_s = np.array([7.0, 7.0 + (high - low) + 15.0, 40.0 + (high - low)])
+    if back:
+        line_m, times_s = line_m[::-1], (times_s[-1] - times_s)[::-1]
+    steps = headlands_of(grid).steps(line_m, (times_s, times_s))
+    length_m = np.hypot(*(steps.to_m - steps.from_m).T)
+    assert sorted(length_m) == pytest.approx([3.0, 5.0, 10.0])
+    straight = length_m > 4.0
+    # one metre takes one second on the straight
+    took_s = (steps.until_s - steps.since_s)[straight]
+    assert took_s == pytest.approx(length_m[straight])
+    x = np.stack([steps.from_m[straight, 0], steps.to_m[straight, 0]])
+    assert ((x <= low + 1e-9).all(axis=0) | (x >= high - 1e-9).all(axis=0)).all()

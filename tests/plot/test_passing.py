@@ -51,6 +51,19 @@ def test_beyond_a_notch_the_whole_row_below_it_is_driven_through():
     assert set(legs_of(aisles).leg(left, right).through) & whole
 
 
+@pytest.mark.parametrize("parts", [2, 3])
+def test_a_way_to_a_part_in_line_lies_in_the_aisles_of_all_parts_before(parts):
+    squares = [shapely.box(x, 0.0, x + 30.0, 14.0) for x in 100.0 * np.arange(parts)]
+    boundary = shapely.transform(MultiPolygon(squares), lambda xy: xy * _M)
+    # it begins where the first aisle does, and drives straight on
+    aisles = Plot.of(Field("in line", boundary), Planting(row_bearing_deg=90.0)).aisles
+    grid, last = aisles.grid, len(aisles.grid) - 1
+    line = aisles.path(GATE, last)
+    through = legs_of(aisles).leg(GATE, last).through
+    assert len(set(through)) >= parts - 1
+    assert inside(aisles, line) <= {*through, int(grid.corridor[grid.row[last]])}
+
+
 @settings(max_examples=15, deadline=None)
 @given(crooked_fields(max_radius_m=60.0), st.data())
 def test_a_leg_is_as_long_as_the_way_and_knows_every_aisle_that_its_line_lies_in(field, data):

@@ -3,7 +3,8 @@
 A row is known again by what it says and by the batch it came with, never by its number. What was
 taken back in one copy is taken back. What both recorded for themselves counts once; the later one
 stays as a row that does not count. Everything is put in the order in which it was recorded, so
-that it does not matter which copy takes in the other.
+that it does not matter which copy takes in the other. Inspections that both copies begin with, and
+that come out where they are, are left there: of a long season these are nearly all.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 #: a row by the names of its columns, its number (fid) among them
 Row = dict[str, Any]
+#: what the batches of a copy are numbered now, by their numbers in it
+Numbers = dict[int, int]
 
 #: what makes a season this one, and must be the same in both
 SAME = (schema.ARRAYS, schema.PLOTS, schema.PLACES, schema.ROWS, schema.PLANTS, schema.OBSERVATIONS)
@@ -58,13 +61,18 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
     Raise `FileProblem` if it is no copy of the same season.
     """
     refuse_strangers(db, other)
-    copies = [{table.name: _rows(one, table) for table in TAKEN} for one in (db, other)]
+    less = [table for table in TAKEN if table is not schema.INSPECTIONS]
+    copies = [{table.name: _rows(one, table) for table in less} for one in (db, other)]
     phones = [phone_tables.brought(one) for one in (db, other)]
     batches = _merged_batches(copies)
-    for table in (schema.INSPECTIONS, schema.TREATMENTS):
-        rows = _merged_findings(copies, table.name, batches)
-        _write(db, table, rows)
-        _count(batches, rows)
+    numbers = [
+        {row["fid"]: batches[_key(row, _BATCH)]["fid"] for row in copied["batches"]}
+        for copied in copies
+    ]
+    _merge_inspections((db, other), numbers)
+    treated = [copied["treatments"] for copied in copies]
+    _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set()))
+    _count(db, batches)
     _write(db, schema.BATCHES, list(batches.values()))
     _write_routes(db, copies)
     said = _differing(copies)
@@ -96,19 +104,26 @@ def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
             )
 
 
-def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> list[Row]:
+def _rows(db: sqlite3.Connection, table: GeoPackageTable, after: int = 0) -> list[Row]:
+    """Return the rows of a table after its first ones."""
     names = ("fid", *table.names)
-    rows = db.execute(f"SELECT {', '.join(names)} FROM {table.name} ORDER BY fid")  # noqa: S608 - ours
+    rows = db.execute(
+        f"SELECT {', '.join(names)} FROM {table.name} ORDER BY fid LIMIT -1 OFFSET ?",  # noqa: S608 - ours
+        (after,),
+    )
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
-def _write(db: sqlite3.Connection, table: GeoPackageTable, rows: list[Row]) -> None:
-    """Let these be the rows of a table, numbered in their order."""
+def _write(db: sqlite3.Connection, table: GeoPackageTable, rows: list[Row], after: int = 0) -> None:
+    """Let these be the rows of a table after number `after`, numbered in their order."""
     names = ("fid", *table.names)
-    db.execute(f"DELETE FROM {table.name}")  # noqa: S608 - names of ours
+    db.execute(f"DELETE FROM {table.name} WHERE fid > ? OR fid < 1", (after,))  # noqa: S608 - names of ours
     db.executemany(
         f"INSERT INTO {table.name} ({', '.join(names)}) VALUES ({', '.join('?' * len(names))})",  # noqa: S608 - ours
-        [(number, *(row[name] for name in table.names)) for number, row in enumerate(rows, 1)],
+        [
+            (number, *(row[name] for name in table.names))
+            for number, row in enumerate(rows, after + 1)
+        ],
     )
     touch(db, table.name)
 
@@ -136,14 +151,67 @@ def _number(
     return None if row is None else int(batches[_key(row, _BATCH)]["fid"])
 
 
+def _merge_inspections(
+    both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]
+) -> None:
+    """Let the first of both have the inspections of both.
+
+    `numbers` says how the batches of each are numbered now.
+    """
+    db, stay = both[0], _n_staying(both, numbers)
+    copies = [_rows(one, schema.INSPECTIONS, stay) for one in both]
+    counts = "SELECT digest FROM inspections WHERE digest = ? AND undone = 0 AND fid <= ?"
+    digests = {row["digest"] for rows in copies for row in rows}
+    counting = {held for one in digests for (held,) in db.execute(counts, (one, stay))}
+    rows = _merged_findings(copies, numbers, counting)
+    _write(db, schema.INSPECTIONS, rows, stay)
+
+
+def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]) -> int:
+    """Return how many inspections both copies begin with that come out just as they are in ours.
+
+    They are those of whole batches, which have their numbers already: no other row can be known
+    again in one of them, or come between them.
+    """
+    wanted = "SELECT batch, fid, digest, undone, who, notes FROM inspections ORDER BY fid"
+    ours, theirs = numbers
+    n, batch = 0, 0
+    digests: set[str] = set()
+    for our, their in zip(*(one.execute(wanted) for one in both), strict=False):
+        number = ours.get(our[0])
+        if number is None or (our[0], theirs.get(their[0])) != (number, number):
+            break
+        if our[2:] != their[2:] or None in our or our[1] != n + 1 or number < batch:
+            break
+        if number > batch:
+            batch, digests = number, set()
+        if our[2] in digests:  # taken back and recorded again
+            break
+        digests.add(our[2])
+        n += 1
+    rest = (
+        "SELECT DISTINCT batch FROM (SELECT batch FROM inspections ORDER BY fid LIMIT -1 OFFSET ?)"
+    )
+    later = [
+        batch_of.get(number, batch + 1)
+        for one, batch_of in zip(both, numbers, strict=True)
+        for (number,) in one.execute(rest, (n,))
+    ]
+    before = "SELECT count(*) FROM inspections WHERE fid <= ? AND batch < ?"
+    (stay,) = both[0].execute(before, (n, min(later, default=batch + 1))).fetchone()
+    return int(stay)
+
+
 def _merged_findings(
-    copies: list[dict[str, list[Row]]], name: str, batches: dict[Hashable, Row]
+    copies: list[list[Row]], numbers: list[Numbers], counting: set[str]
 ) -> list[Row]:
-    """Return inspections or treatments of both copies, once each, in the order of their batches."""
+    """Return inspections or treatments of both copies, once each, in the order of their batches.
+
+    Those `counting` already count once, before them.
+    """
     found: dict[Hashable, Row] = {}
-    for copied in copies:
-        batch_of = {row["fid"]: batches[_key(row, _BATCH)]["fid"] for row in copied["batches"]}
-        for own in copied[name]:
+    for own_rows, batch_of in zip(copies, numbers, strict=True):
+        for own in own_rows:
             row = {**own, "batch": batch_of.get(own["batch"])}
             if row["digest"] is None:  # a draft of another program
                 key: Hashable = _key(row, tuple(k for k in row if k != "fid"))
@@ -155,11 +223,10 @@ def _merged_findings(
             for free in ("notes", "who"):  # what is no part of what makes it the same
                 if free in row:
                     known[free] = max(known[free] or "", row[free] or "")
-    drafts_last = len(batches) + 1
+    drafts_last = max((now for batch_of in numbers for now in batch_of.values()), default=0) + 1
     rows = sorted(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
     )
-    counting: set[str] = set()
     for row in rows:
         if row["digest"] is not None and not row["undone"]:
             row["undone"] = int(row["digest"] in counting)
@@ -167,19 +234,15 @@ def _merged_findings(
     return rows
 
 
-def _count(batches: dict[Hashable, Row], rows: list[Row]) -> None:
+def _count(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
     """Note in the batches how many rows they have; one of which nothing counts is undone."""
     by_number = {row["fid"]: row for row in batches.values()}
-    live = set()
-    mine: set[int] = set()
-    for row in rows:
-        if row["batch"] is not None:
-            by_number[row["batch"]]["rows"] += 1
-            mine.add(row["batch"])
-            if not row["undone"]:
-                live.add(row["batch"])
-    for number in mine - live:
-        by_number[number]["undone"] = 1
+    for name in ("inspections", "treatments"):
+        counted = f"SELECT batch, count(*), min(undone) FROM {name} GROUP BY batch"  # noqa: S608 - ours
+        for number, n, undone in db.execute(counted):
+            if number is not None:
+                by_number[number]["rows"] += n
+                by_number[number]["undone"] = int(undone > 0)
 
 
 def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:

@@ -95,15 +95,26 @@ def contradictions(brought: Inspections, held: Inspections) -> Contradictions:
     Clean against found or found against clean, of one plant on one day. Where both are held
     already, neither is news; a plant that could not be inspected says nothing.
     """
-    results = _held(held.inspected, brought)
+    same = _n_alike(brought, held)  # nearly all, of two copies of a season
+    news = brought.take(slice(same, None))
+    results = _held(held.inspected, news)
     found = [
         (k, min(was))
-        for k, (same, result) in enumerate(zip(_keys(brought), brought.result, strict=True))
-        if result != SKIPPED and (was := results.get(same)) and result not in was
+        for k, (key, result) in enumerate(zip(_keys(news), news.result, strict=True), same)
+        if result != SKIPPED and (was := results.get(key)) and result not in was
     ]
     at = np.array([k for k, _ in found], np.intp)
     recorded = np.array([result for _, result in found], np.int8)
     return Contradictions(at, brought.plant[at], brought.date[at], recorded, brought.result[at])
+
+
+def _n_alike(one: Inspections, other: Inspections) -> int:
+    """Return with how many inspections of the same plants, days and results both begin."""
+    n = min(len(one), len(other))
+    alike = np.ones(n, bool)
+    for name in ("plant", "date", "result"):
+        alike &= getattr(one, name)[:n] == getattr(other, name)[:n]
+    return n if alike.all() else int(np.argmin(alike))
 
 
 def contradicting(held: Inspections) -> Inspections:

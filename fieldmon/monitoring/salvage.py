@@ -6,10 +6,10 @@ import os
 import shutil
 import sqlite3
 import tempfile
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 50_000_000
 _MOST_BYTES = 2**34
+#: what need not be worked out again as far as it follows from what was saved
+_WORKED_OUT = (schema.DAYS, schema.MORNINGS)
 
 
 @dataclass(frozen=True)
@@ -57,44 +59,43 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
                 damaged=damaged,
             )
         )
-    tables = [table for table in schema.CAUSES if table is not schema.META]
-    saved: dict[str, tuple[tuple[str, ...], list[tuple[object, ...]]]] = {}
-    lost = []
+    rows, lost = {}, []
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         copy = _padded_copy(source, Path(folder))
-        with closing(sqlite3.connect(copy)) as db:
-            for table in tables:
-                names = _columns(db, table)
-                found, complete = _rows(db, table, names)
-                saved[table.name] = names, found
-                if not complete:
-                    lost.append(table.name)
-    if not any(found for _, found in saved.values()):
-        raise FileProblem(
-            worded(
-                "Something must be readable in {damaged}, but nothing is. Was it a season of "
-                "fieldmon? Take the last copy you have of it.",
-                damaged=damaged,
-            )
-        )
-    with Store.new(to) as new:
-        new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
-        for table in tables:
-            names, found = saved[table.name]
-            marks = ", ".join("?" * len(names))
-            new.executemany(
-                f"INSERT OR IGNORE INTO {table.name} ({', '.join(names)}) VALUES ({marks})",  # noqa: S608 - ours
-                found,
-            )
-        season_log.go_on_saved(new)
-        # a file whose derived layers are not there yet still says on which day it stands
-        insert(new, schema.DAYS, [(0, None, 0, 0, None, None, None, None, "", None)])
+        with closing(sqlite3.connect(copy)) as db, Store.new(to) as new:
+            new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
+            # nobody else has the file yet: it need not note row by row what comes in
+            noting = "SELECT name, sql FROM sqlite_master WHERE type = 'trigger'"
+            triggers = new.execute(noting).fetchall()
+            for name, _ in triggers:
+                new.execute(f"DROP TRIGGER {name}")
+            for table in schema.CAUSES:
+                if table is not schema.META:
+                    rows[table.name], complete = _taken(db, new, table)
+                    lost += [] if complete else [table.name]
+            for _, sql in triggers:
+                new.execute(sql)
+            if not any(rows.values()):
+                raise FileProblem(
+                    worded(
+                        "Something must be readable in {damaged}, but nothing is. Was it a season "
+                        "of fieldmon? Take the last copy you have of it.",
+                        damaged=damaged,
+                    )
+                )
+            season_log.go_on_saved(new)
+            for table in _WORKED_OUT:
+                _taken(db, new, table)
+            # a file without derived layers still says on which day it stands
+            first = (0, None, 0, 0, None, None, None, None, "", None)
+            if new.execute("SELECT 1 FROM days").fetchone() is None:
+                insert(new, schema.DAYS, [first])
     whole = True
     try:
-        Season(to).rebuild()
+        Season(to).work_on()
     except FieldmonError:
         whole = False
-    return Salvaged({name: len(found) for name, (_, found) in saved.items()}, tuple(lost), whole)
+    return Salvaged(rows, tuple(lost), whole)
 
 
 def _padded_copy(source: Path, folder: Path) -> Path:
@@ -135,6 +136,20 @@ def _columns(db: sqlite3.Connection, table: GeoPackageTable) -> tuple[str, ...]:
     return tuple(name for name in names if name in there) or names
 
 
+def _taken(
+    db: sqlite3.Connection, new: sqlite3.Connection, table: GeoPackageTable
+) -> tuple[int, bool]:
+    """Copy the rows of a table that can be read; return how many, and whether those are all."""
+    names = _columns(db, table)
+    found, complete = _rows(db, table, names)
+    marks = ", ".join("?" * len(names))
+    new.executemany(
+        f"INSERT OR IGNORE INTO {table.name} ({', '.join(names)}) VALUES ({marks})",  # noqa: S608 - ours
+        found,
+    )
+    return len(found), complete
+
+
 def _rows(
     db: sqlite3.Connection, table: GeoPackageTable, names: tuple[str, ...]
 ) -> tuple[list[tuple[object, ...]], bool]:
@@ -142,19 +157,18 @@ def _rows(
 
     Read forwards up to the damage, then backwards down to it.
     """
-    got: dict[int, tuple[object, ...]] = {}
-    complete = False
     wanted = f"SELECT {', '.join(names)} FROM {table.name} ORDER BY {table.key}"  # noqa: S608 - ours
-    for order in ("ASC", "DESC"):
-        try:
-            for row in db.execute(f"{wanted} {order} LIMIT {_MOST_ROWS}"):
-                if row[0] in got:
-                    break
-                got[row[0]] = row
-            else:
-                complete = True
-        except sqlite3.Error:
-            continue
-        if complete:
-            break
-    return [got[fid] for fid in sorted(got)], complete
+    forwards: list[tuple[Any, ...]] = []
+    backwards: list[tuple[Any, ...]] = []
+    try:
+        forwards.extend(db.execute(f"{wanted} ASC LIMIT {_MOST_ROWS}"))
+    except sqlite3.Error:
+        pass
+    else:
+        return forwards, True
+    with suppress(sqlite3.Error):
+        for row in db.execute(f"{wanted} DESC LIMIT {_MOST_ROWS}"):
+            if forwards and row[0] <= forwards[-1][0]:
+                break
+            backwards.append(row)
+    return forwards + backwards[::-1], False

@@ -255,6 +255,11 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                 if day >= since and derived_layers.map_digest(contents.morning(day).chance) != then
             )
 
+    def work_on(self) -> None:
+        """Write the layers anew from the last morning on that still follows from all before it."""
+        with self._lock, self.store.writing() as db:
+            self._refresh(db)
+
     def rebuild(self) -> None:
         """Write all layers that follow from the causes anew."""
         with self._lock, self.store.writing() as db:

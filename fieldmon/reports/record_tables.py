@@ -116,23 +116,22 @@ TABLES = {"treatments": treatments_table, "inspections": inspections_table, "log
 
 def csv_bytes(lines: Iterable[Line]) -> bytes:
     """Return lines as CSV in UTF-8, as spreadsheets open it; empty of none."""
-    cells: dict[str, str] = {}  # most texts stand in thousands of lines
+    cells = _Cells()
     text = io.StringIO(newline="")
     table = csv.writer(text)
     for k, line in enumerate(lines):
         if k == 0:
             table.writerow(line)
-        table.writerow([_cell(value, cells) for value in line.values()])
+        table.writerow(
+            [cells[value] if isinstance(value, str) else value for value in line.values()]
+        )
     data = text.getvalue()
     return data.encode("utf-8-sig") if data else b""
 
 
-def _cell(value: object, cells: dict[str, str]) -> object:
-    """Return what stands in a cell; `cells` are texts that were made safe before."""
-    if value is None:
-        return ""
-    if not isinstance(value, str):
-        return value
-    if value not in cells:
-        cells[value] = safe_cell(value)
-    return cells[value]
+class _Cells(dict[str, str]):
+    """What stands in a cell, by the text that belongs there: most stand in thousands of lines."""
+
+    def __missing__(self, text: str) -> str:
+        self[text] = safe = safe_cell(text)
+        return safe

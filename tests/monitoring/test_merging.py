@@ -100,6 +100,58 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
             db.close()
 
 
+def test_what_both_copies_hold_stays_untouched_and_nothing_comes_out_otherwise(monkeypatch):
+    """As if every row were written anew, which only the rows after the common ones are."""
+    stayed = 0
+    for seed in range(PAIRS):
+        one, other = apart(seed)
+        whole = copied(one)
+        counted = "SELECT value FROM fieldmon WHERE key = ?"
+        before = one.execute(counted, (schema.INSPECTIONS_CHANGED,)).fetchone()
+        if content(one) == content(other) and merging.merge(one, other) == ():
+            after = one.execute(counted, (schema.INSPECTIONS_CHANGED,)).fetchone()
+            stayed += held(one) != [] and before == after
+        else:
+            merging.merge(one, other)
+        with monkeypatch.context() as anew:
+            anew.setattr(merging, "_n_staying", lambda *_: 0)
+            merging.merge(whole, other)
+        assert content(one) == content(whole)
+        for db in (one, other, whole):
+            db.close()
+    assert stayed
+
+
+@pytest.mark.parametrize("change", [
+    "UPDATE inspections SET notes = NULL WHERE fid = 2",  # comes out as an empty text
+    "UPDATE inspections SET batch = 9 WHERE fid = 2",
+    "UPDATE inspections SET undone = 1 WHERE fid = 2",
+    "INSERT INTO inspections SELECT 9, {names}, 0 FROM inspections WHERE fid = 2",
+    "UPDATE inspections SET fid = 9 WHERE fid = 2",
+    "UPDATE inspections SET digest = NULL WHERE fid = 2",
+    "UPDATE batches SET fid = 5 WHERE fid = 1",
+])  # fmt: skip
+@pytest.mark.parametrize("where", ["one", "both"])
+def test_rows_that_come_out_otherwise_do_not_stay(monkeypatch, change, where):
+    one, other = (sqlite3.connect(":memory:", isolation_level=None) for _ in range(2))
+    schema.lay_out(one)
+    for clock in range(3):
+        record(one, random.Random(clock), "Ann", clock)
+    if "INSERT" in change:
+        one.execute("UPDATE inspections SET undone = 1 WHERE fid = 2")
+    one.backup(other)
+    names = ", ".join(schema.INSPECTIONS.names[:-1])
+    for db in (one,) if where == "one" else (one, other):
+        db.execute(change.format(names=names))
+    whole = copied(one)
+    merging.merge(one, other)
+    monkeypatch.setattr(merging, "_n_staying", lambda *_: 0)
+    merging.merge(whole, other)
+    assert content(one) == content(whole)
+    for db in (one, other, whole):
+        db.close()
+
+
 def test_every_table_of_a_season_is_merged_or_must_be_the_same_or_follows_from_them():
     follows = {schema.META, schema.DAYS, schema.PLANT_STATE, schema.HOT_SPOTS, schema.LEARNT}
     follows |= {schema.MORNINGS, schema.INSPECTION_LOTS}

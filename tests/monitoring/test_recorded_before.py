@@ -32,6 +32,15 @@ def test_a_plant_that_could_not_be_inspected_contradicts_nothing():
     assert not len(contradictions(results((3, FOUND)), results((3, SKIPPED))))
 
 
+def test_what_two_copies_begin_with_hides_no_contradiction_after_it():
+    common = [(1, FOUND), (2, CLEAN), (3, SKIPPED)]
+    held = results(*common, (4, CLEAN), (6, FOUND))
+    brought = results(*common, (6, CLEAN), (1, CLEAN), (4, FOUND), (3, FOUND))
+    found = contradictions(brought, held)
+    assert (found.which.tolist(), found.plant.tolist()) == ([3, 4, 5], [6, 1, 4])
+    assert len(contradictions(held, held)) == len(contradictions(results(), held)) == 0
+
+
 def test_what_was_confirmed_once_is_no_news():
     held = results((3, FOUND), (3, CLEAN))
     assert not len(contradictions(results((3, CLEAN)), held))

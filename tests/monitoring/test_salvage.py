@@ -1,6 +1,8 @@
 """What can be saved of a damaged season is saved."""
 
 import random
+import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import pytest
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.history import History
 from fieldmon.monitoring.salvage import salvage
 from tests.monitoring.seasons import BEGINS, state
 
@@ -76,6 +79,60 @@ def test_a_whole_file_is_salvaged_whole(path, tmp_path):
     one, other = Season(path), Season(tmp_path / "rescued.gpkg")
     assert np.array_equal(one.evening(BEGINS), other.evening(BEGINS))
     assert state(tmp_path / "rescued.gpkg") == 12
+
+
+def days_of(file):
+    with Season(file).store.reading() as db:
+        rows = db.execute("SELECT * FROM days ORDER BY day").fetchall()
+    return [row[1:] for row in rows]
+
+
+@pytest.fixture
+def weeks(path):
+    """Return a season of three weeks."""
+    season = Season(path)
+    for day in range(1, 20, 3):
+        at = np.arange(day, day + 5)
+        season.record(Inspections.of(at, at % 2, np.datetime64(BEGINS) + day), f"day {day}")
+    return path
+
+
+def test_mornings_that_follow_from_what_was_saved_are_not_worked_out_again(
+    weeks, tmp_path, monkeypatch
+):
+    before = days_of(weeks)
+    monkeypatch.setattr(History, "night_after", None)
+    saved = salvage(weeks, tmp_path / "rescued.gpkg")
+    assert saved.whole
+    assert days_of(tmp_path / "rescued.gpkg") == before
+    assert "mornings" not in saved.rows  # what was recorded is counted, not what follows
+
+
+@pytest.mark.parametrize(
+    "lost",
+    ["inspections WHERE fid = 1", "inspections WHERE day = 10", "days WHERE day = 7", "days"],
+)
+def test_layers_of_a_season_that_lost_rows_are_those_of_a_rebuilt_one(weeks, tmp_path, lost):
+    with closing(sqlite3.connect(weeks)) as db:
+        db.execute("UPDATE fieldmon SET value = '1' WHERE key = 'open'")  # nobody notes it
+        db.execute(f"DELETE FROM {lost}")  # noqa: S608 - as above
+        db.execute("UPDATE fieldmon SET value = '0' WHERE key = 'open'")
+        db.commit()
+    salvage(weeks, tmp_path / "rescued.gpkg")
+    days = days_of(tmp_path / "rescued.gpkg")
+    Season(tmp_path / "rescued.gpkg").rebuild()
+    assert days_of(tmp_path / "rescued.gpkg") == days
+
+
+def test_a_rescued_file_notes_what_is_changed_in_it_as_any_other(path, tmp_path):
+    salvage(path, tmp_path / "rescued.gpkg")
+    wanted = "SELECT sql FROM sqlite_master WHERE type = 'trigger' ORDER BY name"
+    told = []
+    for file in (path, tmp_path / "rescued.gpkg"):
+        with closing(sqlite3.connect(file)) as db:
+            told.append(db.execute(wanted).fetchall())
+    assert told[0] == told[1]
+    assert len(told[0]) > 30
 
 
 def test_what_is_no_file_or_no_season_cannot_be_saved(tmp_path):

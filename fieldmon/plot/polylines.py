@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
 
+# who is so much farther from a line than the point before is looked for on all of it: it may turn
+_ASTRAY_M = 1.0
+
 
 class Polylines(NamedTuple):
     """Lines of straight steps; a *place* on one is in metres along it from its first corner.
@@ -189,7 +192,7 @@ def _before(lines: Polylines, line: int, place_m: float) -> int:
 @routine
 def _project(lines: Polylines, xy_m: Float, line: Int, place: Float, left: Float) -> None:
     start, corner, at_m = lines
-    at, last_line = 0, -1
+    at, last_line, off_m = 0, -1, 0.0
     for i in range(xy_m.shape[0]):
         first, end = start[line[i]], start[line[i] + 1] - 1
         fresh = line[i] != last_line
@@ -202,6 +205,9 @@ def _project(lines: Polylines, xy_m: Float, line: Int, place: Float, left: Float
         while at <= low and low > first:
             here, low = low, max(low - 16, first)
             at, best = _nearest_step(corner, (low, here), xy_m[i], (at, best))
+        if np.sqrt(best) > off_m + _ASTRAY_M and not fresh:
+            at, best = _nearest_step(corner, (first, end), xy_m[i], (at, best))
+        off_m = np.sqrt(best)
         wx, wy = corner[at + 1, 0] - corner[at, 0], corner[at + 1, 1] - corner[at, 1]
         x, y = xy_m[i, 0] - corner[at, 0], xy_m[i, 1] - corner[at, 1]
         length = np.hypot(wx, wy)

@@ -37,7 +37,7 @@ _EVEN, _BY_TURNS, _LEAST_M, _MANY = 0.55, 0.65, 0.05, 20
 _NARROW, _RARE = 0.5, 0.25
 # rows that bend may be traced along another direction where plants stand nearly as far apart in
 # them as the rows are
-_SQUARE = 0.62
+_SQUARE = 0.58
 # plants of rows that have nothing to do with each other stand a quarter of a spacing off level
 _LEVEL = 0.15
 # so many plants are asked for the nearest one of another row, among so many about them

@@ -107,7 +107,9 @@ def estimate_plot(
     if doubt > 0.0:
         # odds, as finds change a level by: never more than there are plants
         factors = doubted_level(doubt, named=named)
-        counts = counts * factors / (1.0 + counts / len(chance) * (factors - 1.0))
+        # but where all are infested, odds have no bound, and the least factor may be 0
+        share = np.minimum(counts / len(chance), 1.0 - 1e-12)
+        counts = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), len(chance))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 

@@ -112,3 +112,13 @@ def test_of_a_pest_that_is_named_the_doubt_is_not_itself_in_doubt():
     assert halves[0].high - halves[0].low == pytest.approx(halves[1].high - halves[1].low, rel=0.25)
     ends = [level_range(chance, 0.4, named=each) for each in (False, True)]
     assert ends[0].low < ends[1].low < 1.0 < ends[1].high < ends[0].high
+
+
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize("doubt", [0.5, 5.0, 50.0, 500.0])
+def test_in_any_doubt_a_plot_that_may_be_infested_all_over_has_an_interval(doubt, named):
+    grid = rectangle(1, 3)
+    for chance in (0.3, 0.5, 0.7, 0.9):
+        with np.errstate(all="raise", under="ignore"):
+            every = estimate_plot(grid, np.full(3, chance), doubt=doubt, named=named)
+        assert 0 <= every.low <= every.high <= 3

@@ -18,6 +18,7 @@ from fieldmon.monitoring.history import BeliefSettings, in_sight
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler as sampler_of
 from fieldmon.samplers.base import NEVER, Scene, resting_place
@@ -89,7 +90,7 @@ class Monitor:
     Raises
     ------
     SettingError
-        If there is no such sampler, or `chance` does not fit the plants.
+        If `plot` is none, there is no such sampler, or `chance` does not fit the plants.
 
     Examples
     --------
@@ -115,6 +116,7 @@ class Monitor:
         belief_settings: BeliefSettings | None = None,
         seed: int = 1,
     ) -> None:
+        must_be_plot(plot)
         self.plot = plot
         self.robot = robot or Robot()
         self.belief_settings = belief_settings or BeliefSettings()

@@ -34,6 +34,7 @@ from fieldmon.monitoring.transactions import Store, set_meta
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.plot import must_be_plot
 
 if TYPE_CHECKING:
     import sqlite3
@@ -109,6 +110,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         `risk` ``(n,)`` is one more chance of being infested at the start, from a raster for
         instance, see `fieldmon.infestation.prior.prior_chance`.
         """
+        must_be_plot(plot)
         if settings is None:
             today = local_clock(plot.field).today()
             settings = MonitoringSettings(**({"begins": today} | chosen))

@@ -17,6 +17,7 @@ from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler as sampler_of
 from fieldmon.samplers.adaptive import Adaptive
@@ -148,7 +149,8 @@ def plan_day(
     Raises
     ------
     SettingError
-        If there is no such day or sampler, or the hours do not reach a plant and back.
+        If `plot` is none, there is no such day or sampler, or the hours do not reach a plant and
+        back.
     ObservationError
         If all records are too far away to say anything, or `risk` does not fit the plants.
 
@@ -160,6 +162,7 @@ def plan_day(
     >>> len(day.route)
     156
     """
+    must_be_plot(plot)
     starts = _starts(on, plot)
     decides = sampler_of(sampler) if isinstance(sampler, str) else sampler
     plans = PlanSettings(robot or Robot(), decides)

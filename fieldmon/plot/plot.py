@@ -9,7 +9,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import PlotError
+from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
@@ -267,3 +267,12 @@ class Plot:
         gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
         gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))
         return cls(field, Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go)))
+
+
+def must_be_plot(given: object) -> None:
+    """Raise `SettingError` unless this is a `Plot`: plants alone have no ways between them."""
+    if not isinstance(given, Plot):
+        raise SettingError(
+            f"A plot must be what read_plot or Plot.from_geopandas returns, but it is a "
+            f"{type(given).__name__}. Give the plot itself; its plants are plot.grid."
+        )

@@ -5,6 +5,7 @@ import pytest
 import shapely
 from shapely import MultiPolygon, box
 
+import fieldmon as fm
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, lay
@@ -94,3 +95,14 @@ def test_a_plot_and_all_that_is_worked_out_on_it_say_themselves_in_a_line():
         assert len(repr(thing)) < 80
         assert "array" not in repr(thing)
     assert repr(grid.adjacent) == f"<Csr: {len(grid.adjacent.plant)} plants in lists of {n}>"
+
+
+@pytest.mark.parametrize(
+    "use", [fm.Monitor, fm.plan_day, lambda given: fm.Season.create("s.gpkg", given)]
+)
+def test_plants_alone_or_a_file_are_refused_where_a_plot_is_asked_for(use, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for given, kind in ((Plot.of(FIELD, PLANTING).grid, "PlantGrid"), ("plot.zip", "str")):
+        with pytest.raises(SettingError, match=f"but it is a {kind}. Give the plot itself"):
+            use(given)
+    assert not list(tmp_path.iterdir())

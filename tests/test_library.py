@@ -5,15 +5,21 @@ import doctest
 import importlib
 import inspect
 import os
+import re
 import subprocess
 import sys
 import warnings
-from datetime import date
+from datetime import UTC, date, datetime
+from pathlib import Path
 
+import geopandas as gpd
+import numpy as np
+import pandas as pd
 import pytest
 
 import fieldmon as fm
 from fieldmon.errors import ImportDoubt
+from fieldmon.samplers.sweeps import Bouncy
 from tests.paths import ROOT, SAMPLE_DATA
 
 #: modules in which public functions have their examples
@@ -156,3 +162,87 @@ def test_what_the_library_gives_says_itself_in_one_short_line():
     for given, words in said.items():
         assert repr(given).startswith(words)
         assert len(repr(given)) < 100
+
+
+@pytest.fixture(scope="module")
+def plot():
+    return fm.read_plot(SAMPLE_DATA / "paran_estate.zip", feature="Gate")
+
+
+#: what a program may hand over by mistake, and what is said of it
+MISTAKES = {
+    "hours as text": (lambda _: fm.Robot(hours="4"), "The robot's hours must be a number"),
+    "no hours": (lambda _: fm.Robot(hours=None), "hours must be a number, but it is None"),
+    "a spacing as text": (lambda _: fm.Planting(row_spacing_m="4"), "row_spacing_m must be a n"),
+    "a rate as text": (lambda _: fm.Spread("0.5"), "rate_per_day must be a number"),
+    "a robot's hours alone": (lambda plot: fm.plan_day(plot, robot=4), "must be a Robot, but it"),
+    "no sampler": (lambda plot: fm.plan_day(plot, sampler=None), "own with a method walk, but it"),
+    "a sampler's class": (lambda plot: fm.Monitor(plot, sampler=Bouncy), "walk, but it is a"),
+    "no time": (lambda plot: fm.plan_day(plot, on=pd.NaT), "as 2026-11-18, but it is 'NaT'"),
+    "records as a table": (lambda plot: fm.plan_day(plot, pd.DataFrame()), "must be Observations"),
+    "records as a path": (lambda plot: fm.plan_day(plot, "mites.csv"), "near=plot"),
+    "a risk of words": (lambda plot: fm.plan_day(plot, risk=["a"]), "risk map must hold numbers"),
+    "a chance of words": (lambda plot: fm.Monitor(plot, chance="x"), "must hold numbers, but 'x'"),
+    "a chance of nobody": (
+        lambda plot: fm.Monitor(plot, chance=np.full(plot.n_plants, np.nan)), "plant 0 of",
+    ),
+    "a seed of words": (lambda plot: fm.Monitor(plot, seed="x"), "seed must be a whole number"),
+    "a robot of Monitor": (lambda plot: fm.Monitor(plot, robot=3), "must be a Robot, but it is 3"),
+    "an outline as None": (lambda _: fm.Plot.from_geopandas(None), "must be a GeoDataFrame"),
+    "an outline as a table": (
+        lambda _: fm.Plot.from_geopandas(pd.DataFrame({"a": [1]})), "it is a DataFrame",
+    ),
+    "no geometry": (
+        lambda _: fm.Plot.from_geopandas(gpd.GeoDataFrame({"a": [1]})), "which column holds",
+    ),
+    "a file as a number": (lambda _: fm.read_plot(3), "A file must be given by its path"),
+    "a plot as text": (lambda _: fm.read_records("a.csv", near="x"), "A plot must be what"),
+    "a season's robot": (lambda plot: fm.Season.create("s.gpkg", plot, robot=4), "a Robot, but"),
+    "a season's hours": (lambda plot: fm.Season.create("s.gpkg", plot, hours=4), "called 'hours'"),
+    "a season's day": (
+        lambda plot: fm.Season.create("s.gpkg", plot, begins="soon"), "but it is 'soon'",
+    ),
+    "a season's records": (lambda plot: fm.Season.create("s.gpkg", plot, "m.csv"), "Observations"),
+    "a start that is none": (lambda plot: fm.simulate(plot, None), "start must be a Start"),
+}  # fmt: skip
+
+
+@pytest.mark.usefixtures("_here")
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_what_is_handed_over_by_mistake_is_said_in_a_sentence(mistake, plot):
+    call, said = MISTAKES[mistake]
+    with pytest.raises(fm.FieldmonError, match=re.escape(said)):
+        call(plot)
+    assert not Path("s.gpkg").exists()
+
+
+@pytest.mark.parametrize("found", ["yes", "no", 1, float("nan"), np.nan])
+def test_a_find_is_true_false_or_none_and_nothing_else_is_taken_for_one(found, plot):
+    with fm.Monitor(plot, "naive").day() as day:
+        day.ask()
+        with pytest.raises(fm.ObservationError, match="True, False, or None"):
+            day.tell(found)
+        day.tell(np.False_)
+        assert day.found.tolist() == [False]
+
+
+@pytest.mark.parametrize(
+    "on",
+    [
+        datetime(2026, 11, 18, 5, 30),
+        datetime(2026, 11, 18, 3, 30, tzinfo=UTC),
+        pd.Timestamp("2026-11-18 03:30", tz="UTC"),
+        np.datetime64("2026-11-18T05:30"),
+        np.datetime64("2026-11-18T05:30:00.000000000"),
+        "2026-11-18 05:30",
+        "2026-11-18T03:30Z",
+    ],
+)
+def test_a_day_starts_at_the_plots_own_time_whatever_zone_it_was_given_in(on, plot):
+    assert fm.plan_day(plot, on=on).route.notes.start == datetime(2026, 11, 18, 5, 30)
+
+
+@pytest.mark.usefixtures("_here")
+def test_a_season_may_begin_on_a_day_given_as_text(plot):
+    season = fm.Season.create("s.gpkg", plot, begins="2026-11-18")
+    assert season.settings.begins == date(2026, 11, 18)

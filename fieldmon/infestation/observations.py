@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import NoneType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
@@ -135,3 +137,11 @@ def usable(observations: Observations, on_day: np.datetime64) -> UsableRecords:
         future=int(np.count_nonzero(future)),
         undated=int(np.count_nonzero(np.isnat(kept.day))),
     )
+
+
+def must_be_records(given: object) -> None:
+    """Raise `SettingError` unless this is `Observations`, or None: there are none."""
+    must_be(
+        "Records must be Observations", given, (Observations, NoneType),
+        "Read them with read_records(path, near=plot).",
+    )  # fmt: skip

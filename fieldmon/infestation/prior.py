@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 from scipy.special import expit, logit
 
+from fieldmon.compute.arguments import must_hold_numbers, numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import MOST_CHANCE
@@ -96,6 +97,7 @@ class PriorSettings:
     leaf_detection: float = 0.1
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "The prior's")
         above_0 = {"edge_depth_m", "path_depth_m", "half_count", "reach_m", "half_life_days"}
         from_0 = {"accuracy_m", "undated_days"}
         for name in (each.name for each in fields(self)):
@@ -242,7 +244,8 @@ def start_infested(
     return drawn
 
 
-def _checked_risk(grid: PlantGrid, risk: Floats) -> Floats:
+def _checked_risk(grid: PlantGrid, given: Floats) -> Floats:
+    risk = np.atleast_1d(numbers("A risk map", given))
     if len(risk) != len(grid):
         raise ObservationError(
             worded(

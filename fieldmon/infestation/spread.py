@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.compute.jit import loop
 from fieldmon.compute.random_streams import coin, coin_bits, coin_limit
 from fieldmon.errors import SettingError
@@ -43,6 +44,7 @@ class Spread:
     arrivals_per_day: float = 0.0
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "The spread's")
         for name in ("rate_per_day", "arrivals_per_day"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise SettingError(

@@ -6,11 +6,13 @@ The command line and the app read in the same way, by `fieldmon.io.prepare`, and
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.errors import ImportDoubt
 from fieldmon.io.import_report import Severity
-from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
 from fieldmon.io.prepare import prepare, records_on
 from fieldmon.io.read import read_plots as read_fields
 from fieldmon.io.read import read_weather as read_weather_file
@@ -20,6 +22,7 @@ from fieldmon.io.readers.pest_file import pest_of
 from fieldmon.io.readers.weather_options import WeatherOptions
 from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources, RecordSource
 from fieldmon.plot.local_clock import utc_now
+from fieldmon.plot.plot import must_be_plot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -93,6 +96,7 @@ def read_plot(
     >>> plot.n_plants, plot.grid.n_rows
     (3825, 45)
     """
+    _must_be_file(source)
     drawn: dict[str, Any] = {name: options.pop(name) for name in _DRAWN if name in options}
     drawn["guess_blocks"] = options.pop("guess_blocks", "no") in {"yes", "true", "1"}
     chosen = _chosen(PlotOptions(), options)
@@ -116,6 +120,7 @@ def read_plots(source: Source, **options: str) -> tuple[Field, ...]:
     >>> [field.name for field in fm.read_plots("sample_data/paran_estate.zip")][:4]
     ['Gate', 'Pond', 'Wadi', 'Big field']
     """
+    _must_be_file(source)
     read = read_fields(source, _chosen(PlotOptions(), options))
     _warn(read.messages)
     return read.value
@@ -159,6 +164,8 @@ def read_records(source: Source, near: Plot, **options: str) -> Observations:
     >>> len(records), int((records.present == 1).sum())
     (329, 86)
     """
+    _must_be_file(source)
+    must_be_plot(near)
     read = records_on(near, RecordSource(source, _chosen(RecordOptions(), options)))
     _warn(read.messages)
     return read.value
@@ -206,6 +213,8 @@ def read_inspections(source: Source, plot: Plot, **options: str) -> Inspections:
     >>> seen.plant.tolist(), seen.result.tolist()
     ([17, 18], [1, 0])
     """
+    _must_be_file(source)
+    must_be_plot(plot)
     wanted = _chosen(InspectionOptions(), options).on(plot.field)
     read = read_on_grid(source, plot.grid, wanted)
     _warn(read.messages)
@@ -232,6 +241,7 @@ def read_pest(said: str) -> Pest:
     >>> [stage.name for stage in mite.stages]
     ['egg', 'larva', 'protonymph', 'deutonymph']
     """
+    must_be("A pest must be its name or its file's path", said, str, 'Give "spider-mite".')
     return pest_of(said)
 
 
@@ -275,10 +285,20 @@ def read_weather(source: Source, plot: Plot, **options: str) -> Weather:
     >>> fm.read_weather("station.csv", plot).high_c.round(1).tolist()
     [20.0, 21.1]
     """
+    _must_be_file(source)
+    must_be_plot(plot)
     wanted = _chosen(WeatherOptions(now=utc_now()), options).on(plot.field)
     read = read_weather_file(source, wanted)
     _warn(read.messages)
     return read.value
+
+
+def _must_be_file(source: object) -> None:
+    """Raise `SettingError` unless this is a file: its path, or what was uploaded."""
+    must_be(
+        "A file must be given by its path", source, (str, Path, Upload, tuple),
+        'Give "estate.zip", or Path("estate.zip").',
+    )  # fmt: skip
 
 
 def _chosen(options: Any, more: dict[str, str]) -> Any:  # noqa: ANN401 - options of any kind

@@ -6,10 +6,12 @@ Nothing is kept on disk; see `fieldmon.monitoring.season_file` for a season that
 from __future__ import annotations
 
 from dataclasses import replace
+from types import NoneType
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be, numbers, shown
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
@@ -19,8 +21,8 @@ from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import must_be_plot
-from fieldmon.plot.robot import Robot
-from fieldmon.samplers import sampler as sampler_of
+from fieldmon.plot.robot import Robot, must_be_robot
+from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
@@ -117,12 +119,18 @@ class Monitor:
         seed: int = 1,
     ) -> None:
         must_be_plot(plot)
+        must_be_robot(robot)
+        must_be(
+            "What insects are taken to do must be BeliefSettings", belief_settings,
+            (BeliefSettings, NoneType), "Give BeliefSettings(spread=Spread(0.3)).",
+        )  # fmt: skip
+        must_be("A seed must be a whole number", seed, (int, np.integer), "Give seed=1.")
         self.plot = plot
         self.robot = robot or Robot()
         self.belief_settings = belief_settings or BeliefSettings()
         self.day_number = 0
-        self._sampler = sampler_of(sampler) if isinstance(sampler, str) else sampler
-        self._streams = RandomStreams(seed)
+        self._sampler = sampler_or_name(sampler)
+        self._streams = RandomStreams(int(seed))
         first = _first_chance(plot, chance)
         self._belief: Belief = self.belief_settings.first_morning(plot.grid, first)
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
@@ -309,13 +317,18 @@ class MonitorDay:
         Raises
         ------
         ObservationError
-            If no plant was asked for, or the clock goes backwards.
+            If no plant was asked for, `found` is neither, or the clock goes backwards.
         """
         stop = self._asked
         if stop is None:
             raise ObservationError("A plant must be asked for before it is told of. Call ask().")
+        if found is not None and not isinstance(found, bool | np.bool_):
+            raise ObservationError(
+                "What was seen must be True, False, or None where nobody could look, but it is "
+                f"{shown(found)}."
+            )
         done_s = stop.arrive_s + stop.inspect_s
-        if at_s is not None and at_s < self._since_s:
+        if at_s is not None and not at_s >= self._since_s:
             raise ObservationError(
                 f"The day's clock must go on, but it was {self._since_s:.0f} s and is {at_s:.0f} s."
             )
@@ -380,10 +393,16 @@ def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.
     if chance is None:
         none, day = Observations.none(), np.datetime64(local_clock(plot.field).today())
         return prior_chance(plot.grid, plot.field, none, day, PriorSettings())
-    given = np.asarray(chance, np.float64)
-    if given.shape != (len(plot.grid),) or not ((given >= 0) & (given <= 1)).all():
+    given = numbers("A chance map", chance)
+    if given.shape != (len(plot.grid),):
         raise SettingError(
-            f"A chance map must have a chance in 0..1 for each of {len(plot.grid)} plants, "
-            f"but it has the shape {given.shape}."
+            f"A chance map must have a chance for each of {len(plot.grid)} plants, but it has the "
+            f"shape {given.shape}."
         )
-    return given
+    if not (wrong := ~((given >= 0) & (given <= 1))).any():
+        return given
+    plant = int(np.argmax(wrong))
+    raise SettingError(
+        f"A chance map must hold chances in 0..1, but plant {plant} of {len(plot.grid)} has "
+        f"{given[plant]:g}."
+    )

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from pathlib import Path
+from types import NoneType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.observations import Observations, must_be_records
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     derived_layers,
@@ -29,7 +31,7 @@ from fieldmon.monitoring.season_estimates import SeasonEstimates
 from fieldmon.monitoring.season_plans import SeasonPlans
 from fieldmon.monitoring.season_records import SeasonRecords
 from fieldmon.monitoring.season_treatments import SeasonTreatments
-from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json
+from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, settings_from
 from fieldmon.monitoring.transactions import Store, set_meta
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.plot.assumed import Assumed
@@ -111,9 +113,14 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         instance, see `fieldmon.infestation.prior.prior_chance`.
         """
         must_be_plot(plot)
+        must_be_records(observations)
+        must_be(
+            "A season's settings must be MonitoringSettings", settings,
+            (MonitoringSettings, NoneType), "Or give them one by one, as robot=Robot(hours=4).",
+        )  # fmt: skip
         if settings is None:
             today = local_clock(plot.field).today()
-            settings = MonitoringSettings(**({"begins": today} | chosen))
+            settings = settings_from({"begins": today} | chosen)
         if observations is None:
             observations = Observations.none()
         begins = np.datetime64(settings.begins, "D")

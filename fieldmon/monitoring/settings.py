@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from datetime import date, time
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.arguments import day_of, must_be, must_be_known, of_kind
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
@@ -83,6 +84,10 @@ class MonitoringSettings:
     language: str = ""
 
     def __post_init__(self) -> None:
+        for name, (kind, instead) in _KINDS.items():
+            must_be(
+                f"A season's {name} must be {of_kind(kind)}", getattr(self, name), kind, instead
+            )
         if self.harvest is not None and self.harvest < self.begins:
             raise SettingError(
                 worded(
@@ -180,6 +185,37 @@ def _living(pest: Pest, weather: Weather | None, begins: date) -> PestInWeather:
 def seconds(at: time) -> float:
     """Return the seconds since midnight."""
     return at.hour * 3600.0 + at.minute * 60.0 + at.second
+
+
+#: of what kind settings are that a caller's program may hand over, and what to give
+_KINDS: dict[str, tuple[type, str]] = {
+    "begins": (date, "Give date(2026, 11, 18)."),
+    "starts": (time, "Give time(6)."),
+    "robot": (Robot, "Give Robot(hours=4), or scout()."),
+    "sampler": (str, 'Give its name, as "adaptive".'),
+    "prior": (PriorSettings, "Give PriorSettings(background_chance=0.01)."),
+    "belief": (BeliefSettings, "Give BeliefSettings(spread=Spread(0.3))."),
+    "seed": (int, "Give seed=1."),
+}
+
+
+def settings_from(chosen: dict[str, Any]) -> MonitoringSettings:
+    """Return settings from a caller's choices by name; days may be given as ``"2026-11-18"``.
+
+    Raise `SettingError` where there is no such setting, or it is of another kind.
+
+    Examples
+    --------
+    >>> settings_from({"begins": "2026-11-18"}).begins
+    datetime.date(2026, 11, 18)
+    """
+    must_be_known("A season's settings", chosen, [each.name for each in fields(MonitoringSettings)])
+    days = {
+        name: day_of(f"A season's {name}", chosen[name])
+        for name in ("begins", "harvest")
+        if name in chosen
+    }
+    return MonitoringSettings(**(chosen | days))
 
 
 def as_json(settings: MonitoringSettings) -> dict[str, str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.observations import Observations, must_be_records
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.writers.geojson import RouteNotes
@@ -18,8 +18,8 @@ from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import must_be_plot
-from fieldmon.plot.robot import Robot
-from fieldmon.samplers import sampler as sampler_of
+from fieldmon.plot.robot import Robot, must_be_robot
+from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Sampler, Scene
 
@@ -137,7 +137,7 @@ def plan_day(
         Dated pest records; None: every plant has the chance of a plot without any.
     on
         The day, as ``"2026-11-18"``, a date, or a datetime that says when work starts (else
-        06:00); None: today, in the time zone in which the plot lies.
+        06:00), in the plot's time zone unless it names one; None: today, there.
     robot
         Who inspects; None: the usual `Robot`, 12 h. `scout()` is a person on foot.
     sampler
@@ -163,8 +163,10 @@ def plan_day(
     156
     """
     must_be_plot(plot)
+    must_be_robot(robot)
+    must_be_records(records)
     starts = _starts(on, plot)
-    decides = sampler_of(sampler) if isinstance(sampler, str) else sampler
+    decides = sampler_or_name(sampler)
     plans = PlanSettings(robot or Robot(), decides)
     given = Observations.none() if records is None else records
     today = first_day(plot, given, np.datetime64(starts.date(), "D"), plans, risk)
@@ -183,15 +185,19 @@ def plan_day(
 
 def _starts(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> datetime:
     """Return the local date and time at which work starts."""
-    if isinstance(on, datetime):
-        return on
+    clock = local_clock(plot.field)
+    if on is None:
+        return datetime.combine(clock.today(), _STARTS)
+    text = str(on)
     try:
-        day = local_clock(plot.field).today() if on is None else date.fromisoformat(str(on))
+        if len(text) <= len("2026-11-18"):
+            return datetime.combine(date.fromisoformat(text), _STARTS)
+        moment = datetime.fromisoformat(text)
     except ValueError as error:
         raise SettingError(
-            worded("A day must be as 2026-11-18, but it is {on!r}.", on=on)
+            worded("A day must be as 2026-11-18, but it is {on!r}.", on=text)
         ) from error
-    return datetime.combine(day, _STARTS)
+    return moment if moment.tzinfo is None else clock.at(moment)
 
 
 def first_day(

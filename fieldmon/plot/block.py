@@ -10,6 +10,7 @@ import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 from shapely.ops import split
 
+from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.row_detection import main_bearing
@@ -55,6 +56,7 @@ class Block:
     plant_spacing_m: float | None = None
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "The block's")
         if self.area.is_empty or not self.area.is_valid:
             raise PlotError(
                 worded(

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
 
@@ -53,6 +54,18 @@ def boundary_and_plants(frame: GeoDataFrame) -> tuple[MultiPolygon | None, NDArr
     PlotError
         If it is empty, holds several areas, or anything but areas and points.
     """
+    import geopandas  # noqa: PLC0415 - as above
+
+    must_be(
+        "A plot's area and plants must be a GeoDataFrame", frame,
+        (geopandas.GeoDataFrame, geopandas.GeoSeries),
+        "Make one: geopandas.GeoDataFrame(df, geometry=..., crs=4326), or read a file with it.",
+    )  # fmt: skip
+    if isinstance(frame, geopandas.GeoDataFrame) and frame.active_geometry_name is None:
+        raise SettingError(
+            "A GeoDataFrame must say which column holds its geometry, but none is set. "
+            'Set it first: gdf.set_geometry("geometry"), for instance.'
+        )
     if frame.crs is None:
         raise SettingError(
             "A GeoDataFrame must say its coordinate system, but its crs is None. "

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon, Polygon
 
+from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.compute.arrays import offsets, runs
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
@@ -92,6 +93,7 @@ class Planting:
     half_canopy_m: float | None = None
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "The planting's")
         if self.half_canopy_m is not None and not 0.0 <= self.half_canopy_m <= 10.0:
             raise SettingError(
                 worded(

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import worded
-from fieldmon.errors import PlotError, SettingError
+from fieldmon.errors import PlotError
 from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, check_apart, grid_from_plants, lay, planting_in
@@ -271,8 +272,7 @@ class Plot:
 
 def must_be_plot(given: object) -> None:
     """Raise `SettingError` unless this is a `Plot`: plants alone have no ways between them."""
-    if not isinstance(given, Plot):
-        raise SettingError(
-            f"A plot must be what read_plot or Plot.from_geopandas returns, but it is a "
-            f"{type(given).__name__}. Give the plot itself; its plants are plot.grid."
-        )
+    must_be(
+        "A plot must be what read_plot or Plot.from_geopandas returns", given, Plot,
+        "Give the plot itself; its plants are plot.grid.",
+    )  # fmt: skip

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from types import NoneType
 from typing import NamedTuple
 
+from fieldmon.compute.arguments import must_be, must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -129,6 +131,7 @@ class Robot:
     length_m: float | None = None
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "The robot's")
         for name in ("speed_m_s", "look_s", "hours"):
             _must(name, getattr(self, name), "above 0", getattr(self, name) > 0)
         for name in ("row_change_s", "turn_180_s", "stop_s"):
@@ -228,6 +231,14 @@ def rover() -> Robot:
     0.58
     """
     return Robot(width_m=0.58, length_m=0.8)
+
+
+def must_be_robot(given: object) -> None:
+    """Raise `SettingError` unless this is a `Robot`, or None: the usual one."""
+    must_be(
+        "Who inspects must be a Robot", given, (Robot, NoneType),
+        "Give Robot(hours=4), or scout() for a person on foot.",
+    )  # fmt: skip
 
 
 def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check

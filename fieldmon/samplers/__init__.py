@@ -11,6 +11,7 @@ from fieldmon.samplers.registry import (
     kind_of,
     of_equal_times,
     sampler,
+    sampler_or_name,
 )
 
 __all__ = [
@@ -21,4 +22,5 @@ __all__ = [
     "kind_of",
     "of_equal_times",
     "sampler",
+    "sampler_or_name",
 ]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.arguments import shown
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -122,6 +123,21 @@ def sampler(name: str, **settings: Any) -> Sampler:  # noqa: ANN401 - each sampl
     """
     kind = kind_of(name)
     return kind.load()(**{**kind.settings, **settings})
+
+
+def sampler_or_name(given: str | Sampler) -> Sampler:
+    """Return the sampler of a name, or one of a caller's own as it is.
+
+    Raise `SettingError` if there is none of that name, or it is no sampler.
+    """
+    if isinstance(given, str):
+        return sampler(given)
+    if isinstance(given, type) or not callable(getattr(given, "walk", None)):
+        raise SettingError(
+            f"A sampler must be one of {', '.join(SAMPLERS)}, or one of your own with a method "
+            f"walk, but it is {shown(given)}."
+        )
+    return given
 
 
 def of_equal_times() -> dict[str, SamplerKind]:

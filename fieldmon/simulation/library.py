@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from types import NoneType
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.plot.robot import Robot
-from fieldmon.samplers import sampler as sampler_of
+from fieldmon.plot.plot import must_be_plot
+from fieldmon.plot.robot import Robot, must_be_robot
+from fieldmon.samplers import sampler_or_name
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
-from fieldmon.simulation.start import season_start
+from fieldmon.simulation.start import Start, season_start
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +21,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.metrics import SeasonMetrics
-    from fieldmon.simulation.start import Start
 
 
 def draw_start(
@@ -50,6 +52,7 @@ def draw_start(
     >>> bool(100 < start.infested.sum() < 300)
     True
     """
+    must_be_plot(plot)
     return season_start(plot.grid, chance, share, RandomStreams(seed))
 
 
@@ -101,7 +104,14 @@ def simulate(
     >>> season.left.shape
     (3,)
     """
-    decides = sampler_of(sampler) if isinstance(sampler, str) else sampler
+    must_be_plot(plot)
+    must_be_robot(robot)
+    must_be("A season's start must be a Start", start, Start, "Draw one with draw_start.")
+    must_be(
+        "How a season is simulated must be SeasonSettings", settings, (SeasonSettings, NoneType),
+        "Give SeasonSettings(n_days=25).",
+    )  # fmt: skip
+    decides = sampler_or_name(sampler)
     chosen, streams = settings or SeasonSettings(), RandomStreams(seed)
     return season_metrics(
         simulated_days(plot.aisles, robot or Robot(), decides, start, chosen, streams)

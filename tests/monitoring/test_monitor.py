@@ -136,7 +136,7 @@ def test_a_clock_that_goes_backwards_is_refused(plot):
 
 @pytest.mark.parametrize("chance", [np.zeros(3), np.full(240, 2.0)])
 def test_a_chance_map_that_does_not_fit_is_refused(plot, chance):
-    with pytest.raises(SettingError, match="240 plants"):
+    with pytest.raises(SettingError, match="240"):
         Monitor(plot, chance=chance)
 
 

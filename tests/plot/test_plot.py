@@ -102,7 +102,7 @@ def test_a_plot_and_all_that_is_worked_out_on_it_say_themselves_in_a_line():
 )
 def test_plants_alone_or_a_file_are_refused_where_a_plot_is_asked_for(use, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    for given, kind in ((Plot.of(FIELD, PLANTING).grid, "PlantGrid"), ("plot.zip", "str")):
-        with pytest.raises(SettingError, match=f"but it is a {kind}. Give the plot itself"):
+    for given, kind in ((Plot.of(FIELD, PLANTING).grid, "a PlantGrid"), ("plot.zip", "'plot.zip'")):
+        with pytest.raises(SettingError, match=f"but it is {kind}. Give the plot itself"):
             use(given)
     assert not list(tmp_path.iterdir())

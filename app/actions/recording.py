@@ -29,6 +29,8 @@ from . import acting, treating
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fieldmon.monitoring.batches import Recorded
+
     from ..state.choices import Choices
 
 # batches shown, the last ones
@@ -40,7 +42,7 @@ def show(choices: Choices) -> None:
     """Show the ways of recording, and of noting a treatment."""
     st.markdown(f"**{texts.RECORD} · {choices.units.day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
-    _ask_about_contradictions(choices)
+    ask_about_contradictions(choices)
     one, route, file, treat = st.tabs(
         [texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT]
     )
@@ -197,21 +199,27 @@ def _corrected(choices: Choices, copy: Path, name: str) -> str:
     return texts.CORRECTED.format(n=choices.season.take_corrections(copy, name, who))
 
 
-def _recorded(choices: Choices, results: Inspections, source: str) -> str:
-    """Record results; those that contradict what is recorded wait until somebody says so."""
+def recorded(choices: Choices, results: Inspections, source: str) -> Recorded | None:
+    """Record results; None where some contradict what is recorded: they wait for a word on it."""
     try:
         done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
         unconfirmed.keep(Unconfirmed(choices.key, results, source))
-        return ""
+        return None
     unconfirmed.drop()
-    return texts.RECORDED.format(new=done.new, known=done.known)
+    return done
+
+
+def _recorded(choices: Choices, results: Inspections, source: str) -> str:
+    """Record results, and say what was done."""
+    done = recorded(choices, results, source)
+    return "" if done is None else texts.RECORDED.format(new=done.new, known=done.known)
 
 
 # -- what contradicts
 
 
-def _ask_about_contradictions(choices: Choices) -> None:
+def ask_about_contradictions(choices: Choices) -> None:
     """Show what waits because it contradicts what is recorded, and what can be done with it."""
     waiting = unconfirmed.of(choices.key)
     if waiting is None:

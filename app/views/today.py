@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import asking_photos, assuming, beginning, choosing, morning, picking
+from ..actions import (
+    asking_photos,
+    assuming,
+    beginning,
+    choosing,
+    morning,
+    picking,
+    recording_here,
+)
 from ..show import cautions, day, map_layers, plant_history
 from ..state import chosen_day, wishes
 from ..state.chosen_day import DayRoute
@@ -30,6 +38,7 @@ def show(choices: Choices) -> None:
     picked = wishes.picked(choices.place)
     plant_history.want(choices, content, partial(picking.take, choices), picked=picked)
     picking.show(choices, plan)
+    recording_here.show(choices)
     plant_history.show_chosen(choices)
     asking_photos.show(choices)
     day.route_figures(choices, plan)

@@ -100,11 +100,6 @@ class Hand:
         said = self.page.get_by_text("Chance of infestation now")
         return said.or_(self.page.get_by_text("History of a plant")).count() > 0
 
-    def row_said(self) -> bool:
-        """Return whether the box for the row to be recorded is filled in."""
-        box = self.page.get_by_role("spinbutton", name="Row").locator("visible=true").first
-        return box.input_value() != ""
-
 
 # -- as they are done now
 
@@ -138,11 +133,8 @@ def gpx_now(hand: Hand) -> None:
 
 def record_now(hand: Hand) -> None:
     """A find on one plant."""
-    hand.button("Record finds")
-    hand.plant(hand.row_said)
-    found = hand.page.locator("[data-testid=stForm]").get_by_role("radio", name="found", exact=True)
-    hand.click(found.locator("visible=true"))
-    hand.click(_record(hand))
+    hand.plant(hand.history)
+    hand.button("Record as found")
     hand.page.get_by_text("1 recorded").first.wait_for(timeout=_MOST_MS)
 
 

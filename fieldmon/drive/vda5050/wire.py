@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import socket
+import threading
 import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
@@ -14,9 +15,13 @@ from fieldmon.errors import SettingError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from paho.mqtt.reasoncodes import ReasonCode
+
 _KEEP_ALIVE_S = 15
 # a lost connection is sought again after so long, and twice as long each time, up to
 _SEEK_S, _SEEK_AT_MOST_S = 1.0, 10.0
+# so long a broker may take until it says that one is let in and will hear
+_ANSWERS_S = 30.0
 
 
 class Broker(NamedTuple):
@@ -85,6 +90,7 @@ class Wire:
     """One end of a robot's topics; needs ``pip install fieldmon[robot]``.
 
     Whatever is sent while there is no connection is sent when there is one again (at least once).
+    Once it is made it hears: what others send from then on comes to it.
 
     Parameters
     ----------
@@ -98,6 +104,11 @@ class Wire:
         Kinds of messages that come to this end.
     will
         Kind and content of what the broker says if the connection breaks; None: nothing.
+
+    Raises
+    ------
+    SettingError
+        If no broker answers, or it does not let one in.
     """
 
     def __init__(
@@ -116,7 +127,7 @@ class Wire:
         self._hears = [f"{self._topic}/{kind}" for kind in hears]
         client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=name, clean_session=False)
         client.on_message = self._on_message
-        client.on_connect = self._on_connect
+        client.on_connect, client.on_subscribe = self._on_connect, self._on_subscribe
         client.on_socket_open = _at_once
         client.reconnect_delay_set(_SEEK_S, _SEEK_AT_MOST_S)
         if broker.user is not None:
@@ -128,6 +139,7 @@ class Wire:
         self.client: Any = client
         #: called whenever there is a connection again
         self.connected: Callable[[], None] = lambda: None
+        self._answered, self._refused = threading.Event(), ""
         try:
             client.connect(broker.host, broker.port, _KEEP_ALIVE_S)
         except OSError as error:
@@ -136,6 +148,14 @@ class Wire:
                 f"({error}). Start one (docs: drive), or give --broker HOST:PORT."
             ) from error
         client.loop_start()
+        if not self._answered.wait(_ANSWERS_S):
+            self._refused = f"it said nothing for {_ANSWERS_S:.0f} s"
+        if self._refused:
+            self.close()
+            raise SettingError(
+                f"The MQTT broker at {broker.host}, port {broker.port}, must let us in, but "
+                f"{self._refused}. Give --broker mqtt://USER:PASSWORD@HOST:PORT as it knows you."
+            )
 
     def send(self, kind: str, data: bytes, *, kept: bool = False) -> None:
         """Send a message; `kept`: whoever comes later hears the last of its kind."""
@@ -146,10 +166,27 @@ class Wire:
         self.client.disconnect()
         self.client.loop_stop()
 
-    def _on_connect(self, client: Any, *_: object) -> None:  # noqa: ANN401 - paho's own
-        for topic in self._hears:
-            client.subscribe(topic, qos=1)
+    def _on_connect(
+        self, _client: object, _data: object, _flags: object, said: ReasonCode, *_: object
+    ) -> None:
+        if said.is_failure:
+            self._answer([said])
+            return
+        if self._hears:
+            self.client.subscribe([(topic, 1) for topic in self._hears])
+        else:
+            self._answer([])
         self.connected()
+
+    def _on_subscribe(
+        self, _client: object, _data: object, _number: int, said: list[ReasonCode], *_: object
+    ) -> None:
+        self._answer(said)
+
+    def _answer(self, said: list[ReasonCode]) -> None:
+        """Take a broker's answer: codes, of which some may refuse."""
+        self._refused = next((f'it said "{one}"' for one in said if one.is_failure), "")
+        self._answered.set()
 
     def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
         kind = message.topic.rpartition("/")[2]

@@ -1,6 +1,7 @@
 """Brokers as they are named, and messages over connections that break."""
 
 import builtins
+import socket
 
 import pytest
 
@@ -44,6 +45,37 @@ def test_without_a_client_it_is_said_how_to_get_one(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", missing)
     with pytest.raises(SettingError, match=r"fieldmon\[robot\]"):
         Wire(Broker(), "a", ROBOT, ())
+
+
+def test_who_is_made_hears_what_is_sent_from_then_on(broker):
+    for name in range(20):
+        one = Wire(broker, f"new {name}", ROBOT, ("order", "state"))
+        other = Wire(broker, "sends at once", ROBOT, ())
+        other.send("order", b"%d" % name)
+        assert one.heard.get(timeout=180) == ("order", b"%d" % name)
+        one.close()
+        other.close()
+
+
+@pytest.fixture
+def wary(broker_program):
+    """Return a broker that lets nobody in without a password."""
+    with broker_program("allow_anonymous false\n") as found:
+        yield found
+
+
+@pytest.mark.parametrize("who", [(None, None), ("robot", "wrong")])
+def test_a_broker_that_does_not_let_one_in_is_said(wary, who):
+    with pytest.raises(SettingError, match=r'must let us in, but it said "Not authorized"'):
+        Wire(Broker(wary.host, wary.port, *who), "a", ROBOT, ("order",))
+
+
+def test_a_broker_that_says_nothing_is_said(monkeypatch):
+    monkeypatch.setattr("fieldmon.drive.vda5050.wire._ANSWERS_S", 0.2)
+    with socket.create_server(("127.0.0.1", 0)) as mute:
+        broker = Broker("127.0.0.1", mute.getsockname()[1])
+        with pytest.raises(SettingError, match="it said nothing for 0 s"):
+            Wire(broker, "a", ROBOT, ())
 
 
 def test_what_is_sent_while_the_line_is_cut_arrives(broker):

@@ -1,0 +1,64 @@
+"""The plant that was tapped, recorded where it is shown: one press says what was seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import streamlit as st
+
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.plot.grid import row_label
+
+from ..show import plant_history
+from ..state import notices
+from ..words import texts
+from . import recording
+
+if TYPE_CHECKING:
+    from ..state.choices import Choices
+
+# what was recorded here last: of which season, as which batch
+_LAST = "recorded here"
+
+
+def show(choices: Choices) -> None:
+    """Offer to record the plant that was tapped as found or as clean, and to take it back.
+
+    The buttons record what they stood beside: the plant and the day that were shown.
+    """
+    plants = plant_history.tapped(choices)
+    ahead = choices.today is not None and choices.on > choices.today
+    if choices.season is None or ahead or not plants:
+        return
+    label = row_label(choices.plot.grid, np.array(plants))
+    st.markdown(texts.HERE.format(row=int(label.line[0]), plant=int(label.number[0])))
+    with st.container(horizontal=True, key="record_here"):
+        for result in (FOUND, CLEAN):
+            st.button(texts.HERE_RESULTS[result], key=f"here_{result}", on_click=_record,
+                      args=(choices, plants[0], result))  # fmt: skip
+        batch = _last(choices)
+        if batch is not None:
+            st.button(texts.UNDO, key="here_undo", icon=":material/undo:",
+                      on_click=recording.undo, args=(choices, batch))  # fmt: skip
+    recording.ask_about_contradictions(choices)
+
+
+@notices.reporting
+def _record(choices: Choices, plant: int, result: int) -> str:
+    results = Inspections.of(np.array([plant]), np.array([result]), np.datetime64(choices.day))
+    done = recording.recorded(choices, results, texts.TYPED_IN)
+    if done is None:
+        return ""
+    if done.batch is not None:
+        st.session_state[_LAST] = choices.key, done.batch
+    return texts.RECORDED.format(new=done.new, known=done.known)
+
+
+def _last(choices: Choices) -> int | None:
+    """Return the batch that was recorded here last, unless it was taken back."""
+    key, number = st.session_state.get(_LAST, ("", None))
+    if key != choices.key or number is None:
+        return None
+    kept = (one for one in choices.season.batches() if one.number == number and not one.undone)
+    return next((one.number for one in kept), None)

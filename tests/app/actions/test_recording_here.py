@@ -1,0 +1,67 @@
+"""A plant that was tapped is recorded where it is shown, by a press that says what was seen."""
+
+from datetime import date
+
+import pytest
+
+from fieldmon.infestation.inspections import CLEAN, FOUND
+from tests.app.driving import tap, texts_of
+
+
+@pytest.fixture
+def tapped(season_app):
+    """Return the app on Today, where plant 4 of row 3 was tapped."""
+    state = season_app.session_state
+    state["history row"], state["history plant"], state["history tapped"] = 3, 4, True
+    return season_app.run()
+
+
+def keys(app):
+    return {button.key for button in app.button} & {"here_0", "here_1", "here_undo"}
+
+
+def test_nothing_is_offered_before_a_plant_was_tapped_or_a_season_began(app, season_app):
+    assert keys(season_app) == set()
+    app.session_state["history row"], app.session_state["history plant"] = 3, 4
+    app.session_state["history tapped"] = True
+    assert keys(app.run()) == set()
+
+
+@pytest.mark.parametrize("result", [FOUND, CLEAN])
+def test_one_press_records_the_plant_shown_on_the_day_shown(tapped, season, result):
+    assert "**Row 3, plant 4**" in texts_of(tapped)
+    assert not len(season().history.inspections)
+    tap(tapped, f"here_{result}")
+    assert "1 recorded" in tapped.success[0].value
+    kept = season().history.inspections
+    assert kept.result.tolist() == [result]
+    label = season().label
+    (plant,) = kept.plant.tolist()
+    assert (label.line[plant], label.number[plant]) == (3, 4)
+    assert kept.date[0].item() == date(2026, 11, 16)
+
+
+def test_it_is_taken_back_beside_it_and_a_second_press_of_the_same_is_known(tapped, season):
+    assert "here_undo" not in keys(tapped)
+    tap(tapped, "here_1")
+    tap(tapped, "here_1")
+    assert "0 recorded, 1 known" in tapped.success[0].value
+    assert len(season().history.inspections) == 1
+    tap(tapped, "here_undo")
+    assert not len(season().history.inspections)
+    assert "here_undo" not in keys(tapped)
+
+
+def test_what_contradicts_waits_for_a_word(tapped, season):
+    tap(tapped, "here_1")
+    tap(tapped, "here_0")
+    assert season().history.inspections.result.tolist() == [FOUND]
+    assert "contradict" in tapped.warning[0].value
+    tap(tapped, "record_none")
+    assert season().history.inspections.result.tolist() == [FOUND]
+    assert not tapped.warning
+
+
+def test_a_day_that_has_not_come_is_not_recorded(tapped):
+    tapped.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
+    assert keys(tapped) == set()

@@ -257,7 +257,7 @@ class Taken(NamedTuple):
     def line(self, name: str) -> str:
         """Say it."""
         return (
-            f"{name:34s}{self.clicks:3d} clicks{self.seconds:8.1f} s"
+            f"{name:34s}{self.clicks:3d} clicks{self.seconds:8.2f} s"
             f"{self.server_s:8.1f} s server{self.browser_s:8.1f} s browser\n"
         )
 

@@ -12,7 +12,7 @@ from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.monitoring.monitor import Monitor
 from tests.app.driving import until
 from tests.drive.conftest import plot, robot  # noqa: F401
-from tests.drive.vda5050.conftest import ROBOT, _soon, broker  # noqa: F401
+from tests.drive.vda5050.conftest import ROBOT, _soon, broker, broker_program  # noqa: F401
 
 
 @pytest.fixture

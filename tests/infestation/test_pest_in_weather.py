@@ -65,6 +65,15 @@ def test_insects_move_in_their_hours_only():
     assert hours_of_movement(Movement()) == pytest.approx(np.full(24, 1 / 24))
 
 
+def test_the_hours_that_follow_are_of_today_until_midnight_then_of_tomorrow():
+    """It is as many degrees warm as hours have passed since the first midnight."""
+    living = PestInWeather(MITE, hourly(temperature_c=np.arange(48.0)), BEGINS)
+    for starts in (0, 6, 23):
+        hours = living.hours(0, FRAME, starts=starts)
+        by_hand = np.maximum(np.arange(starts, starts + 24.0) - 12.5, 0.0) / 24
+        assert [hour.warmth[0] for hour in hours] == pytest.approx(by_hand)
+
+
 def test_a_wind_from_the_west_goes_along_rows_that_run_east():
     west = daily(temperature_c=[25.0], wind_speed_m_s=[4.0], wind_from_deg=[270.0])
     assert PestInWeather(MITE, west, BEGINS).night(0, FRAME).wind_m_s == (4.0, 0.0)

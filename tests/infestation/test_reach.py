@@ -5,7 +5,17 @@ import pytest
 from hypothesis import given
 
 from fieldmon.infestation.cells import Cells
-from fieldmon.infestation.reach import BESIDE, BEYOND, RADIUS, kernel_means, kernels, reach_of
+from fieldmon.infestation.kernels import DistanceKernel
+from fieldmon.infestation.reach import (
+    BESIDE,
+    BEYOND,
+    RADIUS,
+    kernel_means,
+    kernels,
+    pest_kernels,
+    pest_reach_of,
+    reach_of,
+)
 from fieldmon.plot.layout import rectangle
 from tests.crooked import crooked_grids
 
@@ -54,3 +64,30 @@ def test_the_four_ways_mirror_each_other_and_kernels_reach_as_far_as_they_are_na
     means = kernel_means(size_m)
     assert 2.0 < means[0] < means[1] < means[5] < RADIUS
     assert near.max() > far.max()
+
+
+def test_all_that_a_pest_s_plant_sends_lands_somewhere_and_only_once():
+    for share in (0.0, 0.2, 1.0):
+        kernel = DistanceKernel("exponential", 6.0, long_share=share)
+        reach = pest_reach_of(rectangle(6, 9), kernel)
+        assert reach.anywhere == share
+        assert reach.beside + reach.beyond.sum() + reach.anywhere == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("scale_m", "wind_m_s", "scales_m"),
+    # a wind of 5 m/s doubles how far jumps go
+    [(14.0, (0.0, 0.0), 42.0), (10.0, (3.0, 4.0), 60.0), (28.0, (0.0, 0.0), 84.0)],
+)
+def test_a_pest_s_jumps_are_followed_three_scales_far(scale_m, wind_m_s, scales_m):
+    """Of exponential jumps a twentieth goes farther; on plants 3 m apart."""
+    kernel = DistanceKernel("exponential", scale_m)
+    made = pest_kernels(np.array([3.0, 3.0]), kernel, wind_m_s)
+    followed_m = 3.0 * (made.shape[1] // 2)
+    assert scales_m <= followed_m < scales_m + 3.1
+
+
+def test_short_jumps_are_followed_as_far_as_those_of_any_pest_and_the_farthest_are_cut():
+    for scale_m, plants in ((1.0, RADIUS), (500.0, 30)):
+        made = pest_kernels(np.array([3.0, 3.0]), DistanceKernel("exponential", scale_m))
+        assert made.shape == (6, 2 * plants + 1, 2 * plants + 1)

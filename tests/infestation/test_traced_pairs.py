@@ -100,6 +100,25 @@ def test_a_plot_of_one_plant_is_believed_in_too():
     assert 0.0 < after.chance[0] < 0.1
 
 
+@pytest.mark.parametrize("nights", [0, 3])
+def test_a_clean_look_leaves_what_was_overlooked_and_all_that_hides(nights):
+    """Bayes' rule for one plant alone: nothing beside it tells anything."""
+    told = TracedPairs.of(rectangle(1, 1), np.array([0.2]))
+    for _ in range(nights):
+        told = told.overnight(Spread(0.0, arrivals_per_day=0.1))
+    after = told.learn(np.array([0], np.int32), np.array([False]), LEARNING)
+    hidden = told.chance[0] - told.in_sight.chance[0]
+    assert (hidden > 0.005) == (nights > 0)
+    overlooked = (told.chance[0] - hidden) * (1.0 - 0.84)
+    clean = 1.0 - told.chance[0] + hidden + overlooked
+    parts = hidden * told.shares[0] / clean
+    parts[OVERLOOKED] += overlooked / clean
+    # what each origin counts for has changed by this look as well
+    parts *= after.counts.scale / told.counts.scale
+    assert after.chance[0] == pytest.approx(parts.sum(), rel=1e-5)
+    assert after.shares[0] == pytest.approx(parts / parts.sum(), abs=1e-5)
+
+
 def test_a_day_moves_the_chance_of_jumping_as_bayes_rule_does_and_counts_it_once():
     """Two ways to stand are as good as out of the question, so the rule fits on a line."""
     row, looked_at = rectangle(1, 40), np.array([5, 4, 6], np.int32)

@@ -2,7 +2,9 @@
 
 import shutil
 import sqlite3
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from time import sleep
 
 import pytest
 
@@ -32,6 +34,19 @@ def test_while_another_program_has_the_season_open_both_go_on(path):
     Season(path).record(three_results(on=1), "y")
     assert beside(path) == ["season.gpkg"]
     assert state(path) == 18
+
+
+def test_another_program_that_is_writing_is_waited_for_though_it_keeps_the_season_open(path):
+    season = Season(path)
+    with closing(as_qgis(path)) as qgis, ThreadPoolExecutor(1) as beside:
+        qgis.execute("BEGIN IMMEDIATE")
+        qgis.execute("UPDATE gpkg_contents SET description = 'QGIS was here'")
+        ours = beside.submit(season.record, three_results(), "x")
+        sleep(1.0)
+        assert not ours.done()
+        qgis.execute("COMMIT")
+        ours.result()
+    assert len(Season(path).history.inspections) == 15
 
 
 def test_a_season_whose_changes_lie_elsewhere_says_so_until_it_is_written_again(path, tmp_path):

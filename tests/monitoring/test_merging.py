@@ -93,6 +93,10 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
         numbers = dict(ours.execute("SELECT fid, rows FROM batches").fetchall())
         rows = "SELECT batch, count(*) FROM inspections GROUP BY batch"
         assert numbers == dict(ours.execute(rows).fetchall())
+        # a batch is undone if none of its rows counts any more
+        undone = dict(ours.execute("SELECT fid, undone FROM batches").fetchall())
+        rows = "SELECT batch, count(*) = sum(undone = 1) FROM inspections GROUP BY batch"
+        assert undone == dict(ours.execute(rows).fetchall())
         again = copied(ours)
         merging.merge(again, other)
         assert content(again) == content(ours)

@@ -156,3 +156,21 @@ def test_the_robot_stands_at_the_last_plant_that_was_told_of(plot):
             plant = day.ask().plant
             day.tell(found=found)
             assert day.at == plant
+
+
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_the_plants_ahead_are_those_asked_for_while_nothing_is_found(plot, start, name):
+    with Monitor(plot, name, Robot(hours=0.5), start.chance).day() as day:
+        assert day.ahead(3) == []  # nothing was asked for yet
+        first = day.ask()
+        some, rest = day.ahead(3), day.ahead(10**6)
+        assert some == rest[:3]
+        assert len(rest) > 3
+        asked = [first.plant]
+        day.tell(found=False)
+        assert day.ahead(3) == []
+        while (stop := day.ask()) is not None:
+            assert day.ahead(10**6) == rest[len(asked) :]
+            asked.append(stop.plant)
+            day.tell(found=False)
+        assert asked == [first.plant, *rest]

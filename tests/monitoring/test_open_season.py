@@ -117,6 +117,19 @@ def test_a_copy_with_earlier_results_changes_every_day_after_them(three_weeks, t
     assert as_if_all_was_worked_out_again(three_weeks)
 
 
+@pytest.mark.parametrize("treated", [False, True])
+def test_planning_changes_no_morning_of_a_season_treated_or_not(three_weeks, nights, treated):
+    if treated:
+        three_weeks.treat(on(7), 0.5)
+    season = Season(three_weeks.path)
+    for day in range(19):
+        season.morning(on(day))
+    nights.clear()
+    assert len(season.plan(on(15)).route)  # a new one, which is kept
+    season.morning(on(18))
+    assert nights == []
+
+
 def test_a_day_that_was_only_planned_in_a_copy_has_its_figures(three_weeks, tmp_path):
     copy = Season(shutil.copy(three_weeks.path, tmp_path / "copy.gpkg"))
     copy.plan(on(7))

@@ -92,6 +92,18 @@ def test_aisles_stay_with_who_had_them_unless_the_stated_gain_is_there(season):
     assert not after[1] & before[0]
 
 
+def test_who_joins_takes_no_aisle_that_the_first_has_unless_the_stated_gain_is_there(tmp_path):
+    two, steady = team_of(2, Robot(hours=1.3)), Teamwork(least_gain=1e9)
+    season = a_season(tmp_path / "season.gpkg", team=two[:1], teamwork=steady)
+    season.plan_each(BEGINS)
+    aisle = season.plot.grid.corridor[season.plot.grid.row]
+    begun = set(aisle[season.kept_route(BEGINS, "robot-1")])
+    season.change(replace(season.settings, team=two), season.settings)
+    _, joined = season.plan_each(BEGINS, keep=False)
+    assert len(joined.route)
+    assert not begun & set(aisle[joined.route.plant])
+
+
 def test_what_nobody_of_the_team_did_is_known_and_moves_nobody(season):
     stray = done(season, "robot-1", 3)
     season.record(replace(stray, who=np.full(3, "Ann", object)), "a visitor")

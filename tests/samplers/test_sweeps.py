@@ -58,6 +58,18 @@ def test_bouncy_takes_every_nth_and_in_n_passes_every_plant_once(every):
     assert sorted(worked[:N].tolist()) == list(range(N))
 
 
+@pytest.mark.parametrize("every", [1, 2, 5])
+def test_whichever_plant_a_day_ended_at_the_next_one_goes_on_from_there(every):
+    scene = scene_on(GRID, hours=0.2)
+    for plant in GRID.snake[: N - every]:
+        last = np.full(N, NEVER, np.int32)
+        last[plant] = 0
+        trail = np.array([plant], np.int32)
+        morning = replace(scene, last_inspected=last, day=1, trail=trail)
+        work = plan_work(morning, Bouncy(every))
+        assert PLACE[work.plant[0]] == PLACE[plant] + every
+
+
 def test_bouncy_of_one_is_naive():
     for one, other in zip(days(Bouncy(1), 1.0, 4), days(Naive(), 1.0, 4), strict=True):
         np.testing.assert_array_equal(one, other)

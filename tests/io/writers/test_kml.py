@@ -6,7 +6,8 @@ from xml.etree import ElementTree as ET
 import pyogrio
 
 from fieldmon.io.writers import write_handoff
-from tests.io.writers.handed import CM, apart_m, crooked
+from fieldmon.plot.layout import rectangle
+from tests.io.writers.handed import CM, apart_m, crooked, day
 
 KML = "{http://www.opengis.net/kml/2.2}"
 ORDER = {  # OGC 07-147r2: the sequence of a feature's elements, as far as they stand here
@@ -48,6 +49,15 @@ def test_kml_is_read_by_gdal_to_the_centimetre(tmp_path):
     stops = pyogrio.read_dataframe(path, layer="stops")
     assert apart_m(stops.get_coordinates()[["x", "y"]], plan.route.stops_lonlat()) < CM
     assert stops.plant.astype(int).tolist() == plan.route.plant.tolist()
+    line = pyogrio.read_dataframe(path, layer=plan.title)
+    drawn = line[line.geom_type == "LineString"].get_coordinates()[["x", "y"]]
+    assert apart_m(drawn, plan.route.line_lonlat()) < CM
+
+
+def test_a_way_straight_to_one_plant_is_drawn(tmp_path):
+    plan = day(rectangle(1, 5), hours=0.02, seed=0, by="naive")
+    assert len(plan.route.line_m) == 2
+    (path,) = write_handoff(plan, tmp_path / "route.kml")
     line = pyogrio.read_dataframe(path, layer=plan.title)
     drawn = line[line.geom_type == "LineString"].get_coordinates()[["x", "y"]]
     assert apart_m(drawn, plan.route.line_lonlat()) < CM

@@ -140,6 +140,14 @@ def test_nodes_lie_on_the_earth_where_the_line_is_to_the_centimetre(tmp_path, pl
     assert shapely.distance(corners, placed[nearest]).max() < 0.005
 
 
+def test_nodes_stand_on_the_line_s_corners_to_the_millimetre(plan):
+    """Put on whole millimetres twice, in the plot's frame and in the file's: each may lose half."""
+    graph = graph_of(plan)
+    corners = plan.grid.frame.turned(90.0).xy_m(plan.route.line_lonlat())
+    off_m = np.hypot(*(graph.xy_m[graph.of_vertex] - corners).T)
+    assert off_m.max() < np.sqrt(0.5) * (MM + MM)
+
+
 def test_the_graph_is_the_driven_line_and_no_more(tmp_path, plan):
     root, datum, _ = nav2_of(plan, tmp_path)
     _, _, nodes, edges = loaded(root)

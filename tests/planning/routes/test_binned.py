@@ -57,6 +57,24 @@ def test_between_two_prices_it_fills_hours_that_neither_price_does():
     assert max(proposed, default=0.0) >= 0.97 * max(fitting)
 
 
+@pytest.mark.parametrize("times", [0.125, 8.0])
+def test_where_all_takes_so_many_times_as_long_the_same_is_proposed_for_so_many_hours(times):
+    """A second is worth as many times less; seconds are put into steps all the same."""
+    usual = Robot()
+    other = Robot(
+        speed_m_s=usual.speed_m_s / times, row_change_s=usual.row_change_s * times,
+        turn_180_s=usual.turn_180_s * times, stop_s=usual.stop_s * times,
+        look_s=usual.look_s * times, detection=usual.detects,
+    )  # fmt: skip
+    made = proposals(priced_by(usual), 0.006, 2400.0)
+    again = proposals(priced_by(other), 0.006 / times, 2400.0 * times)
+    for (drawn, prices), (drawn_so, prices_so) in zip(made, again, strict=True):
+        assert drawn_so.reward == pytest.approx(drawn.reward)
+        assert drawn_so.way.tolist() == drawn.way.tolist()
+        assert drawn_so.passes.tolist() == drawn.passes.tolist()
+        assert prices_so * times == pytest.approx(prices)
+
+
 def test_prices_in_aisles_are_about_the_one_it_was_told():
     for _, prices in proposals(priced_by(Robot()), 0.006, 2000.0):
         assert ((prices >= 0.6 * 0.006 - 1e-12) & (prices <= 1.6 * 0.006 + 1e-12)).all()

@@ -143,6 +143,17 @@ def test_rewards_that_are_no_whole_numbers_are_traced_back():
         drive_and_check(reward, budget, best_walk(reward, budget))
 
 
+def test_of_a_row_only_its_far_ends_are_walked_where_only_they_are_worth_it():
+    """Round the two rows beyond: 26 steps; the near end is 2 more, the far one 4."""
+    reward = np.ones((3, 10))
+    reward[0] = [3.0, *[0.0] * 8, 5.0]
+    for budget, held in ((26, 20.0), (28, 23.0), (30, 25.0), (32, 28.0)):
+        walk = best_walk(reward, budget)
+        drive_and_check(reward, budget, walk)
+        assert walk.reward == held
+        assert not ((walk.place[:, 0] == 0) & (np.abs(walk.place[:, 1] - 5.5) < 4)).any()
+
+
 @pytest.mark.parametrize("reward", [np.ones(3), -np.ones((2, 2)), np.ones((0, 3))])
 def test_what_is_no_matrix_of_rewards_is_refused(reward):
     with pytest.raises(SettingError, match="matrix of numbers"):

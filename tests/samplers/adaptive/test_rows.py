@@ -14,6 +14,7 @@ from tests.samplers.adaptive.working import belief_on, scene_with, times_of, wor
 ROWS, PLANTS = 3, 8
 GRID = rectangle(ROWS, PLANTS)
 ONE_TIME = times_of((40.0, 0.84))
+QUICK = times_of((0.5, 0.9))
 TIMES = times_of((20.0, 0.5), (30.0, 0.7), (40.0, 0.84))
 
 
@@ -55,7 +56,9 @@ def subsets(paying):
 
 
 @pytest.mark.parametrize("seed", range(8))
-@pytest.mark.parametrize("times", [ONE_TIME, TIMES], ids=["one time", "three times"])
+@pytest.mark.parametrize(
+    "times", [ONE_TIME, TIMES, QUICK], ids=["one time", "three times", "half a second"]
+)
 def test_each_way_has_the_best_of_all_choices_of_plants(seed, times):
     rng = np.random.default_rng(seed)
     chance, price = rng.beta(0.5, 3.0, len(GRID)), 0.84 / 40 * rng.uniform(0.02, 0.5)

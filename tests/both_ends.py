@@ -10,6 +10,19 @@ PLAIN = ("tests/app/words/", "tests/docs/", "tests/io/parse/", "tests/io/sandbox
 TOGETHER = ("tests/studies/thesis/chapter4/",)
 
 
+#: memory that a worker may come to take, with what it starts
+WORKER_BYTES = 1.5e9
+
+
+def workers(cores, free_bytes):
+    """Return how many workers there should be: four more than cores, where memory allows.
+
+    Each waits now and then, for a browser, a server or the disk. And beside a program that takes
+    all cores two workers would get half of them, six get more.
+    """
+    return max(1, min(cores + 4, int(free_bytes // WORKER_BYTES)))
+
+
 def in_order(items):
     """Sort tests, file by file: first those with a browser, which wait; last those of `PLAIN`."""
     drawn = {one.path for one in items if "browser" in getattr(one, "fixturenames", ())}

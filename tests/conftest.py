@@ -13,7 +13,8 @@ import psutil
 import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
-from tests.both_ends import BothEnds, in_order
+from fieldmon.compute.cores import cores
+from tests.both_ends import BothEnds, in_order, workers
 
 # tests start some hundred processes: what these and the other worker import is made into bytecode
 # once, whatever the environment says
@@ -66,6 +67,11 @@ def thorough(test):
     own = test.obj._hypothesis_internal_use_settings
     test.obj._hypothesis_internal_use_settings = settings(own, max_examples=EXAMPLES)
     test.add_marker(pytest.mark.timeout(0))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers():
+    return workers(cores(), psutil.virtual_memory().available)
 
 
 @pytest.hookimpl(optionalhook=True)

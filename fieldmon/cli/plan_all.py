@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import re
 import signal
 import time
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from fieldmon.cli.waiting import progress
+from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.prepare import lay
@@ -91,7 +91,7 @@ def plan_all(plots: Estate, orders: Orders, day: Day, workers: int | None = None
     if len(left) < len(tasks):
         typer.echo(f"{len(tasks) - len(left)} of {len(tasks)} plots were planned already.")
     try:
-        _plan(left, rows, digests, day, workers or _cores())
+        _plan(left, rows, digests, day, workers or cores())
     finally:
         _write(day.folder, tasks, rows)
     _tell(rows, day.folder)
@@ -271,7 +271,3 @@ def _refusals(refused: list[Row]) -> Iterator[str]:
             continue
         some = ", ".join(row["plot"] for row in same[:_NAMED])
         yield f"refused: {len(same)} plots ({some}, ...): {same[0]['sentence']}"
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -6,11 +6,11 @@ All of them are `concurrent.futures` executors, so that nothing else needs to kn
 from __future__ import annotations
 
 import logging
-import os
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from fieldmon.compute.cores import cores
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -117,8 +117,3 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[Client]:
     )
     with local, Client(local) as client:
         yield client
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

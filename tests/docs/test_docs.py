@@ -151,7 +151,7 @@ def test_the_readme_is_short_and_says_how_to_test():
         "ruff check .",
         "ruff format --check .",
         "mypy",
-        "pytest -n 3",
+        "pytest -n auto",
     ):
         assert f".venv/bin/{part}" in command
     # notebooks are run and pages made by a second command

@@ -85,6 +85,9 @@ def test_different_members_have_their_own_hours_gates_and_eyes():
     check(plan)
     assert np.abs(plan.days[1].route.line_m[0] - plan.days[0].route.line_m[0]).max() > 10.0
     assert (plan.days[2].route.detects == 0.95).all()
+    for day in plan.days:
+        # what each believes is what it was told, whatever its eyes
+        assert day.scene.chance == pytest.approx(chances(plot))
     assert plan.starts_s[1] >= 600.0
 
 

@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.planning.routes.best_route import best
+from fieldmon.planning.routes.best_route import best, bounded
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.robot import Robot, scout
@@ -154,3 +154,24 @@ def test_it_is_never_below_a_route_it_was_told_of():
 def test_what_makes_no_sense_is_refused(reward, seconds):
     with pytest.raises(SettingError, match="must be"):
         best(Aisles.of(rectangle(4, 5)), reward, Robot(), seconds)
+
+
+@pytest.mark.parametrize("hours", [0.3, 0.5, 1.0])
+def test_the_visits_behind_a_bound_hold_what_it_says_and_are_parts_of_a_visit(hours):
+    """Drives at one price that fill the hours; of short days another bound is a little lower."""
+    aisles = Aisles.of(rectangle(8, 9))
+    reward = np.random.default_rng(4).random(72)
+    reward[::5] = 0.0
+    found = bounded(aisles, reward, Robot(hours=hours))
+    assert ((found.visits >= 0.0) & (found.visits <= 1.0)).all()
+    assert (found.visits[::5] == 0.0).all()
+    assert found.visits @ reward == pytest.approx(found.value, rel=0.01)
+
+
+def test_with_time_for_all_the_visits_behind_a_bound_are_all_there_is():
+    aisles, reward = Aisles.of(rectangle(4, 5)), np.linspace(0.1, 1.0, 20)
+    found = bounded(aisles, reward, Robot(hours=12.0))
+    assert found.visits.tolist() == [1.0] * 20
+    assert found.value == pytest.approx(reward.sum())
+    nothing = bounded(aisles, 0.0 * reward, Robot(hours=12.0))
+    assert (nothing.value, nothing.visits.tolist()) == (0.0, [0.0] * 20)

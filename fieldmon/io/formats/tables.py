@@ -16,7 +16,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.wkt import with_shapes
 from fieldmon.io.formats.workbooks import sheet_rows
-from fieldmon.io.import_report import ImportMessage, dropped, seen
+from fieldmon.io.import_report import ImportMessage, doubtful, dropped, seen
 from fieldmon.io.parse.columns import recognised
 from fieldmon.io.parse.text import decode
 from fieldmon.io.parse.values import dates, degrees, number
@@ -111,6 +111,14 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
         )
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
+    twice = [name for name, n in Counter(map(text, rows[head])).items() if name and n > 1]
+    if twice:
+        said = worded(
+            "Several columns are called {names}: the first keeps its name, the next is {other}.",
+            names=", ".join(twice),
+            other=f"{twice[0]}_2",
+        )
+        messages.append(doubtful(said))
     body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
     if not body:
         raise FileProblem(

@@ -328,13 +328,16 @@ class DatedColumn(NamedTuple):
     n_broken: int
     broken: tuple[str, ...]
     n_serial: int
+    #: cells that could be day or month first, in a column that has certain ones of both kinds
+    n_mixed: int = 0
 
 
 def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedColumn:
     """Return a column as days; NaT where missing or no date.
 
     The order of day and month is the one told; else the only one that fits all of the column. Where
-    both fit, `is_ambiguous` is true and the days are read day first.
+    both fit, `is_ambiguous` is true and the days are read day first; where neither does, `n_mixed`
+    says how many cells could be either, read day first too.
     """
     cells = [text(v) for v in column]
     distinct = sorted(set(cells))
@@ -349,7 +352,18 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedC
     broken = [c for c in cells if known[c] is None and c.casefold() not in MISSING]
     serial = sum(known[c] is not None and _is_serial(c) for c in cells)
     some = tuple(dict.fromkeys(broken))[:5]
-    return DatedColumn(days, used if numeric else None, ambiguous, len(broken), some, serial)
+    either = set() if day_first or month_first or order else {c for c in distinct if _either(c)}
+    mixed = sum(c in either for c in cells)
+    return DatedColumn(days, used if numeric else None, ambiguous, len(broken), some, serial, mixed)
+
+
+def _either(cell: str) -> bool:
+    """Return whether a cell is one day read day first and another read month first."""
+    found = _NUMERIC.match(cell)
+    if not found:
+        return False
+    first, second = int(found.group(1)), int(found.group(2))
+    return first <= 12 and second <= 12 and first != second
 
 
 def dates_of_parts(year: Float, month: Float, day: Float) -> DatedColumn:

@@ -21,6 +21,7 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
+from fieldmon.io.parse.clock import clock_time, local_time, zone_of
 from fieldmon.io.parse.columns import find, is_id, recognised
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.result_words import ResultWords, about_minus
@@ -34,7 +35,9 @@ from fieldmon.io.parse.values import (
     numbers,
     presence,
 )
+from fieldmon.io.readers.mixed_dates import mixed_dates
 from fieldmon.io.readers.wide_tables import by_day
+from fieldmon.plot.local_clock import clock_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -75,7 +78,7 @@ def _records_and_plots(
     layer, repeated = _once_each(by_day(layer, options))
     found = located(layer, options, places)
     table = _Table(found.layer, options)
-    day, day_messages = _days(table)
+    day, day_messages = _days(table, found.lonlat)
     counts = _counts(table)
     stated_m = table.numbers("accuracy")
     observations = Observations.of(
@@ -148,7 +151,10 @@ def _once_each(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     return layer.take(kept), [dropped(said)]
 
 
-def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
+def _days(
+    table: _Table, lonlat: NDArray[np.float64]
+) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
+    """Return the local days of records at positions ``(n, 2)``."""
     parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
     by_hand = table.options.column("date")
     if len(set(parts)) == 3 and by_hand is None:
@@ -162,10 +168,39 @@ def _days(table: _Table) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
             return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
         read = dates(table.layer.column(name), table.options.date_order)
         where = name
-    return read.day, [
-        seen(worded("Dates are in column(s) {where}.", where=where)),
-        *_about_dates(read, where),
-    ]
+        moved, said_so = _as_local(read.day, table.cells(name), lonlat)
+        read = read._replace(day=moved)
+        return read.day, [_dates_in(where), *said_so, *_about_dates(read, where)]
+    return read.day, [_dates_in(where), *_about_dates(read, where)]
+
+
+def _dates_in(where: str) -> ImportMessage:
+    return seen(worded("Dates are in column(s) {where}.", where=where))
+
+
+def _as_local(
+    day: NDArray[np.datetime64], cells: list[str], lonlat: NDArray[np.float64]
+) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
+    """Return days by the clock of the place, where cells name the zone of their time.
+
+    A phone's file says UTC: an afternoon in California is the next day there.
+    """
+    clocks = {cell: clock for cell in set(cells) if (clock := clock_time(cell)) is not None}
+    stated = {cell for cell, clock in clocks.items() if clock.offset is not None}
+    placed = np.isfinite(lonlat).all(axis=1)
+    if not stated or not placed.any():
+        return day, []
+    place = clock_at(*np.median(lonlat[placed], axis=0).tolist())
+    if not place.zone:
+        return day, []
+    zone, known, local = zone_of(place.zone), {}, day.copy()
+    for k, cell in enumerate(cells):
+        if cell in stated and not np.isnat(day[k]):
+            if cell not in known:
+                known[cell] = local_time(day[k], clocks[cell], zone).astype("datetime64[D]")
+            local[k] = known[cell]
+    said = worded("Times name their zone; days are those of {zone}.", zone=place.zone)
+    return local, [seen(said)]
 
 
 def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
@@ -178,6 +213,7 @@ def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
                 Remedy("date_order", "mdy", worded("Read month first")),
             )
         )
+    messages += mixed_dates(read, where)
     if read.n_serial:
         messages.append(
             guessed(
@@ -300,7 +336,21 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
     messages.append(seen(worded("Counts are in column {name!r}.", name=name)))
-    rough = [cell for cell in cells if known[cell].is_rough]
+    odd = [cell for cell in cells if known[cell].is_rough]
+    rough = [cell for cell in odd if known[cell].present != UNKNOWN]
+    none = [cell for cell in odd if known[cell].present == UNKNOWN]
+    if none:
+        shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(none))[:3])
+        messages.append(
+            doubtful(
+                worded(
+                    "{n} count(s) say neither how many nor whether any ({shown}); left open.",
+                    n=len(none),
+                    shown=shown,
+                ),
+                name,
+            )
+        )
     if rough:
         shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
         messages.append(
@@ -313,9 +363,7 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
                 name,
             )
         )
-    n_missing = int(np.count_nonzero(present == UNKNOWN)) - sum(
-        known[cell].present == UNKNOWN for cell in rough
-    )
+    n_missing = int(np.count_nonzero(present == UNKNOWN)) - len(none)
     if n_missing:
         messages.append(
             seen(worded("{n} record(s) have no count: not known, not zero.", n=n_missing), name)

@@ -119,3 +119,10 @@ def test_a_workbook_that_is_none_is_refused(tmp_path):
     (tmp_path / "b.xlsx").write_bytes(b"PK\x03\x04 no workbook")
     with pytest.raises(FileProblem, match="must be a workbook of Excel"):
         sheet_names(tmp_path / "b.xlsx", "b")
+
+
+def test_columns_of_one_name_are_told_apart_and_said(tmp_path):
+    layer = read(tmp_path, "lon,lat,count,count\n1,2,3,4\n")
+    assert list(layer.columns) == ["lon", "lat", "count", "count_2"]
+    assert "Several columns are called count" in sentences(layer.messages)
+    assert "Several" not in sentences(read(tmp_path, "lon,lat,,\n1,2,3,4\n").messages)

@@ -241,3 +241,18 @@ def test_a_day_in_three_columns_is_put_together():
     assert read.day[0] == np.datetime64("2026-04-06")
     assert np.isnat(read.day[1:]).all()
     assert (read.n_broken, read.broken) == (1, ("2026-13-1",))
+
+
+@pytest.mark.parametrize(
+    ("column", "mixed"),
+    [
+        (["18/11/2026", "11/15/2026", "11/06/2026", "06/06/2026"], 1),
+        (["18/11/2026", "11/06/2026"], 0),
+        (["11/15/2026", "11/06/2026"], 0),
+        (["18/11/2026", "11/15/2026", "11/06/2026", "11/06/2026"], 2),
+        (["2026-11-18"], 0),
+    ],
+)
+def test_where_neither_order_fits_all_it_is_counted_what_could_be_either(column, mixed):
+    assert dates(cells(*column)).n_mixed == mixed
+    assert dates(cells(*column), "dmy").n_mixed == 0

@@ -164,3 +164,36 @@ def test_records_that_name_their_plots_are_told_apart_by_plot():
     }  # fmt: skip
     assert set(by_plot["South"].lonlat[:, 0]) == {5.1}
     assert records_by_plot(at(1, count=[1]), ANY, places).value == {}
+
+
+def test_what_is_no_count_is_not_said_to_be_read_roughly():
+    records = read(count=["<5", "5+", "TNTC", "-3", "4"])
+    assert records.value.present.tolist() == [PRESENT, PRESENT, UNKNOWN, UNKNOWN, PRESENT]
+    doubts = said(records, Severity.DOUBTFUL)
+    assert "2 count(s) say neither how many nor whether any ('TNTC', '-3'); left open." in doubts
+    assert "2 count(s) are no plain number ('<5', '5+'); read roughly." in doubts
+
+
+def test_dates_in_both_orders_are_doubted_with_how_many_could_be_either():
+    records = read(
+        count=[1, 1, 1, 1], date=["18/11/2026", "11/15/2026", "11/06/2026", "2026-11-01"]
+    )
+    assert "1 that could be either were read day first" in said(records, Severity.DOUBTFUL)
+    records = read(count=[1, 1, 1], date=["18/11/2026", "11/06/2026", "2026-11-01"])
+    assert said(records, Severity.DOUBTFUL) == ""
+
+
+@pytest.mark.parametrize(
+    ("lon", "time", "day"),
+    [
+        (35.15, "2026-11-17T23:30:00Z", "2026-11-18"),
+        (35.15, "2026-11-17 21:30:00+00:00", "2026-11-17"),
+        (35.15, "2026-11-18T01:30:00+02:00", "2026-11-18"),
+        (-119.8, "2026-11-19T01:30:00Z", "2026-11-18"),
+        (-119.8, "2026-11-18T17:30:00", "2026-11-18"),
+        (-119.8, "2026-11-18", "2026-11-18"),
+    ],
+)
+def test_a_record_is_of_the_day_that_its_place_had_whatever_zone_its_time_names(lon, time, day):
+    layer = table(lon=[lon], lat=[36.7 if lon < 0 else 30.36], count=[2], date=[time])
+    assert records_of(layer, ANY).value.day.astype(str).tolist() == [day]

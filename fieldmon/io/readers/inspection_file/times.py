@@ -12,6 +12,7 @@ from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.values import dates
 from fieldmon.io.readers.inspection_file.columns import own_column, texts_in
+from fieldmon.io.readers.mixed_dates import mixed_dates
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -51,7 +52,8 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     told = np.datetime64("NaT", "D") if options.day is None else options.day
     day = np.where(np.isnat(day), planned, day)
     day = np.where(np.isnat(day), told, day).astype("datetime64[D]")
-    return NotedTimes(when, day, _about_times(read.n_broken, read.broken, read.is_ambiguous, n_utc))
+    about = _about_times(read.n_broken, read.broken, read.is_ambiguous, n_utc)
+    return NotedTimes(when, day, [*mixed_dates(read), *about])
 
 
 def _about_times(

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.members import TeamMember, team_of
-from fieldmon.planning.team import _Task, bound_of_days, plan_team, team_bound
+from fieldmon.planning.team import _day, _Task, bound_of_days, plan_team, team_bound
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import Planting, rectangle
 from fieldmon.plot.plot import Plot
@@ -85,10 +85,17 @@ def test_different_members_have_their_own_hours_gates_and_eyes():
     check(plan)
     assert np.abs(plan.days[1].route.line_m[0] - plan.days[0].route.line_m[0]).max() > 10.0
     assert (plan.days[2].route.detects == 0.95).all()
-    for day in plan.days:
-        # what each believes is what it was told, whatever its eyes
-        assert day.scene.chance == pytest.approx(chances(plot))
     assert plan.starts_s[1] >= 600.0
+
+
+@pytest.mark.parametrize("detection", [0.5, 1.0])
+def test_a_member_s_day_is_expected_to_find_what_its_stops_hold_for_its_own_eyes(detection):
+    """By this the best of three ways to share a plot is chosen, also where eyes differ."""
+    plot, robot = plot_of(), Robot(hours=0.5, detection=detection)
+    stops = np.array([3, 4, 40, 41])
+    day = _day(_Task(plot.aisles, robot, detection * chances(plot)), stops)
+    assert day.route.expected_found == pytest.approx(detection * chances(plot)[stops].sum())
+    assert day.scene.chance == pytest.approx(chances(plot))
 
 
 @pytest.mark.parametrize("seed", range(2))

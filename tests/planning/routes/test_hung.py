@@ -1,5 +1,7 @@
 """Parts that hang on each other's ladders: each is a bound, and the way along a chain is paid."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from shapely import MultiPolygon, box
@@ -7,7 +9,7 @@ from shapely import MultiPolygon, box
 from fieldmon.planning.routes import best
 from fieldmon.planning.routes.best_route import upper_bound
 from fieldmon.planning.routes.blocks import Blocks, blockings
-from fieldmon.planning.routes.hung import hung
+from fieldmon.planning.routes.hung import _tree, hung
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.plot.field import Field
@@ -86,3 +88,20 @@ def test_along_a_chain_of_parts_side_by_side_every_way_is_paid(returns):
     route = best(chain, reward, robot)
     assert route.reward <= route.bound <= hanging < least
     assert route.gap < 0.06
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_each_part_hangs_on_the_nearest_of_those_before_it(seed):
+    """As in Prim's tree, a way being as long as the shorter of there and back."""
+    n = 6
+    # the last is the gate
+    apart_m = np.random.default_rng(seed).uniform(1.0, 99.0, (2, 2, n + 1, n + 1))
+    order, onto = _tree(SimpleNamespace(apart_m=apart_m), np.arange(n))
+    there_m = apart_m[:, :, :n, :n].min(axis=(0, 1))
+    either_m = np.minimum(there_m, there_m.T)
+    assert order[0] == apart_m[:, 0, :n, n].min(axis=0).argmin()
+    assert sorted(order) == list(range(n))
+    for k in range(1, n):
+        nearest_m = either_m[np.ix_(order[:k], order[k:])].min()
+        assert onto[order[k]] in order[:k]
+        assert either_m[onto[order[k]], order[k]] == nearest_m

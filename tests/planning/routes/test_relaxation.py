@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
+from shapely import MultiPolygon, Polygon
 
 from fieldmon.planning.routes import relaxation
 from fieldmon.planning.routes.relaxation import (
@@ -14,7 +15,9 @@ from fieldmon.planning.routes.relaxation import (
     _take_crossing,
     ladder_below,
 )
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.field import Field
+from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import GATE, Aisles
 from tests.planning.routes.test_best_route import crooked_aisles
 
@@ -53,6 +56,21 @@ def truly(aisles):
 @given(crooked_aisles(max_radius_m=60.0, max_plants=400), st.booleans())
 def test_no_way_on_the_ladder_is_longer_than_the_true_one(aisles, hanging):
     ladder = Ladders(aisles).whole(hanging=hanging)
+    assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
+
+
+@pytest.mark.parametrize("corners", [
+    [(13.4, 6.9), (-4.4, -7.1), (-12.9, 3.5), (-9.7, 4.0), (-9.3, 2.2), (-7.4, 3.5), (-8.8, 3.8)],
+    [(13.6, 7.2), (-5.5, -6.6), (-12.8, 3.8), (-9.2, 4.4), (-9.3, 2.3), (-7.3, 2.8), (-8.9, 4.0)],
+    [(13.2, 7.1), (-4.0, -6.7), (-13.3, 3.1), (-9.2, 3.7), (-9.2, 1.3), (-6.8, 3.2), (-8.2, 3.8)],
+])  # fmt: skip
+def test_nobody_crosses_by_an_aisle_that_hangs_on_the_left(corners):
+    """Else ways would be two metres too long; one of 170 crooked plots shows it."""
+    ground = MultiPolygon([Polygon(corners)])
+    field = Field("bitten", Frame(0.0, 0.0, 90.0).geometry_lonlat(ground))
+    aisles = Aisles.of(lay(field, Planting(row_spacing_m=1.5, plant_spacing_m=1.0, headland_m=1.0)))
+    ladder = Ladders(aisles).whole(hanging=True)
+    assert (ladder.hangs == 1).any()
     assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
 
 

@@ -1045,7 +1045,10 @@ def zero_apart_from_missing():
 @case(
     "records",
     check=states(1, -1, 1, 1, 1),
-    says="doubtful: 4 count(s) are no plain number ('<5', '~20', '10-20'); read roughly",
+    says=(
+        "doubtful: 4 count(s) are no plain number ('<5', '~20', '10-20'); read roughly",
+        "doubtful: 1 count(s) say neither how many nor whether any ('<1')",
+    ),
 )
 def counts_as_text():
     return counted("<5", "<1", "~20", "10-20", ">100")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -35,7 +34,7 @@ from fieldmon.io.parse.values import (
     numbers,
     presence,
 )
-from fieldmon.io.readers.mixed_dates import mixed_dates
+from fieldmon.io.readers.date_doubts import in_future, mixed_dates
 from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
 
@@ -232,20 +231,7 @@ def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
                 where,
             )
         )
-    today = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
-    n_future = int((read.day > today).sum())
-    if n_future:
-        latest = np.nanmax(read.day)
-        messages.append(
-            doubtful(
-                worded(
-                    "{n} record(s) lie in the future, the last on {latest}.",
-                    n=n_future,
-                    latest=latest,
-                ),
-                where,
-            )
-        )
+    messages += in_future(read.day, where)
     return messages
 
 

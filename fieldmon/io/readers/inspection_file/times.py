@@ -11,8 +11,8 @@ from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.values import dates
+from fieldmon.io.readers.date_doubts import in_future, mixed_dates
 from fieldmon.io.readers.inspection_file.columns import own_column, texts_in
-from fieldmon.io.readers.mixed_dates import mixed_dates
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +53,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     day = np.where(np.isnat(day), planned, day)
     day = np.where(np.isnat(day), told, day).astype("datetime64[D]")
     about = _about_times(read.n_broken, read.broken, read.is_ambiguous, n_utc)
-    return NotedTimes(when, day, [*mixed_dates(read), *about])
+    return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *about])
 
 
 def _about_times(

@@ -1,13 +1,18 @@
-"""What to say of a column in which dates stand in both orders."""
+"""What to say of dates that cannot all be right: in both orders, or not yet come."""
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, doubtful
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.io.parse.values import DatedColumn
 
 
@@ -19,5 +24,19 @@ def mixed_dates(read: DatedColumn, where: str | None = None) -> list[ImportMessa
         "Dates stand day first and month first in one column: {n} that could be either were read "
         "day first. Write them all as 2026-11-18.",
         n=read.n_mixed,
+    )
+    return [doubtful(said, where)]
+
+
+def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[ImportMessage]:
+    """Return a doubt where days ``(n,)`` have not come yet, anywhere on earth."""
+    today = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
+    n_future = int((day > today).sum())
+    if not n_future:
+        return []
+    said = worded(
+        "{n} record(s) lie in the future, the last on {latest}.",
+        n=n_future,
+        latest=np.nanmax(day),
     )
     return [doubtful(said, where)]

@@ -1,4 +1,6 @@
-"""A column with dates in both orders is doubted, in records and in findings; any other is not."""
+"""Dates in both orders or of days to come are doubted, in records and in findings; no others."""
+
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
@@ -6,8 +8,8 @@ import pytest
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.parse.values import dates
+from fieldmon.io.readers.date_doubts import in_future, mixed_dates
 from fieldmon.io.readers.inspections import read_inspections
-from fieldmon.io.readers.mixed_dates import mixed_dates
 from fieldmon.plot.layout import rectangle
 
 BOTH = ["18/11/2026", "11/15/2026", "11/06/2026"]
@@ -27,3 +29,21 @@ def test_findings_say_so_too():
     file = Upload("found.csv", f"plant,found,date\n{lines}".encode())
     read = read_inspections(file, rectangle(2, 5), None)
     assert any("could be either" in message.sentence for message in read.messages)
+
+
+def days_from_now(n):
+    return np.datetime64((datetime.now(UTC) + timedelta(days=n)).date(), "D")
+
+
+def test_a_day_to_come_is_doubted_but_not_tomorrow_which_is_today_elsewhere():
+    (said,) = in_future(np.array([days_from_now(3), days_from_now(0), days_from_now(9)]))
+    assert said.severity == Severity.DOUBTFUL
+    assert f"2 record(s) lie in the future, the last on {days_from_now(9)}" in said.sentence
+    assert in_future(np.array([days_from_now(0), np.datetime64("NaT")])) == []
+
+
+def test_findings_of_a_day_to_come_are_doubted():
+    file = Upload("found.csv", f"plant,found,date\n1,yes,{days_from_now(40)}\n".encode())
+    read = read_inspections(file, rectangle(2, 5), None)
+    assert any("1 record(s) lie in the future" in message.sentence for message in read.messages)
+    assert len(read.value) == 1

@@ -8,7 +8,7 @@ import typer
 
 from fieldmon.cli.messages import tell_drafts
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.times import day
+from fieldmon.cli.times import day, day_on
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,6 +46,13 @@ def status(
 
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
+    today, last = day_on(kept.plot.field, None), kept.last_date()
+    if last > max(today, kept.settings.begins):
+        typer.echo(
+            f"doubtful: the last day recorded, {last}, has not come: it is {today} on the plot. If "
+            "its date is wrong, take it back with: fieldmon undo",
+            err=True,
+        )
     typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
     for line in of_treatments(kept, now):
         typer.echo(line)
@@ -73,7 +80,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
     ahead = now.estimate
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
-    yield f"  inspected today        {now.inspected_today:6d}, {now.found_today} found infested"
+    yield f"  inspected that day     {now.inspected_today:6d}, {now.found_today} found infested"
     yield (
         f"  inspected so far       {now.inspected:6d} of {now.plants} plants "
         f"({100 * now.inspected / now.plants:.0f} %), {now.found} found infested"

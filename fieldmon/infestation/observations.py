@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.arguments import must_be
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 
 UNKNOWN, ABSENT, PRESENT = -1, 0, 1
+_YEAR = np.timedelta64(365, "D")
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,24 +107,29 @@ class UsableRecords:
     ----------
     observations
         Records that say infested or clean, not later than the day; undated ones included.
-    undecided, future, undated
+    undecided, future, undated, old
         How many were left out because they say neither, because they are of a later day; and how
-        many of those kept have no date.
+        many of those kept have no date, or one more than a year ago.
     """
 
     observations: Observations
     undecided: int
     future: int
     undated: int
+    old: int
 
     def messages(self) -> tuple[str, ...]:
         """Return a sentence for each thing that a person should know about the records."""
+        neither, later = self.undecided, self.future
         said = (
-            (self.undecided, "say neither infested nor clean and are left out"),
-            (self.future, "are of a later day than the one planned and are left out"),
-            (self.undated, "have no date and count as old ones"),
+            worded(
+                "{n} of the records say neither infested nor clean and are left out.", n=neither
+            ),
+            worded("{n} of the records are of a later day and are left out.", n=later),
+            worded("{n} of the records have no date and count as old ones.", n=self.undated),
+            worded("{n} of the records are more than a year old and hardly count.", n=self.old),
         )
-        return tuple(f"{count} of the records {what}." for count, what in said if count)
+        return tuple(sentence for sentence in said if sentence.values["n"])
 
 
 def usable(observations: Observations, on_day: np.datetime64) -> UsableRecords:
@@ -136,6 +142,7 @@ def usable(observations: Observations, on_day: np.datetime64) -> UsableRecords:
         undecided=int(np.count_nonzero(undecided)),
         future=int(np.count_nonzero(future)),
         undated=int(np.count_nonzero(np.isnat(kept.day))),
+        old=int(np.count_nonzero(kept.day < on_day.astype("datetime64[D]") - _YEAR)),
     )
 
 

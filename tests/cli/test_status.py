@@ -1,7 +1,14 @@
 """`fieldmon status`: where a season stands."""
 
+from datetime import timedelta
+
+import numpy as np
+import pytest
+
 from fieldmon.cli.status import lines
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
+from fieldmon.plot.local_clock import local_clock
 from tests.cli.estate import BEGINS
 
 
@@ -22,3 +29,15 @@ def test_rows_that_nobody_was_in_are_told(run, season):
     _, out, _, _ = run("status", season, "--date", BEGINS, "--rows")
     n_rows = Season(season).plot.grid.row_line.max() + 1
     assert sum(line.endswith("never") for line in out.splitlines()) == n_rows
+
+
+@pytest.mark.parametrize(("ahead", "doubted"), [(0, False), (40, True)])
+def test_a_day_recorded_that_has_not_come_is_doubted(run, season, ahead, doubted):
+    kept = Season(season)
+    today = max(local_clock(kept.plot.field).today(), kept.settings.begins)
+    on = np.datetime64(today + timedelta(days=ahead))
+    kept.record(Inspections.of(np.array([1]), np.array([1]), on), "typed in")
+    code, out, err, _ = run("status", season)
+    assert code == 0
+    assert out.startswith(f"Nursery, {on} ")
+    assert (f"the last day recorded, {on}, has not come" in err) == doubted

@@ -54,3 +54,11 @@ def test_records_that_say_neither_and_those_of_tomorrow_are_left_out_and_told_of
     assert (kept.undecided, kept.future, kept.undated) == (2, 1, 2)
     assert [sentence.split()[0] for sentence in kept.messages()] == ["2", "1", "2"]
     assert not usable(at_middle(PRESENT), TODAY).messages()
+
+
+@pytest.mark.parametrize(("days", "old"), [(0, 0), (365, 0), (366, 1), (10_000, 1)])
+def test_records_of_more_than_a_year_ago_are_told_of(days, old):
+    kept = usable(at_middle(PRESENT, days), TODAY)
+    assert (kept.old, len(kept.observations)) == (old, 1)
+    said = "1 of the records are more than a year old and hardly count."
+    assert kept.messages() == (said,)[:old]

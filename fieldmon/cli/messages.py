@@ -8,16 +8,19 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.times import day_on
 from fieldmon.errors import ChoiceNeeded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from datetime import date
 
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.prepare import Laid, SourceMessage
     from fieldmon.plot.assumed import Assumed
+    from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
 
 #: the options that take what a file leaves open, by what the file is to the plot
@@ -135,6 +138,17 @@ def tell_drafts(sentences: Iterable[str]) -> None:
     """Print which findings of another program do not count."""
     for sentence in sentences:
         typer.echo(sentence, err=True)
+
+
+def tell_not_come(on: date, field: Field, what: str) -> None:
+    """Print that a day has not come yet on a plot, if so: a slip in a date moves a whole season."""
+    today = day_on(field, None)
+    if on > today:
+        typer.echo(
+            f"doubtful: {what}, {on}, has not come: it is {today} on the plot. If its date is "
+            "wrong, take it back with: fieldmon undo",
+            err=True,
+        )
 
 
 def tell_unusable(records: Observations, day: np.datetime64) -> None:

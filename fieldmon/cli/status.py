@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_drafts
+from fieldmon.cli.messages import tell_drafts, tell_not_come
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.times import day, day_on
+from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,13 +46,8 @@ def status(
 
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
-    today, last = day_on(kept.plot.field, None), kept.last_date()
-    if last > max(today, kept.settings.begins):
-        typer.echo(
-            f"doubtful: the last day recorded, {last}, has not come: it is {today} on the plot. If "
-            "its date is wrong, take it back with: fieldmon undo",
-            err=True,
-        )
+    if (last := kept.last_date()) > kept.settings.begins:
+        tell_not_come(last, kept.plot.field, "the last day recorded")
     typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
     for line in of_treatments(kept, now):
         typer.echo(line)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.messages import tell_not_come
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile, TheDate
 from fieldmon.cli.times import clock, day, day_on
@@ -129,6 +130,7 @@ def treat(options: TreatOptions) -> None:
     if not done.new:
         typer.echo("This treatment was noted already; nothing changed.")
         return
+    tell_not_come(on_day, kept.plot.field, "the day of the treatment")
     ahead = kept.status(on_day).estimate
     typer.echo(
         f"Treatment noted as batch {done.batch}; about {ahead.expected:.1f} plants are believed "

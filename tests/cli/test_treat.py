@@ -1,6 +1,6 @@
 """`fieldmon treat`: a plot or a part of it was sprayed."""
 
-from datetime import date
+from datetime import date, timedelta
 
 import geopandas as gpd
 import numpy as np
@@ -8,6 +8,7 @@ import pytest
 import shapely
 
 from fieldmon.monitoring import Season
+from fieldmon.plot.local_clock import local_clock
 from tests.cli.estate import BEGINS
 
 ON = date.fromisoformat(BEGINS)
@@ -101,3 +102,12 @@ def test_without_an_efficacy_it_is_what_the_season_learnt_or_asked_for(run, seas
     code, _, err, _ = run("treat", season, "--product", "soap", "--date", BEGINS)
     assert code == 2
     assert "How well a treatment works must be said" in " ".join(err.split())
+
+
+def test_a_treatment_of_a_day_that_has_not_come_is_noted_and_doubted(run, season):
+    today = local_clock(Season(season).plot.field).today()
+    ahead = max(today, ON) + timedelta(days=30)
+    for on, doubted in ((ON, today < ON), (ahead, True)):
+        code, _, err, _ = run("treat", season, "--efficacy", "0.5", "--date", str(on))
+        assert code == 0
+        assert (f"the day of the treatment, {on}, has not come" in err) == doubted

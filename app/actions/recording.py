@@ -212,7 +212,11 @@ def recorded(choices: Choices, results: Inspections, source: str) -> Recorded | 
 
 def _recorded(choices: Choices, results: Inspections, source: str) -> str:
     """Record results, and say what was done."""
-    done = recorded(choices, results, source)
+    return said_of(recorded(choices, results, source))
+
+
+def said_of(done: Recorded | None) -> str:
+    """Return what recording did, in a sentence; nothing where results wait for a word."""
     return "" if done is None else texts.RECORDED.format(new=done.new, known=done.known)
 
 

@@ -48,11 +48,9 @@ def show(choices: Choices) -> None:
 def _record(choices: Choices, plant: int, result: int) -> str:
     results = Inspections.of(np.array([plant]), np.array([result]), np.datetime64(choices.day))
     done = recording.recorded(choices, results, texts.TYPED_IN)
-    if done is None:
-        return ""
-    if done.batch is not None:
+    if done is not None and done.batch is not None:
         st.session_state[_LAST] = choices.key, done.batch
-    return texts.RECORDED.format(new=done.new, known=done.known)
+    return recording.said_of(done)
 
 
 def _last(choices: Choices) -> int | None:
@@ -60,5 +58,5 @@ def _last(choices: Choices) -> int | None:
     key, number = st.session_state.get(_LAST, ("", None))
     if key != choices.key or number is None:
         return None
-    kept = (one for one in choices.season.batches() if one.number == number and not one.undone)
-    return next((one.number for one in kept), None)
+    kept = {one.number for one in choices.season.batches() if not one.undone}
+    return number if number in kept else None

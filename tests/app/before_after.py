@@ -16,7 +16,7 @@ from pathlib import Path
 from PIL import Image, ImageDraw
 from playwright.sync_api import sync_playwright
 
-from tests.app.pictures import PARTS, SCHEMES, SIZES, STILL, take
+from tests.app.pictures import PARTS, SCHEMES, SIZES, STILL, take, windows
 from tests.benchmarks.first_screen import answers, served
 from tests.benchmarks.seven_tasks import Hand, begin
 from tests.conftest import CHROMIUM, FLAGS
@@ -68,13 +68,9 @@ def pictures(browser, tree, folder, languages):
         answers(url)
         season = begin(Hand(browser.new_page(), url)).replace(" ", "+")
         worked(tree, seasons)
-        for size, scheme, language in product(SIZES, SCHEMES, languages):
-            width, height, agent = SIZES[size]
-            context = browser.new_context(viewport={"width": width, "height": height},
-                                          user_agent=agent, color_scheme=scheme)  # fmt: skip
-            page = context.new_page()
+        for page, language, kind in windows(browser, SIZES, SCHEMES, languages):
             for part in SHOWN:
-                to = folder / f"{part}_{language}_{size}_{scheme}.png"
+                to = folder / f"{part}_{kind}.png"
                 try:
                     if before and part in BEFORE:
                         plainly(page, f"{url}/{BEFORE[part]}?season={season}", to)
@@ -84,7 +80,6 @@ def pictures(browser, tree, folder, languages):
                         take(page, url, language, part, to, f"&season={season}")
                 except Exception as error:  # noqa: BLE001 - the others still count
                     sys.stdout.write(f"{to.name}: {str(error)[:200]!r}\n")
-            context.close()
 
 
 def sheet(before, after, size, scheme, language):

@@ -110,18 +110,22 @@ def pictures(browsers, url, said):
     """Take all pictures that are asked for."""
     chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
     browser = browsers.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-    every = product(said.sizes.split(","), said.schemes.split(","), said.languages.split(","))
+    every = said.sizes.split(","), said.schemes.split(","), said.languages.split(",")
     season = f"&season={quote(said.season)}" if said.season else ""
-    for size, scheme, language in every:
+    for page, language, kind in windows(browser, *every):
+        for part in said.parts.split(","):
+            take(page, url, language, part, said.to / f"{part}_{kind}.png", season)
+    browser.close()
+
+
+def windows(browser, sizes, schemes, languages):
+    """Yield an empty page of each size and scheme for each language; name the kind of picture."""
+    for size, scheme, language in product(sizes, schemes, languages):
         width, height, agent = SIZES[size]
         context = browser.new_context(viewport={"width": width, "height": height},
                                       user_agent=agent, color_scheme=scheme)  # fmt: skip
-        page = context.new_page()
-        for part in said.parts.split(","):
-            to = said.to / f"{part}_{language}_{size}_{scheme}.png"
-            take(page, url, language, part, to, season)
+        yield context.new_page(), language, f"{language}_{size}_{scheme}"
         context.close()
-    browser.close()
 
 
 if __name__ == "__main__":

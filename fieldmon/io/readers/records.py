@@ -39,7 +39,7 @@ from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import NDArray
 
@@ -156,6 +156,7 @@ def _days(
     """Return the local days of records at positions ``(n, 2)``."""
     parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
     by_hand = table.options.column("date")
+    zoned: list[ImportMessage] = []
     if len(set(parts)) == 3 and by_hand is None:
         read = dates_of_parts(*(numbers(table.layer.column(part)) for part in parts))
         where = ", ".join(parts)
@@ -167,14 +168,13 @@ def _days(
             return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
         read = dates(table.layer.column(name), table.options.date_order)
         where = name
-        moved, said_so = _as_local(read.day, table.cells(name), lonlat)
-        read = read._replace(day=moved)
-        return read.day, [_dates_in(where), *said_so, *_about_dates(read, where)]
-    return read.day, [_dates_in(where), *_about_dates(read, where)]
-
-
-def _dates_in(where: str) -> ImportMessage:
-    return seen(worded("Dates are in column(s) {where}.", where=where))
+        day, zoned = _as_local(read.day, table.cells(name), lonlat)
+        read = read._replace(day=day)
+    return read.day, [
+        seen(worded("Dates are in column(s) {where}.", where=where)),
+        *zoned,
+        *_about_dates(read, where),
+    ]
 
 
 def _as_local(
@@ -184,8 +184,8 @@ def _as_local(
 
     A phone's file says UTC: an afternoon in California is the next day there.
     """
-    clocks = {cell: clock for cell in set(cells) if (clock := clock_time(cell)) is not None}
-    stated = {cell for cell, clock in clocks.items() if clock.offset is not None}
+    clocks = ((cell, clock_time(cell)) for cell in set(cells))
+    stated = {cell: clock for cell, clock in clocks if clock and clock.offset is not None}
     placed = np.isfinite(lonlat).all(axis=1)
     if not stated or not placed.any():
         return day, []
@@ -196,7 +196,7 @@ def _as_local(
     for k, cell in enumerate(cells):
         if cell in stated and not np.isnat(day[k]):
             if cell not in known:
-                known[cell] = local_time(day[k], clocks[cell], zone).astype("datetime64[D]")
+                known[cell] = local_time(day[k], stated[cell], zone).astype("datetime64[D]")
             local[k] = known[cell]
     said = worded("Times name their zone; days are those of {zone}.", zone=place.zone)
     return local, [seen(said)]
@@ -220,13 +220,12 @@ def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
             )
         )
     if read.broken:
-        shown = ", ".join(repr(cell) for cell in read.broken[:3])
         messages.append(
             doubtful(
                 worded(
                     "{n} record(s) have a date that is none ({shown}); it is left open.",
                     n=read.n_broken,
-                    shown=shown,
+                    shown=_some(read.broken),
                 ),
                 where,
             )
@@ -315,6 +314,11 @@ def _are_numbers(cells: list[str]) -> bool:
     return bool(read) and all(np.isfinite(one.number) for one in read)
 
 
+def _some(cells: Iterable[str]) -> str:
+    """Return how a sentence shows cells: the first three that differ."""
+    return ", ".join(repr(cell) for cell in list(dict.fromkeys(cells))[:3])
+
+
 def _numbers_of(table: _Table, name: str) -> _Counts:
     cells = table.cells(name)
     mark, messages = _mark(table, name, cells)
@@ -326,25 +330,23 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     rough = [cell for cell in odd if known[cell].present != UNKNOWN]
     none = [cell for cell in odd if known[cell].present == UNKNOWN]
     if none:
-        shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(none))[:3])
         messages.append(
             doubtful(
                 worded(
                     "{n} count(s) say neither how many nor whether any ({shown}); left open.",
                     n=len(none),
-                    shown=shown,
+                    shown=_some(none),
                 ),
                 name,
             )
         )
     if rough:
-        shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(rough))[:3])
         messages.append(
             doubtful(
                 worded(
                     "{n} count(s) are no plain number ({shown}); read roughly.",
                     n=len(rough),
-                    shown=shown,
+                    shown=_some(rough),
                 ),
                 name,
             )
@@ -387,12 +389,11 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
         )
     unread = {cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell)}
     if unread:
-        shown = ", ".join(repr(cell) for cell in sorted(unread)[:3])
         one = min(unread)
         remedy = Remedy(
             "found", one, worded("Take {one!r} as found; clean= takes it as clean", one=one)
         )
-        said = worded("These words say neither yes nor no: {shown}.", shown=shown)
+        said = worded("These words say neither yes nor no: {shown}.", shown=_some(sorted(unread)))
         messages.append(doubtful(said, name, None if "," in one else remedy))
     messages += about_minus(cells, words)
     present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)

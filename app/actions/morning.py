@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from datetime import timedelta
-from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -150,10 +149,10 @@ def _record(_: Choices, __: DayPlan, step: Step) -> None:
 
 def _report(choices: Choices, _: DayPlan, step: Step) -> None:
     paper = widget_memory.value("report paper", next(iter(PAPERS)))
-    made = report.of_day(choices)
+    made = report.to_come(choices)
     # made when it is asked for: fonts are cut and plants are drawn, in a second or two
     st.download_button(
-        texts.STEP_BUTTONS[REPORT], partial(pdf_bytes, made, paper), f"day_{choices.day}.pdf",
+        texts.STEP_BUTTONS[REPORT], lambda: pdf_bytes(made(), paper), f"day_{choices.day}.pdf",
         "application/pdf", key="do_report", type="primary" if step.next else "secondary",
         on_click=morning.note, args=(choices, REPORT),
     )  # fmt: skip

@@ -13,6 +13,8 @@ from ..state import assumptions, cached, chosen_day
 from ..words import language
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fieldmon.reports.content import Report
 
     from ..state.choices import Choices
@@ -34,6 +36,11 @@ def for_certifier(choices: Choices) -> Report:
 
 def of_day(choices: Choices) -> Report:
     """Return the report of the chosen day, in a season or without one."""
+    return to_come(choices)()
+
+
+def to_come(choices: Choices) -> Callable[[], Report]:
+    """Return what makes the report of the chosen day, once it is asked for: it asks no page."""
     season, shown = choices.season, chosen_day.route(choices)
     facts = DayFacts(
         choices.plot.field.name, shown.begins, shown.route, chosen_day.chance(choices),
@@ -42,8 +49,8 @@ def of_day(choices: Choices) -> Report:
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
     )  # fmt: skip
-    made = day_report(facts, choices.units.of_library)
-    return made.said_in(language.tongue(language.current()))
+    units, tongue = choices.units.of_library, language.tongue(language.current())
+    return lambda: day_report(facts, units).said_in(tongue)
 
 
 def _settings(choices: Choices) -> WorkSettings:

@@ -19,7 +19,6 @@ from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.routes import best, bound
 from fieldmon.planning.routes.best_route import bounded
-from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.planning.sections import sections_of
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, travel_s
@@ -258,10 +257,10 @@ def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
     until = monotonic() + _WITHIN_S
     price = direction = np.zeros(len(most))
     least, kept, step, in_vain = np.inf, price, 1.0, 0
-    below = [Ladders(task.aisles.for_robot(task.robot)) for task in tasks]
     for _ in range(_PRICES):
-        alone = [bounded(task.aisles, np.maximum(task.value - price, 0.0), task.robot, ladders)
-                 for task, ladders in zip(tasks, below, strict=True)]  # fmt: skip
+        alone = [
+            bounded(task.aisles, np.maximum(task.value - price, 0.0), task.robot) for task in tasks
+        ]
         value = float(price.sum()) + sum(each.value for each in alone)
         if value < least:
             least, kept, in_vain = value, price, 0

@@ -218,12 +218,8 @@ class Bounded(NamedTuple):
     visits: Float
 
 
-def bounded(
-    plot: Plot | Aisles, reward: Float, robot: Robot, ladders: Ladders | None = None
-) -> Bounded:
+def bounded(plot: Plot | Aisles, reward: Float, robot: Robot) -> Bounded:
     """Return what no route of a robot's day can hold, and what the drives behind it visit.
-
-    `ladders` are those below the plot as the robot drives it: who asks for many rewards keeps them.
 
     Two drives at about one price fill the hours, the one more, the other less: as much of each as
     fills them just.
@@ -231,7 +227,7 @@ def bounded(
     posed, visits = _posed(plot, reward, robot, None), np.zeros(len(reward))
     if not posed.reward.any():
         return Bounded(0.0, visits)
-    found = min(_bounds(posed, ladders=ladders), key=lambda each: each.value)
+    found = min(_bounds(posed), key=lambda each: each.value)
     took_s = np.array([found.below.seconds(*met) for met in found.met])
     share = np.ones(len(took_s))
     if len(took_s) == 2 and took_s[0] != took_s[1]:
@@ -263,22 +259,21 @@ def _posed(
     return _Posed(aisles, robot, clock, np.where(_reachable(aisles, clock), values, 0.0))
 
 
-def _bounds(
-    posed: _Posed, within_s: float = np.inf, ladders: Ladders | None = None
-) -> Iterator[PriceBound]:
+def _bounds(posed: _Posed, within_s: float = np.inf) -> Iterator[PriceBound]:
     """Yield the bounds of all ways of taking the plot for less than it is: each is one."""
     until = monotonic() + within_s
-    for below in _relaxations(posed, ladders or Ladders(posed.aisles)):
+    for below in _relaxations(posed):
         yield upper_bound(below, posed.clock.seconds_left, until - monotonic())
         if monotonic() > until:
             return
 
 
-def _relaxations(posed: _Posed, ladders: Ladders) -> Iterator[Priced | Blocks]:
+def _relaxations(posed: _Posed) -> Iterator[Priced | Blocks]:
     """Yield what lies below the plot: a ladder, one with aisles hanging on it, several ladders.
 
     Those of several parts stand beside each other, or hang on each other.
     """
+    ladders = Ladders(posed.aisles)
     yield Priced(ladders.whole(hanging=False), posed.reward, posed.robot)
     hanging = ladders.whole(hanging=True)
     if hanging.hangs.any():

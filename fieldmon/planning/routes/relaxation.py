@@ -11,6 +11,7 @@ around holes and between parts, a cross link is put in.
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -91,17 +92,30 @@ class Rungs(NamedTuple):
     part: Int
 
 
+#: rungs and ladders of each plot as a robot drives it, for as long as its ways are kept
+_MADE: WeakKeyDictionary[Aisles, tuple[Rungs, dict[object, Ladder]]] = WeakKeyDictionary()
+
+
 def ladder_below(aisles: Aisles) -> Ladder:
     """Return a ladder on which no way is longer than the true one."""
     return Ladders(aisles).whole(hanging=False)
 
 
 class Ladders:
-    """Ladders below a plot, or below some of its aisles, on which no way is longer than true."""
+    """Ladders below a plot, or below some of its aisles, on which no way is longer than true.
+
+    They hang on the ways alone: those of a plot are made once, whatever the hours and the rewards.
+    """
 
     def __init__(self, aisles: Aisles, rungs: Rungs | None = None) -> None:
-        self.aisles, self.rungs = aisles, rungs_of(aisles) if rungs is None else rungs
+        self.aisles = aisles
         self._made: dict[object, Ladder] = {}
+        if rungs is not None:
+            self.rungs = rungs
+            return
+        if aisles not in _MADE:
+            _MADE[aisles] = rungs_of(aisles), self._made
+        self.rungs, self._made = _MADE[aisles]
 
     def of(self, rungs: Rungs) -> Ladders:
         """Return ladders of other rungs, as where parts of the plot are one place."""

@@ -1,5 +1,8 @@
 """A ladder below a plot: no way on it is longer than the true one."""
 
+import gc
+from weakref import ref
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -110,3 +113,15 @@ def test_one_more_crossing_is_to_the_last_bit_what_all_of_them_give():
         cross[k] = rng.uniform(0.0, 60.0)
         _take_crossing(over, (left, right), (int(k), cross[k]), asked)
         assert (over == _from_left_to_right(left, right, cross) - asked).all()
+
+
+def test_ladders_are_made_once_for_a_plot_and_gone_with_it():
+    aisles = Aisles.of(rectangle(5, 8, Planting(faces=2)))
+    made = Ladders(aisles).whole(hanging=True)
+    assert Ladders(aisles).whole(hanging=True) is made
+    other = Aisles.of(rectangle(6, 8, Planting(faces=2)))
+    assert len(Ladders(other).whole(hanging=True).across_m) > len(made.across_m)
+    gone = ref(aisles)
+    del aisles
+    gc.collect()
+    assert gone() is None

@@ -17,6 +17,7 @@ from fieldmon.samplers import USUAL
 
 from ..state import (
     assumptions,
+    browser,
     cached,
     chosen_language,
     chosen_units,
@@ -62,6 +63,24 @@ def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
 
     Returns the choices, or the problem that keeps from them.
     """
+    if not browser.is_phone():
+        return _chosen(head, foot, wait)
+    with head.container(key="where_and_when", horizontal=True, vertical_alignment="center"):
+        name = _of_files().get(plot_source.chosen()) or texts.isolated(plot_source.chosen())
+        boxes, line = st.popover(name), st.empty()
+    chosen = _chosen(boxes, foot, wait)
+    if chosen.choices is not None:
+        line.markdown(_where_and_when(chosen.choices))
+    return chosen
+
+
+def _where_and_when(choices: Choices) -> str:
+    """Return the plot and the day in a line: on a phone it stands for the boxes, which fold."""
+    day = choices.units.day(choices.day)
+    return day if choices.season is not None else f"**{choices.name}**, {day}"
+
+
+def _chosen(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
     with head:
         source = _source()
         try:
@@ -91,7 +110,11 @@ def _source() -> str:
 
 def _source_name(source: str) -> str:
     """Return what a source is called: a season by its own name."""
-    return {plot_source.SAMPLE: texts.SAMPLE, plot_source.FILES: texts.UPLOAD}.get(source, source)
+    return _of_files().get(source, source)
+
+
+def _of_files() -> dict[str, str]:
+    return {plot_source.SAMPLE: texts.SAMPLE, plot_source.FILES: texts.UPLOAD}
 
 
 # -- a season

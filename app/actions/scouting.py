@@ -95,8 +95,10 @@ def ask_start(choices: Choices) -> None:
     begun = len(choices.season.history.inspections.on(choices.on))
     late = now.date() == choices.on and now.time() > settings.starts
     if not begun and late:
-        st.info(texts.SCOUT_START.format(start=f"{settings.starts:%H:%M}", now=f"{now:%H:%M}"))
-        st.button(texts.SCOUT_NOW, key="begin_now", on_click=_begin_now, args=(choices,))
+        said = texts.SCOUT_START.format(start=f"{settings.starts:%H:%M}", now=f"{now:%H:%M}")
+        with st.container(key="begin_later", horizontal=True, vertical_alignment="center"):
+            st.markdown(said, width="stretch")
+            st.button(texts.SCOUT_NOW, key="begin_now", on_click=_begin_now, args=(choices,))
 
 
 @notices.reporting

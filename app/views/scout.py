@@ -49,14 +49,14 @@ def show(choices: Choices) -> None:
     stop = next_stop(plan, progress.inspected_today, choices.units)
     st.markdown(f"## {stop.arrow} {stop.place}")
     st.markdown(f"**{stop.direction}**")
-    st.caption(stop.chance)
     with st.container(key="scout_buttons", horizontal=True):
         for key, label, result in (
             ("scout_clean", texts.CLEAN_BUTTON, CLEAN),
             ("scout_found", texts.FOUND_BUTTON, FOUND),
         ):
             st.button(label, key=key, width="stretch", on_click=scouting.tap,
-                          args=(choices, stop.plant, result))  # fmt: skip
+                      args=(choices, stop.plant, result))  # fmt: skip
+    st.caption(stop.chance)
     st.number_input(texts.COUNT_LABEL, 0, 100_000, None, key="scout_count")
     with st.container(key="scout_others"):
         st.button(texts.SKIP_BUTTON, key="scout_skip", width="stretch", on_click=scouting.tap,

@@ -792,6 +792,9 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     place.wait_for(timeout=240_000)
     for name in ("Clean", "Found", "Could not inspect"):
         button = page.get_by_role("button", name=name, exact=True)
+        if name != "Could not inspect":
+            size = button.bounding_box()
+            assert size["y"] + size["height"] <= 844, f"{name} must be scrolled to"
         button.scroll_into_view_if_needed()
         size = button.bounding_box()
         assert size["height"] >= 48
@@ -833,13 +836,29 @@ def test_a_phone_shows_the_whole_plot_above_the_days_work(on_a_phone):
     sheet = page.locator(".st-key-panel").bounding_box()
     assert sheet["y"] >= 0.5 * 844, "the map is half of the screen"
     assert page.locator(MAP).bounding_box()["y"] == 0
+    next_step = page.get_by_role("button", name="Begin a season").bounding_box()
+    assert next_step["y"] + next_step["height"] <= 844, "what to do next is on the first screen"
     said = page.get_by_text(re.compile("^Inspect .* plants")).first
-    assert said.bounding_box()["y"] < 844
+    assert said.bounding_box()["y"] < next_step["y"]
     plot, _ = sample()
     place = pixels(view(page), plot.grid.lonlat())
     assert (place > 0).all()
     assert (place < [390, sheet["y"]]).all(), "the plot runs under the sheet, or over the edge"
     assert share_near(image, place[::7], colours.of_chance()[3], tolerance=130) > 0.8
+
+
+def test_on_a_phone_plot_and_day_are_one_line_that_unfolds(on_a_phone):
+    page = on_a_phone
+    line = page.locator(".st-key-where_and_when")
+    assert line.bounding_box()["height"] < 60
+    assert "Gate" in line.inner_text()
+    boxes = page.locator("[data-testid=stPopoverBody]")
+    assert not boxes.is_visible()
+    line.get_by_role("button").click()
+    boxes.get_by_role("combobox", name=texts.WHICH_PLOT).wait_for(timeout=60_000)
+    assert boxes.get_by_text(texts.SAMPLE_NOTE).is_visible()
+    page.keyboard.press("Escape")
+    boxes.wait_for(state="hidden", timeout=60_000)
 
 
 def test_the_sheet_is_pulled_up_and_let_down_again(on_a_phone):

@@ -33,7 +33,7 @@ def show(choices: Choices, plan: DayPlan) -> None:
     st.markdown(texts.SEND_FILE)
     starts = chosen_day.starts(choices, plan)
     notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who)
-    _files(choices, HandoffPlan(plan.route, notes))
+    _files(choices, HandoffPlan(chosen_day.with_bound(choices, plan).route, notes))
 
 
 def _show_address() -> None:

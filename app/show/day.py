@@ -72,8 +72,8 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
                   width="content")  # fmt: skip
         st.metric(mark(texts.FINDS, taken, for_finds), number(route.expected_found, ".1f"),
                   width="content")  # fmt: skip
-    if len(route) and route.bound_sentence:
-        st.caption(in_words(route.bound_sentence), help=texts.BOUND_HELP)
+    if len(route) and (said := chosen_day.with_bound(choices, plan).route.bound_sentence):
+        st.caption(in_words(said), help=texts.BOUND_HELP)
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:

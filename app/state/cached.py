@@ -23,7 +23,6 @@ from fieldmon.io import prepare, read
 from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
 from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.monitoring import worked_route
-from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from, plan_in
 from fieldmon.plot.row_detection import rows_from_plants
 from fieldmon.reports import season as reports
@@ -198,7 +197,7 @@ def day_plan(
 ) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
     chance = chance_map(key, day, settings.prior, _plot, _known)
-    return with_bound(plan_from(_plot, chance, settings, wishes))
+    return plan_from(_plot, chance, settings, wishes)
 
 
 @st.cache_resource(max_entries=_FEW)
@@ -254,9 +253,7 @@ def season_plan(
 ) -> DayPlan:
     """Return what is left of a season's day for one of its team, or for the one who works."""
     day, who = of
-    planned = _season.plan(np.datetime64(day).item(), keep=False, wishes=wishes, who=who)
-    # what no route of one could exceed says little of one whose aisles others share
-    return planned if who else with_bound(planned)
+    return _season.plan(np.datetime64(day).item(), keep=False, wishes=wishes, who=who)
 
 
 @st.cache_resource(max_entries=_FEW)

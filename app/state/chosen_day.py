@@ -13,6 +13,7 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked
+from fieldmon.planning import day_bound
 
 from . import cached
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 STARTS = time(6, 0)
 # plans are not changed once made
 _LEVELS: WeakKeyDictionary[DayPlan, LevelRange] = WeakKeyDictionary()
+_BOUNDED: WeakKeyDictionary[DayPlan, DayPlan] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +69,18 @@ def route(choices: Choices) -> DayRoute:
         done = cached.worked(choices.key, choices.revision, of, season)
         return DayRoute(done, _work_begins(choices), worked=True)
     return DayRoute(plan.route, starts(choices, plan))
+
+
+def with_bound(choices: Choices, plan: DayPlan) -> DayPlan:
+    """Return the planned day whose route says what no other can expect to find.
+
+    Of one of a team that says little, as others share the aisles.
+    """
+    if choices.who:
+        return plan
+    if plan not in _BOUNDED:
+        _BOUNDED[plan] = day_bound.with_bound(plan)
+    return _BOUNDED[plan]
 
 
 def given_out(choices: Choices) -> cached.Array:

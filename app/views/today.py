@@ -22,6 +22,8 @@ from ..state.chosen_day import DayRoute
 from ..words import texts
 
 if TYPE_CHECKING:
+    from fieldmon.planning.plan import DayPlan
+
     from ..state.choices import Choices
 
 
@@ -31,18 +33,12 @@ def show(choices: Choices) -> None:
     plan = choices.plan()
     with st.container(key="lead"):
         st.markdown(day.headline(choices, plan))
-    day.said_of_day(choices, plan)
-    cautions.show_today(choices)
-    morning.show(choices, plan)
-    content = map_layers.day_map(choices, above=picking.layers(choices))
-    picked = wishes.picked(choices.place)
-    plant_history.want(choices, content, partial(picking.take, choices), picked=picked)
-    picking.show(choices, plan)
-    recording_here.show(choices)
-    plant_history.show_chosen(choices)
-    asking_photos.show(choices)
-    day.route_figures(choices, plan)
-    assuming.show(choices)
+    work, figures = st.container(), st.container()
+    with figures:  # they change with every choice: what takes longer is worked out after them
+        day.route_figures(choices, plan)
+        assuming.show(choices)
+    with work:
+        _work(choices, plan)
     if choices.season is None:
         beginning.show(choices)
     else:
@@ -55,3 +51,17 @@ def show(choices: Choices) -> None:
         with st.expander(texts.STOPS):
             planned = DayRoute(plan.route, chosen_day.starts(choices, plan))
             st.dataframe(day.stops(choices, planned), height=300)
+
+
+def _work(choices: Choices, plan: DayPlan) -> None:
+    """Show the morning's steps, and what is asked and recorded on the map."""
+    day.said_of_day(choices, plan)
+    cautions.show_today(choices)
+    morning.show(choices, plan)
+    content = map_layers.day_map(choices, above=picking.layers(choices))
+    picked = wishes.picked(choices.place)
+    plant_history.want(choices, content, partial(picking.take, choices), picked=picked)
+    picking.show(choices, plan)
+    recording_here.show(choices)
+    plant_history.show_chosen(choices)
+    asking_photos.show(choices)

@@ -120,9 +120,11 @@ def hours(hand: Hand) -> None:
     before = said.inner_text()
     hand.clicks += 1
     slider.press("ArrowLeft")
-    hand.rest()
-    while said.inner_text() == before:
-        hand.rest()
+    # it takes a fifth of a second: to look each quarter would measure the looking
+    hand.page.wait_for_function(
+        "([all, before]) => document.querySelectorAll(all)[1].innerText !== before",
+        arg=["[data-testid=stMetricValue]", before], polling="raf", timeout=_MOST_MS,
+    )  # fmt: skip
 
 
 def gpx_now(hand: Hand) -> None:

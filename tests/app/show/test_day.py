@@ -27,7 +27,7 @@ def test_too_short_a_day_is_said_in_a_sentence(app):
 def test_today_says_why_it_goes_where_it_goes(season_app):
     assert "never inspected yet" in texts_of(season_app)
     go(season_app, "scout")
-    place = season_app.markdown[0].value.lower()
+    place = next(m.value for m in season_app.markdown if m.value.startswith("## ")).lower()
     tap(season_app, "scout_found")
     go(season_app, "today")
     why = next(m.value for m in season_app.markdown if "around today's find" in m.value)

@@ -26,6 +26,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.season_files import refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
 
@@ -127,8 +128,15 @@ class DriveOptions:
     files: PlotFiles = field(default_factory=PlotFiles)
 
 
+#: what goes with a season too; who works, what is known and who chooses are its own
+_OF_A_SEASON = {
+    *("plot", "robot", "output", "bag", "on", "infested", "seed", "gnss", "robot_model"),
+    *("steering", "rough", "ground", "made_up", "broker", "serial", "manufacturer", "vda"),
+}
+
+
 @with_options
-def drive(options: DriveOptions) -> None:
+def drive(context: typer.Context, options: DriveOptions) -> None:
     """Drive a day on a plot or in a season: plant by plant, learning from each find.
 
     On a plot the finds are simulated, and nothing is kept but what -o and --bag write. In a
@@ -145,12 +153,14 @@ def drive(options: DriveOptions) -> None:
 
     if options.plot is None or not is_season(options.plot):
         driven, on = _plot(options)
-    elif (days := _team(options, options.plot)) is not None:
+        _write(driven, on, options, _name(options))
+        return
+    refuse_what_was_chosen(context, _OF_A_SEASON)
+    if (days := _team(options, options.plot)) is not None:
         for on, each, own in days:
             _write(each, on, own, own.serial)
         return
-    else:
-        driven, on = _season(options, options.plot)
+    driven, on = _season(options, options.plot)
     _write(driven, on, options, _name(options))
 
 

@@ -50,13 +50,13 @@ def export(
 
     Example: fieldmon export season.gpkg --of inspections -o inspections.csv
     """
+    from fieldmon.cli.season_files import opened  # noqa: PLC0415
     from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
-    from fieldmon.monitoring import Season  # noqa: PLC0415
 
     ending = output.suffix.lower()
     if ending not in {".csv", ".json"}:
         raise SettingError(f"A table's file must end in .csv or .json, but it is {output.name!r}.")
-    kept = [Season(path) for path in seasons]
+    kept = opened(seasons)
     data = _observations(kept, pest, crop) if ending == ".json" else _table(kept, of.value)
     write_whole(output, data)
     typer.echo(f"Written to {output}")

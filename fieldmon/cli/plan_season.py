@@ -8,6 +8,7 @@ import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_drafts
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
+from fieldmon.cli.season_files import refuse_what_was_chosen
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
@@ -29,7 +30,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
     from fieldmon.planning.route import with_forecast  # noqa: PLC0415
 
-    _refuse_what_was_chosen(context)
+    refuse_what_was_chosen(context, _OF_A_PLAN)
     season = Season(file)
     tell_drafts(season.drafts)
     on, now = day_on(season.plot.field, day(options.on)), options.now
@@ -77,19 +78,3 @@ def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
     for member, today, paths in zip(team, days, files, strict=True):
         write_member(member.name, today.route, paths)
     write_chance_map(options.chance_map, season.plot, days[0].chance)
-
-
-def _refuse_what_was_chosen(context: typer.Context) -> None:
-    """Refuse options that a season has kept since it began."""
-    told = {
-        name
-        for name in context.params
-        if (source := context.get_parameter_source(name)) is not None
-        and source.name == "COMMANDLINE"
-    }
-    if told - _OF_A_PLAN:
-        flags = ", ".join(f"--{name.replace('_', '-')}" for name in sorted(told - _OF_A_PLAN))
-        raise SettingError(
-            f"A season keeps what was chosen when it began, but {flags} was given too. "
-            "Leave it away, or choose otherwise for the days to come with: fieldmon change"
-        )

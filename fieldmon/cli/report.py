@@ -77,11 +77,11 @@ def report(  # noqa: PLR0913, PLR0917 - the command's options
             f"A report is of one season, but {len(seasons)} are given. Several go into one with "
             "--certification."
         )
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.cli.season_files import opened  # noqa: PLC0415
     from fieldmon.reports.write import checked_ending, write_report  # noqa: PLC0415
 
     checked_ending(output)
-    kept = [Season(path) for path in seasons]
+    kept = opened(seasons)
     tongue, units = spoken(language, kept[0].settings.language)
     made = _certified(kept, until, units) if certification else _made(kept[0], on, until, units)
     to = write_report(made.said_in(tongue), output, paper.value)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import phone_tables, schema
+from fieldmon.monitoring import phone_tables, schema, settings_log
 from fieldmon.monitoring.geopackage import touch
 
 if TYPE_CHECKING:
@@ -90,6 +90,16 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
     """Raise `FileProblem` unless both are copies of one season."""
+    begun, theirs = (settings_log.begun(one) for one in (db, other))
+    if begun != theirs:
+        raise FileProblem(
+            worded(
+                "Two copies of one season can be merged, but one began on {begun} and the other on "
+                "{theirs}: they are seasons of their own. Leave each in its file.",
+                begun=begun,
+                theirs=theirs,
+            )
+        )
     for table in SAME:
         names = ", ".join(table.names)
         wanted = f"SELECT {names} FROM {table.name} ORDER BY fid"  # noqa: S608 - names of ours

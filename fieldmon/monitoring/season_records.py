@@ -172,16 +172,25 @@ class SeasonRecords(OpenSeason):
         # there are as many rows as before: all is read again
         self._refresh(db, settings.day(news.date.min().item()))
 
+    def is_copy(self, file: Path) -> bool:
+        """Return whether a file is this season or a copy of it, however far they went apart."""
+        if file.resolve() == self.path.resolve():
+            return True
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            try:
+                merging.refuse_strangers(db, theirs)
+            except FileProblem:
+                return False
+        return True
+
     def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
         """Return what another program changed of inspections in a copy of this season.
 
         A file that is no copy of it has none.
         """
-        with self.store.reading() as db, Store(copy).reading() as theirs:
-            try:
-                merging.refuse_strangers(db, theirs)
-            except FileProblem:
-                return ()
+        if not self.is_copy(copy):
+            return ()
+        with Store(copy).reading() as theirs:
             return copy_corrections.waiting(theirs)
 
     def take_corrections(self, copy: Path, name: str, who: str) -> int:

@@ -6,6 +6,7 @@ to what counted before, by undoing or by hand, has taken the last change back.
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
@@ -27,6 +28,12 @@ Parts = dict[str, str]
 def now(db: sqlite3.Connection) -> Parts:
     """Return what counts now."""
     return dict(db.execute("SELECT name, value FROM settings ORDER BY fid").fetchall())
+
+
+def begun(db: sqlite3.Connection) -> str:
+    """Return the day (ISO) on which the season began; "" where a file says nothing of it."""
+    said: str = json.loads(now(db).get("season", "{}")).get("begins", "")
+    return said
 
 
 def write(db: sqlite3.Connection, parts: Parts) -> list[str]:

@@ -199,8 +199,8 @@ def commands(season: Path, work: Path) -> list[Prepared]:
                  lambda copy: _edited(copy, newest)),
         Prepared("backup", ["backup", "SEASON", "-o", "backup.gpkg"]),
         Prepared("salvage", ["salvage", "SEASON", "-o", "rescued.gpkg"]),
-        Prepared("drive, made up, six minutes", [
-            "drive", "SEASON", "--made-up", "--hours", "0.1", "--date", tomorrow]),
+        Prepared("drive, made up, a day", [
+            "drive", "SEASON", "--made-up", "--date", tomorrow]),
         Prepared("change --spread: every morning anew", ["change", "SEASON", "--spread", "0.03"]),
         Prepared("correct, of the first day", ["correct", "SEASON", "--who", "Ann"],
                  lambda copy: _edited(copy, 1)),

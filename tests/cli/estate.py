@@ -35,3 +35,11 @@ def filled_in(path, finds, n=None):
         writer.writeheader()
         writer.writerows(rows)
     return [int(row["plant"]) for row in done]
+
+
+def begin_next_year(run, folder):
+    """Begin next year's season on the same plot by its command; return its file."""
+    words = (ZIP, "--feature", "Nursery", "--begins", "2027-11-02", "--hours", "1")
+    code, _, err, _ = run("init", folder / "next.gpkg", *words)
+    assert code == 0, err
+    return folder / "next.gpkg"

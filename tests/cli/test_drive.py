@@ -1,5 +1,7 @@
 """`fieldmon drive`: a day driven on a plot, or recorded in a season."""
 
+import pytest
+
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, ZIP, table
 
@@ -49,3 +51,12 @@ def test_where_no_broker_answers_it_is_a_sentence(run):
     code, _, err, _ = run(*PLOT, "--robot", "vda5050", "--broker", "127.0.0.1:1")
     assert code == 2
     assert "MQTT broker must answer" in err
+
+
+@pytest.mark.parametrize("words", [["--hours", "0.1"], ["--sampler", "naive"], ["--scout"]])
+def test_what_a_season_keeps_is_refused_and_nothing_is_driven(run, season, words):
+    kept = season.read_bytes()
+    code, _, err, made = run("drive", season, "--made-up", *words)
+    assert (code, made) == (2, set())
+    assert f"A season keeps what was chosen when it began, but {words[0]} was given" in err
+    assert season.read_bytes() == kept

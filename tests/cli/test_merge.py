@@ -3,7 +3,7 @@
 import shutil
 
 from fieldmon.monitoring import Season
-from tests.cli.estate import BEGINS, filled_in
+from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in
 
 
 def worked(run, season, route, finds, who):
@@ -34,3 +34,14 @@ def test_what_is_no_copy_of_the_season_is_a_sentence(run, season, tmp_path):
         code, _, err, made = run("merge", season, other)
         assert (code, made) == (2, set())
         assert "must be the file of a season" in err
+
+
+def test_seasons_of_two_years_on_one_plot_are_no_copies(run, tmp_path):
+    words = (ZIP, "--feature", "Nursery", "--hours", "1", "--begins", BEGINS)
+    assert run("init", tmp_path / "this.gpkg", *words)[0] == 0
+    other = begin_next_year(run, tmp_path)
+    kept = (tmp_path / "this.gpkg").read_bytes()
+    code, _, err, made = run("merge", "this.gpkg", other)
+    assert (code, made) == (2, set())
+    assert f"one began on {BEGINS} and the other on 2027-11-02" in err
+    assert (tmp_path / "this.gpkg").read_bytes() == kept

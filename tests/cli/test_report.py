@@ -1,12 +1,11 @@
 """`fieldmon report`: a day or a season on paper."""
 
-import shutil
 from datetime import date, timedelta
 
 import pytest
 
 from fieldmon.monitoring import Season
-from tests.cli.estate import BEGINS
+from tests.cli.estate import BEGINS, begin_next_year
 from tests.reports.reading import sizes_mm, texts
 
 
@@ -74,13 +73,13 @@ def test_what_cannot_be_is_a_sentence_and_leaves_no_file(run, season, words, say
 def test_the_record_for_a_certifier_is_of_several_seasons_and_a_report_of_one(
     run, season, tmp_path
 ):
-    copy = shutil.copy(season, tmp_path / "other.gpkg")
-    code, _, err, made = run("report", season, copy, "--certification", "-o", "record.html")
+    other = begin_next_year(run, tmp_path)
+    code, _, err, made = run("report", season, other, "--certification", "-o", "record.html")
     assert code == 0, err
     assert made == {tmp_path / "record.html"}
     page = (tmp_path / "record.html").read_text("utf-8")
     assert page.count("the chain holds") == 2
-    code, _, err, _ = run("report", season, copy, "-o", "report.html")
+    code, _, err, _ = run("report", season, other, "-o", "report.html")
     assert code == 2
     assert "A report is of one season, but 2 are given" in " ".join(err.split())
     code, _, err, _ = run("report", season, "--certification", "--date", "2026-11-02")

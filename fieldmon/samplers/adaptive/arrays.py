@@ -97,7 +97,7 @@ class RowTours(NamedTuple):
         as `most`.
     after_clean
         ``(n, k)`` the same once the plant before it in the row was inspected, for each of k times,
-        and seemed clean.
+        and seemed clean; -1 until somebody asks.
     """
 
     net: Float

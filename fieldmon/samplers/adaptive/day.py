@@ -221,7 +221,8 @@ def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> N
     # where finds are not traced, no direction is told from another
     lean = 0.5 if belief.traces.kernel.size == 1 else leaning(belief.clusters.evidence)
     turned = abs(lean - belief.scale[2]) >= _NOTABLE * min(belief.scale[2], 1.0 - belief.scale[2])
-    if abs(scale - belief.scale[0]) < _NOTABLE * belief.scale[0] and not turned:
+    # nothing in common stays nothing: no change is less than a tenth of 0
+    if abs(scale - belief.scale[0]) <= _NOTABLE * belief.scale[0] and not turned:
         return
     ratio = scale / max(belief.scale[0], LEAST)
     ratios = ratio * lean / belief.scale[2], ratio * (1.0 - lean) / (1.0 - belief.scale[2])
@@ -234,27 +235,16 @@ def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> N
 def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in more or fewer infested plants, once finds differ enough from those expected.
 
-    Every plant's odds are multiplied; what neighbours have in common stays, as a correlation.
     A plan, whose results are supposed, begins so sure of the number that nothing changes.
     """
     level = belief.level[0] / belief.level[1]
     if belief.traces.kernel.size == 1 or abs(level - belief.level[2]) < _NOTABLE * belief.level[2]:
         return
-    chance, pair_chance, ratio = belief.chance, belief.pair_chance, level / belief.level[2]
-    for i in range(chance.size):
-        p = chance[i]
-        more = times_odds(p, ratio)
-        for e in range(linked.start[i], linked.start[i + 1]):
-            q = chance[linked.plant[e]]
-            other = times_odds(q, ratio)
-            spread = p * (1.0 - p) * q * (1.0 - q)
-            kept = np.sqrt(more * (1.0 - more) * other * (1.0 - other) / spread)
-            both = more * other + (pair_chance[e] - p * q) * kept
-            pair_chance[e] = bounded_pair_chance(both, more, other)
-    for i in range(chance.size):
-        chance[i] = times_odds(chance[i], ratio)
+    room = belief.near.after, belief.raised.by
+    believed, ratio = (belief.chance, belief.pair_chance), level / belief.level[2]
+    times_odds_of_all(believed, linked, ratio, room)
     belief.level[2] = level
-    belief.scale[4] = chance.mean()
+    belief.scale[4] = belief.chance.mean()
     rows.stale[:], rows.most[:] = True, -1.0
 
 
@@ -281,6 +271,31 @@ def trust_in_differences(share: float, slope_sums: Float) -> float:
     few = 1.0 / (1.0 + (share / _HEAVY) ** 4)
     trust = few + (1.0 - few) * proved_slope(slope_sums)
     return 1.0 if trust > _NEARLY_ALL else float(max(trust, _LEAST_TRUST))
+
+
+@loop
+def times_odds_of_all(
+    believed: tuple[Float, Float], linked: Linked, ratio: float, room: tuple[Float, Float]
+) -> None:
+    """Multiply every plant's odds; what neighbours have in common stays, as a correlation.
+
+    `believed` is ``chance (n,)`` and ``pair_chance (e,)``, changed in place; `room` two arrays of n
+    to work in.
+    """
+    chance, pair_chance = believed
+    more, wider = room
+    for i in range(chance.size):
+        p = chance[i]
+        more[i] = times_odds(p, ratio)
+        wider[i] = np.sqrt(more[i] * (1.0 - more[i]) / (p * (1.0 - p)))
+    for i in range(chance.size):
+        for e in range(linked.start[i], linked.start[i + 1]):
+            j = linked.plant[e]
+            in_common = (pair_chance[e] - chance[i] * chance[j]) * wider[i] * wider[j]
+            both = more[i] * more[j] + in_common
+            pair_chance[e] = bounded_pair_chance(both, more[i], more[j])
+    for i in range(chance.size):
+        chance[i] = more[i]
 
 
 @inlined

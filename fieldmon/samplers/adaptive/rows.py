@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from fieldmon.samplers.adaptive.arrays import BeliefArrays, RowTours
     from fieldmon.samplers.base import InspectionTimes
 
+# what a find is worth is never below nothing
+_UNKNOWN = -1.0
+
 
 @inlined
 def best_time(times: InspectionTimes, value: float, price: float) -> tuple[float, int]:
@@ -55,7 +58,8 @@ def value_row(
                 continue
             gain, time = best_time(times, value, price)
             if gain > 0.0 and previous == i - 1 and previous >= 0:
-                gain, time = best_time(times, rows.after_clean[i, before], price)
+                worth = value_after_clean(belief, rows, (i, before), times.detects[before])
+                gain, time = best_time(times, worth, price)
             if gain > 0.0:
                 rows.gain[first + n], rows.stop_s[first + n] = gain, times.stop_s[time]
                 previous, before = i, time
@@ -80,7 +84,7 @@ def _pays_from(times: InspectionTimes, price: float) -> float:
 
 @inlined
 def trusted(belief: BeliefArrays, value: float) -> float:
-    """Return a find's chance or worth as plans are made by it: less apart than is believed."""
+    """Return what a find is expected to be worth, as plans are made by it."""
     trust = belief.scale[3]
     return float(value if trust == 1.0 else value**trust)
 
@@ -88,7 +92,7 @@ def trusted(belief: BeliefArrays, value: float) -> float:
 @inlined
 def trusted_value(belief: BeliefArrays, i: int) -> float:
     """Return what a find at plant i is expected to be worth, as plans are made by it."""
-    return trusted(belief, belief.worth[i]) * trusted(belief, belief.chance[i])
+    return trusted(belief, belief.worth[i] * belief.chance[i])
 
 
 @inlined
@@ -98,12 +102,10 @@ def most_in(belief: BeliefArrays, rows: RowTours, times: InspectionTimes, block:
     if most < 0.0:
         most = 0.0
         for i in range(block * BLOCK, min((block + 1) * BLOCK, belief.worth.size)):
-            worth = trusted(belief, belief.worth[i])
-            rows.value[i] = worth * trusted(belief, belief.chance[i])
+            rows.value[i] = trusted_value(belief, i)
             most = max(most, rows.value[i])
             for k in range(times.detects.size):
-                chance = _after_clean(belief, i, times.detects[k])
-                rows.after_clean[i, k] = worth * trusted(belief, chance)
+                rows.after_clean[i, k] = _UNKNOWN
         rows.most[block] = most
     return float(most)
 
@@ -113,6 +115,22 @@ def mark_changed(travel: TravelTable, rows: RowTours, i: int) -> None:
     """Mark a plant, and the one after it, as ones of which something else is believed."""
     rows.stale[travel.row[i]] = True
     rows.most[i // BLOCK] = rows.most[(i + 1) // BLOCK] = -1.0
+
+
+@inlined
+def value_after_clean(
+    belief: BeliefArrays, rows: RowTours, place: tuple[int, int], detects: float
+) -> float:
+    """Return what a find at plant i is expected to be worth after a clean one before it.
+
+    `place` is i and which of the times, with this detection, the one before it got. It is worked
+    out where it is asked for: few plants pay.
+    """
+    i, time = place
+    if rows.after_clean[i, time] == _UNKNOWN:
+        value = belief.worth[i] * _after_clean(belief, i, detects)
+        rows.after_clean[i, time] = trusted(belief, value)
+    return float(rows.after_clean[i, time])
 
 
 # copied: handing over all of a belief takes longer than this

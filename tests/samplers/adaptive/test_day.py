@@ -14,8 +14,14 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.adaptive import Adaptive
-from fieldmon.samplers.adaptive.day import times_odds, trust_in_differences
+from fieldmon.samplers.adaptive.day import (
+    _learn_clustering,
+    times_odds,
+    times_odds_of_all,
+    trust_in_differences,
+)
 from fieldmon.samplers.sweeps import Naive
+from tests.samplers.adaptive.working import times_of, workspace
 from tests.scenes import scene_on
 
 GRID = rectangle(12, 15)
@@ -148,3 +154,35 @@ def test_odds_are_multiplied_and_chances_stay_chances():
     assert times_odds.py_func(0.5, 3.0) == pytest.approx(0.75)
     assert times_odds.py_func(0.2, 1.0) == pytest.approx(0.2)
     assert 0.0 < times_odds.py_func(1e-6, 0.01) < times_odds.py_func(1.0 - 1e-6, 100.0) < 1.0
+
+
+def test_with_all_odds_multiplied_neighbours_stay_as_correlated():
+    before = PairApproximation.of(GRID, np.random.default_rng(3).uniform(0.1, 0.3, N), 0.3)
+    chance, pair_chance = before.chance.copy(), before.pair_chance.copy()
+    times_odds_of_all.py_func((chance, pair_chance), GRID.linked, 1.7, tuple(np.empty((2, N))))
+    odds = [c / (1.0 - c) for c in (chance, before.chance)]
+    np.testing.assert_allclose(odds[0], 1.7 * odds[1])
+
+    def correlation(chance, pair_chance):
+        start, other = GRID.adjacent
+        p, q = np.repeat(chance, np.diff(start)), chance[other]
+        return (pair_chance - p * q) / np.sqrt(p * (1.0 - p) * q * (1.0 - q))
+
+    was = correlation(before.chance, before.pair_chance)
+    np.testing.assert_allclose(correlation(chance, pair_chance), was)
+
+
+@loop
+def learn_clustering(linked, belief, rows):
+    _learn_clustering(linked, belief, rows)
+
+
+def test_neighbours_with_nothing_in_common_are_thought_over_once():
+    belief, rows, *_ = workspace(scene_of(3, 1.0), times_of((40.0, 0.84)))
+    belief.clusters.finds[:] = 0.0, 5.0
+    learn_clustering(GRID.linked, belief, rows)
+    assert belief.scale[0] == 0.0
+    assert rows.stale.all()
+    rows.stale[:] = False
+    learn_clustering(GRID.linked, belief, rows)
+    assert not rows.stale.any()

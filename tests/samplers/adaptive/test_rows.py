@@ -8,7 +8,13 @@ import pytest
 from fieldmon.compute.jit import loop
 from fieldmon.plot.layout import rectangle
 from fieldmon.samplers.adaptive.arrays import BLOCK
-from fieldmon.samplers.adaptive.rows import best_time, mark_changed, most_in, value_row
+from fieldmon.samplers.adaptive.rows import (
+    best_time,
+    mark_changed,
+    most_in,
+    value_after_clean,
+    value_row,
+)
 from tests.samplers.adaptive.working import belief_on, scene_with, times_of, workspace
 
 ROWS, PLANTS = 3, 8
@@ -36,6 +42,11 @@ def mark(travel, rows, i):
 @loop
 def most(belief, rows, block):
     return most_in(belief, rows, ONE_TIME, block)
+
+
+@loop
+def after_clean(belief, rows, i):
+    return value_after_clean(belief, rows, (i, 0), ONE_TIME.detects[0])
 
 
 def valued(chance, price, times=ONE_TIME, together=0.0, row=1):
@@ -139,13 +150,21 @@ def test_a_plant_that_changed_changes_what_the_next_is_worth_after_it_too(change
     grid = rectangle(1, 2 * BLOCK)
     scene = scene_with(grid, np.random.default_rng(1).uniform(0.1, 0.5, 2 * BLOCK))
     belief, rows, *_ = workspace(scene, ONE_TIME, 0.3)
-    for block in range(2):
-        most(belief, rows, block)
+    plants = range(2 * BLOCK)
+
+    def values(rows):
+        known = [most(belief, rows, block) for block in range(2)]
+        return known, rows.value.copy(), [after_clean(belief, rows, i) for i in plants]
+
+    before = values(rows)
     belief.chance[changed] *= 0.5
     mark(scene.aisles.travel, rows, changed)
     anew = rows._replace(most=np.full_like(rows.most, -1.0), value=rows.value.copy(),
                          after_clean=rows.after_clean.copy())  # fmt: skip
-    for block in range(2):
-        assert most(belief, rows, block) == most(belief, anew, block)
-    np.testing.assert_array_equal(rows.value, anew.value)
-    np.testing.assert_array_equal(rows.after_clean, anew.after_clean)
+    now, wanted = values(rows), values(anew)
+    for mine, theirs in zip(now, wanted, strict=True):
+        np.testing.assert_array_equal(mine, theirs)
+    # of its own, and of the next after it
+    assert (np.flatnonzero(now[1] != before[1]) == changed).all()
+    differ = np.flatnonzero(np.array(now[2]) != before[2])
+    assert set(differ) == {changed, changed + 1} & set(plants)

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.origins import ANYWHERE, AT_START, BY_EDGE, JUMPED
+from fieldmon.infestation.origins import (
+    ANYWHERE,
+    AT_START,
+    AT_START_ELSEWHERE,
+    BY_EDGE,
+    JUMPED,
+)
 from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import ARRIVE, ARRIVE_BY_EDGE, TracedPairs
 
@@ -71,13 +77,19 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
         return ()
     n, counts = len(belief.chance), belief.counts
     found = counts.detection(detection)
-    start = counts.estimate(AT_START, n * belief.share_at_start)
+    suspected = counts.estimate(AT_START, float(belief.at_start[0]))
+    elsewhere = counts.estimate(AT_START_ELSEWHERE, float(belief.at_start[1]))
     anywhere = counts.estimate(ANYWHERE, n * ARRIVE)
     edge = counts.estimate(BY_EDGE, n * ARRIVE_BY_EDGE)
     jumps = belief.jumps
     return (
         Learnt("detection", found.value, found.low, found.high),
-        Learnt("infested at the start", start.value, start.low, start.high),
+        Learnt(
+            "infested at the start",
+            suspected.value + elsewhere.value,
+            suspected.low + elsewhere.low,
+            suspected.high + elsewhere.high,
+        ),
         Learnt(
             "arrivals a night",
             anywhere.value + edge.value,

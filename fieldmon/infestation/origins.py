@@ -19,14 +19,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: infested on the first morning; from outside, anywhere or by the plot's edge; by the plant beside
-#: it; overlooked at an inspection; and by jumps of each kernel of `reach.kernels`, from `JUMPED` on
-AT_START, ANYWHERE, BY_EDGE, BESIDE_IT, OVERLOOKED, JUMPED = range(6)
+#: infested on the first morning, among plants that the first map suspected as much as the average
+#: one or more, and among the others; from outside, anywhere or by the plot's edge; by the plant
+#: beside it; overlooked at an inspection; and by jumps of each kernel of `reach.kernels`, from
+#: `JUMPED` on
+AT_START, ANYWHERE, BY_EDGE, BESIDE_IT, OVERLOOKED, AT_START_ELSEWHERE, JUMPED = range(7)
 N_ORIGINS = JUMPED + 6
 # how many finds what was believed before the season is worth, of each origin (our choice): little
 # where a plot's insects differ most from another's
 _PRIOR_FINDS = np.full(N_ORIGINS, 5.0)
-_PRIOR_FINDS[[AT_START, ANYWHERE, BY_EDGE]] = 1.0, 0.5, 0.5
+_PRIOR_FINDS[[AT_START, AT_START_ELSEWHERE]] = 1.0
+_PRIOR_FINDS[[ANYWHERE, BY_EDGE]] = 0.5
 # inspections are taken to overlook so much at least and at most
 _DETECTS = (0.05, 0.99)
 

@@ -31,6 +31,7 @@ from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
+    AT_START_ELSEWHERE,
     BESIDE_IT,
     BY_EDGE,
     JUMPED,
@@ -71,6 +72,8 @@ _MOST_LOWERED = 3.0
 _LATE, _WIND_M_S = 0.5, 1.0
 # what jumps were expected to bring is not made up from a chance of jumping below this
 _LEAST_JUMPS = 0.05
+# of a flat map the mean is rounded
+_AVERAGE = 1.0 - 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +94,10 @@ class TracedPairs:
         What each origin brought, and was expected to.
     evidence
         ``(4,)`` of how infested plants stand, see `ClusterEstimate`.
-    share_at_start
-        Mean chance on the first morning, as it was believed then.
+    at_start
+        ``(2,)`` how many were believed infested on the first morning: among plants suspected as
+        much as the average one or more, and among the others. Each is learnt by itself: where a
+        suspicion proves wrong, that says nothing of the others.
     cohorts
         Which part of each chance is of young infestations; None: no pest was named, and all show
         and spread at once.
@@ -111,7 +116,7 @@ class TracedPairs:
     unseen: Floats
     counts: OriginCounts
     evidence: Floats
-    share_at_start: float
+    at_start: Floats
     cohorts: Cohorts | None = None
     wind_m_s: tuple[float, float] = (0.0, 0.0)
     latency: Latency | None = None
@@ -122,12 +127,13 @@ class TracedPairs:
         """Begin with a chance map, see :func:`fieldmon.infestation.pairs.pair_chances`."""
         chance = np.clip(chance, LEAST_CHANCE, MOST_CHANCE)
         shares = np.zeros((len(chance), N_ORIGINS), np.float32)
-        shares[:, AT_START] = 1.0
+        elsewhere = chance < chance.mean() * _AVERAGE
+        shares[~elsewhere, AT_START] = shares[elsewhere, AT_START_ELSEWHERE] = 1.0
+        at_start = np.array([chance[~elsewhere].sum(), chance[elsewhere].sum()])
         together = pair_chances(chance, grid, clustering)
-        unseen, mean = np.full(len(chance), _SENT), float(chance.mean())
-        counts = OriginCounts.none()
+        unseen, counts = np.full(len(chance), _SENT), OriginCounts.none()
         return cls(
-            grid, chance, together, shares, unseen, counts, no_evidence(), mean,
+            grid, chance, together, shares, unseen, counts, no_evidence(), at_start,
             latency=Latency.none(chance), slope_sums=no_inspections(chance),
         )  # fmt: skip
 

@@ -22,5 +22,11 @@ def test_at_first_it_is_what_was_believed_with_wide_intervals():
     assert 1.0 <= told["length of jumps"].low < 4.0 < told["length of jumps"].high + 1.0
 
 
+def test_infested_at_the_start_are_those_suspected_and_the_others():
+    chance = np.where(np.arange(81) < 27, 0.1, 0.01)
+    told = {one.name: one for one in learnt_from(TracedPairs.of(GRID, chance), 0.84)}
+    assert told["infested at the start"].value == pytest.approx(chance.sum())
+
+
 def test_a_belief_that_traces_nothing_has_learnt_nothing():
     assert learnt_from(PairApproximation.of(GRID, FLAT), 0.84) == ()

@@ -49,6 +49,27 @@ def test_chances_stay_chances_and_their_origins_add_up(to):
         assert belief.doubt > 0.0
 
 
+def test_a_suspicion_that_proves_wrong_says_nothing_of_plants_that_were_not_suspected():
+    suspected = (EVERY % 20 < 10) & (EVERY < 200)
+    first = TracedPairs.of(GRID, np.where(suspected, 0.1, 0.01))
+    assert first.at_start == pytest.approx([10.0, 3.0])
+    clean = np.flatnonzero(suspected).astype(np.int32)[::2]
+    belief = first.learn(clean, np.zeros(clean.size, np.bool_), LEARNING)
+    inside = np.setdiff1d(np.flatnonzero(suspected), clean)
+    assert belief.chance[inside].mean() < 0.3 * 0.1
+    # farther than neighbours, only jumps that may be (12 %) tell a little
+    far = (EVERY % 20 > 13) | (EVERY > 260)
+    assert belief.chance[far] == pytest.approx(first.chance[far], rel=0.05)
+
+
+def test_a_suspicion_of_all_alike_is_learnt_of_all():
+    first = TracedPairs.of(GRID, FLAT)
+    assert first.at_start == pytest.approx([8.0, 0.0])
+    clean = EVERY[:200]
+    belief = first.learn(clean, np.zeros(200, np.bool_), LEARNING)
+    assert belief.chance[260:].mean() < 0.35 * 0.02
+
+
 def test_a_day_in_clusters_says_that_insects_do_not_jump_and_one_apart_that_they_do():
     apart = np.zeros(N, np.bool_)
     apart[23::37] = True

@@ -29,7 +29,7 @@ def season(tmp_path_factory):
 
 
 def test_a_corner_is_treated_and_not_the_plot(season):
-    asked = AdviceSettings(0.15, costs=CHEAP)
+    asked = AdviceSettings(0.15, costs=replace(CHEAP, per_ha=30.0))
     advice = season.advice(BEGINS, asked)
     assert advice.verdict == season.verdict(BEGINS, 0.15).verdict == "do not treat"
     assert advice.above >= 1

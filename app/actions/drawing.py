@@ -169,8 +169,7 @@ def _plain_plants(choices: Choices) -> list:
     grid = choices.plot.grid
 
     def make() -> list:
-        plants = plant_layers.plants(grid, colours.plain(len(grid)))
-        return [marks.rows(grid, "row-lines", colours.ROWS), plants]
+        return [plant_layers.plants(grid, colours.plain(len(grid)))]
 
     return cached.layers(f"plain {choices.key}", make)
 

@@ -70,7 +70,8 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
 
 def _show_one(choices: Choices) -> None:
     st.caption(texts.HISTORY_TAP)
-    with st.form("one_plant_form", border=False):
+    # Enter after the row would record it with the plant and the result of the plant before
+    with st.form("one_plant_form", border=False, enter_to_submit=False):
         left, right = st.columns(2)
         # empty: what nobody said must not be recorded by one click
         left.number_input(texts.HISTORY_ROW, 1, None, None, key="one_row")

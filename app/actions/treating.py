@@ -43,7 +43,8 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     advised
         What was advised, for the season's log; empty: nothing.
     """
-    with st.form("treatment_form", border=False):
+    # Enter after one box would record the treatment before the others are said
+    with st.form("treatment_form", border=False, enter_to_submit=False):
         st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
         st.text_input(texts.TREAT_PRODUCT, key="product")
         with st.expander(texts.TREAT_RECORD):

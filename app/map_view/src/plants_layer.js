@@ -50,7 +50,7 @@ export class PlantsLayer extends CompositeLayer {
     const own = this.levels[0].step * M_PER_DEGREE;
     const k = Math.min(LEVELS, Math.max(0, Math.ceil(Math.log2(metres / own))));
     while (this.levels.length <= k) this.levels.push(halved(this.levels.at(-1)));
-    return (this.levels[k].picture ??= painted(this.levels[k], table));
+    return (this.levels[k].picture ??= drawable(painted(this.levels[k], table)));
   }
 
   renderLayers() {
@@ -140,6 +140,11 @@ export function halved({ top, width, height, step, ...rest }) {
     }
   }
   return { top: less, width: wide, height: high, step: 2 * step, ...rest };
+}
+
+// Return a picture as deck.gl takes it: of a bare object it does not know the size, and draws all black.
+export function drawable({ image: { width, height, data }, bounds }) {
+  return { image: new ImageData(data, width, height), bounds };
 }
 
 // Return the picture of the ranks, and where it lies.

@@ -82,6 +82,15 @@ def drawn_on(session):
 AREA = ((35.1502, 30.3602), (35.1504, 30.3602), (35.1503, 30.3604))
 
 
+@pytest.mark.usefixtures("session")
+def test_each_layer_has_a_name_of_its_own():
+    # of two of one name, the browser draws one and complains of the other
+    choices = chosen(a_plot(0.001))
+    made, _ = drawing.content(choices, choices.records)
+    ids = [one.id for one in made.layers]
+    assert sorted(ids) == sorted(set(ids))
+
+
 def test_what_is_finished_on_the_map_is_kept_at_once(drawn_on):
     (area,) = drawn_on("no_go", AREA)
     assert (area.kind, area.lonlat) == ("no_go", AREA)

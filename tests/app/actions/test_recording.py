@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import streamlit as st
 
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
@@ -45,6 +46,20 @@ def treated(app):
     app.run()
     assert not app.error
     assert "treatment of the plot" in texts_of(app)
+
+
+def test_enter_in_a_box_records_nothing(season_app, monkeypatch):
+    made = {}
+    form = st.form
+
+    def watched(key, **more):
+        made[key] = more
+        return form(key, **more)
+
+    monkeypatch.setattr(st, "form", watched)
+    go(season_app, "record")
+    for key in ("one_plant_form", "treatment_form", "route_form"):
+        assert made[key].get("enter_to_submit") is False, key
 
 
 def test_a_treatment_lowers_what_is_expected_and_is_taken_back(season_app):

@@ -232,7 +232,8 @@ def ask_about_contradictions(choices: Choices) -> None:
     season = choices.season
     said = season.contradictions(waiting.results).sentences(season.label)
     others = len(waiting.results) - len(said)
-    st.warning(texts.CONTRADICTING.format(n=len(said), others=others, source=waiting.source))
+    asked = texts.CONTRADICTING if others else texts.CONTRADICTING_ALL
+    st.warning(asked.format(n=len(said), others=others, source=waiting.source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
     if len(said) > _MOST:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
@@ -242,7 +243,8 @@ def ask_about_contradictions(choices: Choices) -> None:
             ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
             ("record_none", texts.RECORD_NONE, _drop),
         ):
-            st.button(label, key=key, on_click=action, args=(choices,))
+            if key != "leave_out" or others:
+                st.button(label, key=key, on_click=action, args=(choices,))
 
 
 def show_said_otherwise(choices: Choices) -> None:

@@ -9,6 +9,7 @@ import streamlit as st
 
 from fieldmon.infestation.observations import ABSENT, PRESENT
 
+from ..state import chosen_units
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -25,7 +26,10 @@ def records_until(records: Observations) -> tuple[Observations, str]:
     shown = records
     if len(known) > 1:
         first, last = (day.item() for day in (known[0], known[-1]))
-        until = st.slider(texts.RECORDS, first, last, last, key=f"until {first} {last}")
+        until = st.slider(
+            texts.RECORDS, first, last, last, key=f"until {first} {last}",
+            format=chosen_units.units().date_format,
+        )  # fmt: skip
         shown = records.take(np.isnat(records.day) | (records.day <= np.datetime64(until)))
     if not len(records):
         return records, ""

@@ -33,7 +33,7 @@ def show() -> None:
     table, config = estate_table.of(plots, turns)
     st.dataframe(
         table, hide_index=True, key="plots_table", selection_mode="single-row",
-        on_select=partial(_picked, plots), column_config=config,
+        on_select=partial(_picked, plots), column_config=config, placeholder="",
     )  # fmt: skip
 
 

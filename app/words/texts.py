@@ -672,6 +672,13 @@ CONTRADICTING = Plural(
     "{n} result from {source} contradicts " + _CONTRADICTING,
     "{n} results from {source} contradict " + _CONTRADICTING,
 )
+_CONTRADICTING_ALL = (
+    "what is recorded of the same plants and day. Nothing is recorded yet. Which holds?"
+)
+CONTRADICTING_ALL = Plural(
+    "{n} result from {source} contradicts " + _CONTRADICTING_ALL,
+    "{n} results from {source} contradict " + _CONTRADICTING_ALL,
+)
 AND_MORE = "... and {n} more."
 LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
 RECORD_NONE = "Record nothing"

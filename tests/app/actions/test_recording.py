@@ -203,6 +203,19 @@ def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season
     assert season().history.inspections.result.tolist() == results
 
 
+def test_where_all_contradicts_there_are_no_others_to_record(season_app, season):
+    season().plan(date(2026, 11, 16))
+    plant, day = season().kept_route(date(2026, 11, 16))[:1], np.datetime64("2026-11-16")
+    season().record(Inspections.of(plant, np.array([1]), day), "file")
+    go(season_app, "record")
+    season_app.number_input(key="stops_done").set_value(1)
+    send(season_app, "route")
+    assert season_app.warning[0].value.endswith("Nothing is recorded yet. Which holds?")
+    keys = [button.key for button in season_app.button]
+    assert "confirm" in keys
+    assert "leave_out" not in keys
+
+
 def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, season):
     contradicted(season_app, season)
     season_app.selectbox(key="season").set_value("Sample estate").run()

@@ -5,6 +5,7 @@ import pytest
 import streamlit as st
 
 from app.show.records import records_until
+from app.state.chosen_units import units
 from fieldmon.infestation.observations import Observations
 from tests.app.chosen import a_plot
 
@@ -25,8 +26,8 @@ def test_records_of_later_days_are_left_out_undated_ones_never(
 ):
     asked = []
 
-    def slider(_label, first, last, value, key):
-        asked.append((first, last, value, key))
+    def slider(_label, first, last, value, key, format):  # noqa: A002 - Streamlit's word
+        asked.append((first, last, value, key, format))
         return np.datetime64(until).item()
 
     monkeypatch.setattr(st, "slider", slider)
@@ -34,6 +35,7 @@ def test_records_of_later_days_are_left_out_undated_ones_never(
     assert len(left) == shown
     assert said.startswith(f"{shown} of 4 records shown ({pests} with pests, ")
     assert [str(day) for day in asked[0][:3]] == [DAYS[0], DAYS[2], DAYS[2]]
+    assert asked[0][4] == units().date_format
 
 
 def test_records_of_one_day_need_no_slider(records):

@@ -164,7 +164,9 @@ def _plan_every_plot(options: PlanOptions) -> None:
     from fieldmon.planning.batch import Orders  # noqa: PLC0415
 
     worker, starts = options.worker, options.starts()
-    worker.robot()  # what cannot be is refused before any plot is read
+    # what cannot be is refused before any plot is read
+    worker.robot()
+    sampler_of(options.sampler, options.every)
     request, folder = _request_of_all(options), _folder(options.output)
     plots = estate(request)
     begins = starts.on_plot(plots.fields[0])

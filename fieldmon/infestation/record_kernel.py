@@ -15,7 +15,14 @@ import numpy as np
 from fieldmon.compute.jit import kept, routine
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.belief import MOST_CHANCE
-from fieldmon.infestation.nearby_plants import FAR_M, PlantRows, SearchRows, first_from, outside_m
+from fieldmon.infestation.nearby_plants import (
+    FAR_M,
+    NEARBY_M,
+    PlantRows,
+    SearchRows,
+    first_from,
+    outside_m,
+)
 from fieldmon.infestation.observations import PRESENT
 
 if TYPE_CHECKING:
@@ -61,12 +68,15 @@ def record_chance(
     A record speaks in full of the plant it stands at, as sharply as its position is known, and
     more softly of the plants about it. A find is one more way of being infested,
     1 - (1 - p)(1 - s) with s what it says here; a clean look is Bayes' rule, p (1 - s) / (1 - p s).
-    All records must be `usable` ones; raise `ObservationError` if all are out of reach.
+    All records must be `usable` ones; raise `ObservationError` if all lie elsewhere than on the
+    plot or near it.
     """
     if not len(observations):
         return base.copy()
     every = _kernel(grid, observations, settings)
     near = _within_reach(grid, observations, every.radius_m)
+    if not near.any():
+        return base.copy()
     nearby = observations.take(near)
     xy_m = grid.frame.xy_m(nearby.lonlat)
     age_days = _age_days(nearby, on_day, settings)
@@ -132,7 +142,9 @@ def _within_reach(
 ) -> NDArray[np.bool_]:
     off_m = outside_m(grid, observations.lonlat)
     near: NDArray[np.bool_] = off_m <= np.minimum(radius_m, FAR_M)
-    if near.any():
+    # of a neighbour's records some are taken for this plot's own, and reach none of its plants
+    own_m = np.fmax(NEARBY_M, 2.0 * observations.accuracy_m)
+    if (near | (off_m <= own_m)).any():
         return near
     turned_m = outside_m(grid, observations.lonlat[:, ::-1])
     turned = turned_m.min() <= radius_m.max()

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 import shapely
 from shapely import MultiPolygon
@@ -123,6 +124,21 @@ def test_a_robot_in_the_crowd_is_the_one_that_was_said(run, parcels, summary, wo
     assert run(*words, "--feature", "Plot 5", "-o", "one.geojson")[0] == 0
     crowd = parcels.parent / "routes" / summary()["Plot 5"]["file"]
     assert crowd.read_bytes() == (parcels.parent / "one.geojson").read_bytes()
+
+
+def test_a_plot_is_not_refused_for_what_was_found_next_to_it(run, parcels, summary):
+    shape = shapely.from_geojson(parcels.read_text(encoding="utf-8")).geoms[0]
+    frame = Frame(*shape.centroid.coords[0])
+    east_m = frame.geometry_m(shape).bounds[2]
+    ((lon, lat),) = frame.lonlat(np.array([[east_m + 60.0, 0.0]]))
+    found = f"date,longitude,latitude,count\n2026-11-01,{lon:.7f},{lat:.7f},9\n"
+    (parcels.parent / "r.csv").write_text(found)
+    words = ["--observations", "r.csv", "--date", "2026-11-02", "--hours", 1]
+    assert run("plan", parcels, "--all", "-o", "routes", *words)[0] == 0
+    assert summary()["Plot 1"]["state"] == "planned"
+    code, _, err, _ = run("plan", parcels, "--feature", "Plot 1", "-o", "one.geojson", *words)
+    assert code == 0, err
+    assert "count for plants near enough to them, if any are" in err
 
 
 @pytest.mark.parametrize("words", [["--rover"], ["--robot-times", "thesis"]])

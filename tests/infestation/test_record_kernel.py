@@ -258,6 +258,13 @@ def test_records_that_are_all_elsewhere_are_refused_with_the_distance(xy_m, dist
     assert "coordinate system" in str(refused.value)
 
 
+def test_records_near_the_plot_that_reach_no_plant_say_nothing():
+    outside = GRID.xy_m.max(axis=0) + np.array([60.0, 0.0])
+    np.testing.assert_array_equal(heard(records(outside, PRESENT)), np.full(len(GRID), 0.01))
+    with_another = together(records(outside, PRESENT), at_middle(PRESENT))
+    np.testing.assert_array_equal(heard(with_another), heard(at_middle(PRESENT)))
+
+
 def test_records_on_another_continent_are_refused_with_the_distance():
     observations = Observations.of([[-72.0, -41.0]], [PRESENT])
     km = Geod(ellps="WGS84").inv(-72.0, -41.0, GRID.frame.lon, GRID.frame.lat)[2] / 1000

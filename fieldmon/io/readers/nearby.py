@@ -11,6 +11,7 @@ import shapely
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
+from fieldmon.infestation.nearby_plants import NEARBY_M
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
 
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
 _GEOD = pyproj.Geod(ellps="WGS84")
 _FAR_M, _DEGREE_M = 100_000.0, 111_000.0
-#: a record this close to a plot counts for it
-NEARBY_M = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +133,7 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
             doubtful(
                 worded(
                     "{n} record(s) lie on no plant: {nearest} to {farthest} from the nearest. They "
-                    "count for the plants around them, and for none as its own.",
+                    "count for plants near enough to them, if any are, and for none as its own.",
                     n=int(beside.sum()),
                     nearest=_far(away[beside].min()),
                     farthest=_far(away[beside].max()),

@@ -17,14 +17,13 @@ from fieldmon.cli.options import (
     SeasonFile,
     Speed,
     WorkerOptions,
+    sampler_settings,
 )
 from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
 from fieldmon.cli.tongues import Language, checked_language
 from fieldmon.errors import SettingError
-from fieldmon.samplers import kind_of
-from fieldmon.samplers.registry import SAMPLERS
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
@@ -76,7 +75,7 @@ class ChangeOptions:
         if self.sampler is not None:
             new = replace(new, sampler=self.sampler, sampler_settings={})
         if self.every is not None:
-            new = replace(new, sampler_settings=_every(new.sampler, self.every))
+            new = replace(new, sampler_settings=sampler_settings(new.sampler, self.every))
         if self.start is not None:
             new = replace(new, starts=clock(self.start))
         if self.spread is not None and self.living.pest != "none":
@@ -133,17 +132,6 @@ class ChangeOptions:
             return replace(settings, team=() if n == 1 else team_of(n, settings.robot))
         team, first = members_of(robots, settings.starts, WorkerOptions())
         return replace(settings, team=team, starts=first)
-
-
-def _every(name: str, every: int) -> dict[str, float]:
-    """Return the setting of a sampler that inspects every N-th; refuse it where it does not."""
-    if kind_of(name).every is None:
-        having = ", ".join(own for own, kind in SAMPLERS.items() if kind.every is not None)
-        raise SettingError(
-            f"--every goes with a sampler that inspects every N-th ({having}), but this season's "
-            f"is {name}. Leave it out, or choose another one with --sampler."
-        )
-    return kind_of(name).settings_for(every)
 
 
 @with_options

@@ -10,6 +10,7 @@ import typer
 
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.times import day
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from datetime import date
@@ -54,6 +55,11 @@ Loss = Annotated[float, typer.Option(help="Loss by a plant that is infested for 
 Days = Annotated[float, typer.Option(help="Days that an untreated plant stays infested.")]
 Works = Annotated[float, typer.Option(help="Chance that treating cleans a plant, 0 to 1.")]
 
+_LEAVES_OF_PLANTS = (
+    "--leaves, --counted and --presence answer a threshold of leaves, but {} is a share of the "
+    "plants, which the season itself knows. Leave them out, or name a threshold of leaves."
+)
+
 
 def decide(  # noqa: PLR0913, PLR0917 - the command's options
     season: SeasonFile,
@@ -91,11 +97,18 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     from fieldmon.monitoring.advice import AdviceSettings  # noqa: PLC0415
 
     asked = threshold_of(threshold, _own(thresholds))
+    of_plants = asked.measure == "share of plants"
+    _refuse_idle(
+        (of_plants and (leaves or counted or presence), _LEAVES_OF_PLANTS.format(threshold)),
+        (counted and not leaves, "--counted says what was found on leaves: give --leaves N too."),
+        (sections > 1 and not boom, "--sections are those of a boom: give --boom METRES too."),
+        (ring and (boom or section_rows), "--ring is of a knapsack: give --section-rows 0 too."),
+    )
     kept = Season(season)
     when = day(on) or kept.last_date()
     rows_m = kept.plot.grid.row_spacing_m
     rows = Sprayer.of_boom(boom, sections, rows_m).rows if boom else section_rows
-    level = {"level": asked.level} if asked.measure == "share of plants" else {}
+    level = {"level": asked.level} if of_plants else {}
     advice = kept.advice(
         when,
         AdviceSettings(
@@ -116,6 +129,13 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     kept.advise(when, " ".join([*said[:1], *where[:1]]))
     if output:
         _write(_Asked(kept, when, advice, product), output)
+
+
+def _refuse_idle(*each: tuple[object, str]) -> None:
+    """Refuse what would be passed over without a word: the first sentence that holds."""
+    for idle, says in each:
+        if idle:
+            raise SettingError(says)
 
 
 def _own(path: Path | None) -> tuple[Threshold, ...] | None:

@@ -104,7 +104,7 @@ class InitOptions:
             begins.time(),
             self.living.seen(self.worker.robot()),
             self.sampler.value,
-            sampler_settings(self.sampler, self.every),
+            sampler_settings(self.sampler.value, self.every),
             belief=belief if self.spread is None else _spreading(belief, self.spread),
             seed=self.seed,
             prior=prior_of(living, begins.date()),

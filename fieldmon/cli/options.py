@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.named_values import chosen
+from fieldmon.cli.named_values import Options, chosen, chosen_of_file
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.cli.sampler_names import SamplerName
 from fieldmon.errors import SettingError
-from fieldmon.samplers import kind_of, sampler
+from fieldmon.samplers import SAMPLERS, kind_of, sampler
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fieldmon.io.options import PlotOptions
     from fieldmon.io.rasters.values import RasterOptions
     from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
@@ -313,20 +315,26 @@ class FileOptions:
                 "Give a plot file, or the positions of its plants with --plants FILE, or its rows "
                 "with --rows FILE."
             )
+        if plot is None and (self.crs or self.layer or self.plot_option):
+            raise SettingError(
+                "--crs, --layer and --plot-option say how the plot file is read, and none is "
+                "given. Of another file say it with --plants-option or --rows-option, as "
+                "crs=EPSG:2039."
+            )
         return PlotSources(
             plot,
             plot_options(feature, self.crs, self.layer, self.plot_option),
             self.plants,
-            chosen(ReadOptions(), self.plants_option),
+            _of(ReadOptions(), self.plants_option, self.plants, "plants"),
             self.paths,
-            chosen(ReadOptions(), self.paths_option),
+            _of(ReadOptions(), self.paths_option, self.paths, "paths"),
             None if self.gate is None else _lonlat(self.gate),
             self.rows,
-            chosen(ReadOptions(), self.rows_option),
+            _of(ReadOptions(), self.rows_option, self.rows, "rows"),
             self.contours,
-            _raster_options(self.contours_option),
+            _raster_options(self.contours_option, self.contours),
             self.blocks,
-            chosen(PlotOptions(), self.blocks_option),
+            _of(PlotOptions(), self.blocks_option, self.blocks, "blocks"),
             self.guess_blocks,
         )
 
@@ -346,7 +354,8 @@ class PlotFiles:
         from fieldmon.io.options import RecordOptions  # noqa: PLC0415
         from fieldmon.io.sources import PlotRequest, RecordSource  # noqa: PLC0415
 
-        options = chosen(RecordOptions(), self.files.record_option)
+        flags = "--record-option", "--observations"
+        options = chosen_of_file(RecordOptions(), self.files.record_option, observations, flags)
         return PlotRequest(
             self.files.sources(plot, feature),
             self.rows.choices(),
@@ -365,23 +374,40 @@ def plot_options(
     return chosen(PlotOptions(feature=feature, crs=crs, layer=layer), more)
 
 
-def sampler_settings(name: SamplerName, every: int | None) -> dict[str, float]:
-    """Return what was said of a sampler."""
-    return kind_of(name.value).settings_for(every)
+def refuse_idle_every(names: Sequence[str], every: int | None) -> None:
+    """Refuse --every where none of the samplers inspects every N-th."""
+    if every is None or any(kind_of(name).every is not None for name in names):
+        return
+    having = ", ".join(name for name, kind in SAMPLERS.items() if kind.every is not None)
+    raise SettingError(
+        f"--every goes with a sampler that inspects every N-th ({having}), but this is "
+        f"{' and '.join(names)}. Leave it out, or choose another one with --sampler."
+    )
+
+
+def sampler_settings(name: str, every: int | None) -> dict[str, float]:
+    """Return what was said of a sampler; refuse what it does not hear of."""
+    refuse_idle_every([name], every)
+    return kind_of(name).settings_for(every)
 
 
 def sampler_of(name: SamplerName, every: int | None) -> Sampler:
     """Return the sampler that was chosen."""
-    return sampler(name.value, **sampler_settings(name, every))
+    return sampler(name.value, **sampler_settings(name.value, every))
 
 
-def _raster_options(given: list[str] | None) -> RasterOptions | None:
-    """Return how a raster is read; None: as it says, and nothing heavy is loaded for it."""
+def _of(options: Options, more: list[str] | None, file: Path | None, role: str) -> Options:
+    """Return how the file of a role is read."""
+    return chosen_of_file(options, more, file, (f"--{role}-option", f"--{role}"))
+
+
+def _raster_options(given: list[str] | None, file: Path | None) -> RasterOptions | None:
+    """Return how heights are read; None: as they say, and nothing heavy is loaded for it."""
     if not given:
         return None
     from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415
 
-    return chosen(RasterOptions(), given)
+    return _of(RasterOptions(), given, file, "contours")
 
 
 def _lonlat(text: str) -> tuple[float, float]:

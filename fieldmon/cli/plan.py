@@ -164,6 +164,9 @@ def _plan_every_plot(options: PlanOptions) -> None:
     from fieldmon.planning.batch import Orders  # noqa: PLC0415
 
     worker, starts = options.worker, options.starts()
+    # what cannot be is refused before any plot is read
+    worker.robot()
+    sampler_of(options.sampler, options.every)
     request, folder = _request_of_all(options), _folder(options.output)
     plots = estate(request)
     begins = starts.on_plot(plots.fields[0])
@@ -178,6 +181,9 @@ def _plan_every_plot(options: PlanOptions) -> None:
         bound=options.bound,
         prior=prior_of(living, begins.date()),
         pest=None if living is None else living.pest,
+        rover=worker.rover,
+        robot_times=worker.robot_times,
+        at=starts.at,
     )
     tell_unusable(plots.records.anywhere, orders.day)
     plan_all(plots, orders, Day(plots.records, folder, begins))

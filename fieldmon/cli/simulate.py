@@ -18,12 +18,13 @@ from fieldmon.cli.options import (
     Records,
     WorkDate,
     WorkerOptions,
-    sampler_of,
+    refuse_idle_every,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
 from fieldmon.cli.times import day, day_on
+from fieldmon.samplers import kind_of, sampler
 
 if TYPE_CHECKING:
     from fieldmon.decisions.zones import TreatmentCosts, Zones
@@ -102,6 +103,8 @@ def simulate(options: SimulateOptions) -> None:
     from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
     from fieldmon.simulation.start import season_start  # noqa: PLC0415
 
+    names = options.sampler or COMPARED_SAMPLERS
+    refuse_idle_every([name.value for name in names], options.every)
     robot, told = options.living.seen(options.worker.robot()), day(options.on)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
@@ -114,7 +117,7 @@ def simulate(options: SimulateOptions) -> None:
     streams = RandomStreams(options.seed)
     begin = season_start(plot.grid, chance, options.infested, streams)
     rows = []
-    for name in options.sampler or COMPARED_SAMPLERS:
+    for name in names:
         rows += _season(plot, robot, name, begin, (options, season))
     if options.output is not None:
         from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
@@ -135,7 +138,8 @@ def _season(
     from fieldmon.simulation.season import simulated_days  # noqa: PLC0415
 
     options, settings = told
-    decides, streams = sampler_of(name, options.every), RandomStreams(options.seed)
+    settings_of = kind_of(name.value).settings_for(options.every)
+    decides, streams = sampler(name.value, **settings_of), RandomStreams(options.seed)
     walk = simulated_days(plot.aisles, robot, decides, begin, settings, streams)
     rows, plant_days, sprayed = [], 0, []
     typer.echo(f"\n{name}\n day  detection %  visited %  found  infested left")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from datetime import time
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.digest import digest
@@ -11,7 +12,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.prior import PriorSettings
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
-from fieldmon.plot.robot import Robot, scout
+from fieldmon.plot.robot import Robot, rover, scout
 from fieldmon.samplers import USUAL, kind_of, sampler
 
 if TYPE_CHECKING:
@@ -48,6 +49,13 @@ class Orders:
         How records become chances.
     pest
         What is looked for; None: any.
+    rover
+        The small robot on every plot instead of the usual one.
+    robot_times
+        What robots are charged beside driving and looking, a name of `ROBOT_TIMES`; None: theirs.
+        A scout has times of its own.
+    at
+        Local time at which the work starts.
     """
 
     day: np.datetime64
@@ -59,6 +67,9 @@ class Orders:
     bound: bool = True
     prior: PriorSettings = field(default_factory=PriorSettings)
     pest: Pest | None = None
+    rover: bool = False
+    robot_times: str | None = None
+    at: time = time(6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,8 +97,10 @@ class Task:
         """Return what tells this task from any other, however alike."""
         ordered = dict(vars(self.orders))
         # folders of routes from before these could be ordered hold the tasks of today's usual
-        for name, usual in (("prior", PriorSettings()), ("pest", None)):
-            if ordered[name] == usual:
+        later = ("prior", "pest", "rover", "robot_times", "at")
+        usual = vars(Orders(self.orders.day))
+        for name in later:
+            if ordered[name] == usual[name]:
                 del ordered[name]
         parts = (*self.plot.told, self.who, self.stated, *ordered.values())
         return digest(*parts, *vars(observations).values(), length=16)
@@ -120,7 +133,11 @@ def _robot(task: Task) -> Robot:
                 who=task.who,
             )
         )
-    base = scout() if task.orders.on_foot or who == "scout" else Robot()
-    settings: dict[str, Any] = task.stated | task.orders.robot
+    orders = task.orders
+    on_foot = orders.on_foot or (who == "scout" and not orders.rover)
+    base = scout() if on_foot else rover() if orders.rover else Robot()
+    if orders.robot_times is not None and not on_foot:
+        base = base.with_times(orders.robot_times)
+    settings: dict[str, Any] = task.stated | orders.robot
     robot = replace(base, **settings)
-    return robot if task.orders.pest is None else task.orders.pest.seen_by(robot)
+    return robot if orders.pest is None else orders.pest.seen_by(robot)

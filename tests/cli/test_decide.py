@@ -57,6 +57,11 @@ def test_a_threshold_of_leaves_asks_for_leaves_and_then_answers(run, season):
         (["--threshold", "5%", "--per-ha", "1e9", "-o", "z.gpkg"], "pays nowhere"),
         (["--threshold", "5%", *CHEAP, "-o", "z.txt"], "must be called"),
         (["--threshold", "5%", "--thresholds", "none.csv"], "none.csv"),
+        (["--threshold", "5%", "--leaves", "40", "--counted", "20"], "5% is a share of the plants"),
+        (["--threshold", "5%", "--presence"], "name a threshold of leaves"),
+        (["--threshold", "almond", "--counted", "20"], "give --leaves N too"),
+        (["--threshold", "5%", "--sections", "4"], "give --boom METRES too"),
+        (["--threshold", "5%", "--ring", "1"], "give --section-rows 0 too"),
     ],
 )
 def test_what_cannot_be_is_a_sentence_and_nothing_is_written(run, season, words, said):

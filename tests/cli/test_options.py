@@ -9,6 +9,7 @@ from fieldmon.cli.options import (
     PlotFiles,
     RowOptions,
     WorkerOptions,
+    refuse_idle_every,
     sampler_of,
     sampler_settings,
 )
@@ -76,8 +77,31 @@ def test_a_command_without_any_plot_says_what_to_give():
 
 
 def test_only_samplers_that_leave_plants_out_hear_of_every():
-    assert sampler_settings(SamplerName.BOUNCY, 3) == {"every": 3}
-    assert sampler_settings(SamplerName.NAIVE, 3) == {}
-    assert sampler_settings(SamplerName.RANDOM, None) == {}
+    assert sampler_settings("bouncy", 3) == {"every": 3}
+    assert sampler_settings("random", None) == sampler_settings("naive", None) == {}
     assert sampler_of(SamplerName.BOUNCY, 3).every == 3
-    assert sampler_of(SamplerName.ADAPTIVE, 3) == sampler_of(SamplerName.ADAPTIVE, None)
+    refuse_idle_every(["naive", "bouncy"], 3)
+    for name in (SamplerName.ADAPTIVE, SamplerName.NAIVE):
+        with pytest.raises(SettingError, match=f"--every goes with .*but this is {name.value}"):
+            sampler_of(name, 3)
+
+
+@pytest.mark.parametrize("role", ["plants", "paths", "rows", "contours", "blocks"])
+def test_how_a_file_is_read_is_not_said_without_the_file(role):
+    said = FileOptions(**{f"{role}_option": ["crs=EPSG:2039"]})
+    with pytest.raises(SettingError, match=f"--{role}-option .* give it with --{role} FILE"):
+        said.sources(Path("e.zip"), None)
+
+
+def test_how_records_are_read_is_not_said_without_records():
+    said = PlotFiles(files=FileOptions(record_option=["date_order=dmy"]))
+    with pytest.raises(SettingError, match=r"--record-option .* give it with --observations FILE"):
+        said.request(Path("e.zip"), None, None)
+
+
+@pytest.mark.parametrize(
+    "said", [{"crs": "EPSG:2039"}, {"layer": "plots"}, {"plot_option": ["swap_axes=yes"]}]
+)
+def test_how_a_plot_file_is_read_is_not_said_without_one(said):
+    with pytest.raises(SettingError, match=r"none is given.*--plants-option"):
+        FileOptions(plants=Path("p.csv"), **said).sources(None, None)

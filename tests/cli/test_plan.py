@@ -135,3 +135,10 @@ def test_a_date_that_is_none_is_said(run, tmp_path):
     code, _, err, _ = run("plan", "p.geojson", "--observations", "r.csv")
     assert code == 0
     assert "yesterday or so" in err
+
+
+@pytest.mark.parametrize("which", [["--feature", "Nursery", "-o", "r.csv"], ["--all"]])
+def test_every_is_refused_where_no_plant_would_be_left_out_for_it(run, which):
+    code, _, err, made = run("plan", ZIP, "--every", 3, *which)
+    assert (code, made) == (2, set())
+    assert "--every goes with a sampler that inspects every N-th" in err

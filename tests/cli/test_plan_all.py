@@ -107,6 +107,31 @@ def test_what_is_finished_is_not_planned_again_unless_something_changed(run, par
     assert properties(files[1])["plot"] == "Plot 2"
 
 
+def test_a_day_that_starts_later_is_planned_again_with_its_own_times(run, parcels, summary):
+    words = ["plan", parcels, "--all", "-o", "routes", "--hours", 2, "--date", "2026-11-02"]
+    run(*words)
+    said = run(*words, "--start", "08:00")[1]
+    assert "already" not in said
+    route = properties(parcels.parent / "routes" / summary()["Plot 1"]["file"])
+    assert route["start"] == "2026-11-02T08:00:00"
+
+
+@pytest.mark.parametrize("words", [["--robot-times", "thesis"], ["--rover"]])
+def test_a_robot_in_the_crowd_is_the_one_that_was_said(run, parcels, summary, words):
+    words = ["plan", parcels, "--date", "2026-11-02", "--hours", 2, "--half-canopy", 0.2, *words]
+    assert run(*words, "--all", "-o", "routes")[0] == 0
+    assert run(*words, "--feature", "Plot 5", "-o", "one.geojson")[0] == 0
+    crowd = parcels.parent / "routes" / summary()["Plot 5"]["file"]
+    assert crowd.read_bytes() == (parcels.parent / "one.geojson").read_bytes()
+
+
+@pytest.mark.parametrize("words", [["--rover"], ["--robot-times", "thesis"]])
+def test_a_scout_is_no_robot_on_any_plot(run, parcels, words):
+    code, _, err, made = run("plan", parcels, "--all", "--scout", *words)
+    assert (code, made) == (2, set())
+    assert "scout" in err
+
+
 def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(
     run, tmp_path, summary, monkeypatch
 ):

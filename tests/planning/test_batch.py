@@ -1,6 +1,7 @@
 """The same day on many plots: one of them."""
 
 from dataclasses import replace
+from datetime import time
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.robot import Robot, scout
+from fieldmon.plot.robot import Robot, rover, scout
 from fieldmon.samplers import sampler
 
 FRAME = Frame(5.0, 45.0)
@@ -44,6 +45,19 @@ def by_itself(robot, name="naive", **settings):
             replace(scout(), hours=0.5),
         ),
         (Task(FIELD, None, HALF_AN_HOUR, replace(ORDERS, robot={"hours": 1.0})), Robot(hours=1.0)),
+        (
+            Task(FIELD, "scout", HALF_AN_HOUR, replace(ORDERS, rover=True)),
+            replace(rover(), hours=0.5),
+        ),
+        (
+            Task(FIELD, None, HALF_AN_HOUR, replace(ORDERS, robot_times="thesis")),
+            Robot(hours=0.5).with_times("thesis"),
+        ),
+        # a scout has times of its own
+        (
+            Task(FIELD, "scout", HALF_AN_HOUR, replace(ORDERS, robot_times="thesis")),
+            replace(scout(), hours=0.5),
+        ),
     ],
 )
 def test_a_plot_is_worked_by_who_is_stated_or_ordered(task, robot):
@@ -82,6 +96,9 @@ def test_a_task_is_told_from_any_other_and_known_again():
         (replace(task, orders=replace(ORDERS, sampler="bouncy")), RECORDS),
         (replace(task, orders=replace(ORDERS, day=DAY + 1)), RECORDS),
         (replace(task, orders=replace(ORDERS, planting={"row_spacing_m": 5.0})), RECORDS),
+        (replace(task, orders=replace(ORDERS, rover=True)), RECORDS),
+        (replace(task, orders=replace(ORDERS, robot_times="thesis")), RECORDS),
+        (replace(task, orders=replace(ORDERS, at=time(8))), RECORDS),
         (task, Observations.none()),
     ]
     digests = {each.digest(records) for each, records in [(task, RECORDS), *others]}

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 #: positions farther from the plot than this are not even brought into its plane of metres
 FAR_M = 100_000.0
-#: a record this close to a plot is taken for one of its own
-NEARBY_M = 100.0
 _EARTH_M = 6_371_000.0
 
 

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 
 UNKNOWN, ABSENT, PRESENT = -1, 0, 1
+#: a record this close to a plot is taken for one of its own
+NEARBY_M = 100.0
 _YEAR = np.timedelta64(365, "D")
 
 
@@ -67,6 +69,13 @@ class Observations:
     def __len__(self) -> int:
         """Return the number of records."""
         return len(self.lonlat)
+
+    def reach_m(self) -> NDArray[np.float64]:
+        """Return ``(m,)`` metres outside a plot at which a record is still one of its own.
+
+        That is `NEARBY_M`, or twice the record's accuracy where that is more.
+        """
+        return np.fmax(NEARBY_M, 2.0 * self.accuracy_m)
 
     @classmethod
     def of(

@@ -17,7 +17,6 @@ from fieldmon.errors import ObservationError
 from fieldmon.infestation.belief import MOST_CHANCE
 from fieldmon.infestation.nearby_plants import (
     FAR_M,
-    NEARBY_M,
     PlantRows,
     SearchRows,
     first_from,
@@ -143,8 +142,7 @@ def _within_reach(
     off_m = outside_m(grid, observations.lonlat)
     near: NDArray[np.bool_] = off_m <= np.minimum(radius_m, FAR_M)
     # of a neighbour's records some are taken for this plot's own, and reach none of its plants
-    own_m = np.fmax(NEARBY_M, 2.0 * observations.accuracy_m)
-    if (near | (off_m <= own_m)).any():
+    if (near | (off_m <= observations.reach_m())).any():
         return near
     turned_m = outside_m(grid, observations.lonlat[:, ::-1])
     turned = turned_m.min() <= radius_m.max()

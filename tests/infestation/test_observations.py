@@ -31,6 +31,13 @@ def test_some_of_them_are_taken_by_mask_or_by_number_in_that_order():
     assert len(Observations.none()) == 0
 
 
+def test_a_record_is_of_a_plot_within_100_m_or_twice_its_own_accuracy():
+    records = Observations.of(
+        np.zeros((3, 2)), np.zeros(3, np.int8), accuracy_m=np.array([np.nan, 5.0, 80.0])
+    )
+    assert records.reach_m().tolist() == [100.0, 100.0, 160.0]
+
+
 def test_nobody_can_change_them():
     records = at_middle(PRESENT)
     with pytest.raises(ValueError, match="read-only"):

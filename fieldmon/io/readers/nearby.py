@@ -11,7 +11,7 @@ import shapely
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
-from fieldmon.infestation.nearby_plants import NEARBY_M
+from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
 
@@ -67,16 +67,14 @@ class RecordsNearPlot:
 def near_plot(observations: Observations, field: Field) -> RecordsNearPlot:
     """Return records on a plot or close by, and those elsewhere."""
     away = distance_m(observations.lonlat, field)
-    reach = np.fmax(NEARBY_M, 2 * observations.accuracy_m)
-    near = away <= reach
+    near = away <= observations.reach_m()
     return RecordsNearPlot(observations.take(near), observations.take(~near), away[~near])
 
 
 def records_on_plot(observations: Observations, field: Field) -> Observations:
     """Return the records on a plot or close by; those far from it are not even measured."""
     west, south, east, north = field.boundary.bounds
-    reach_m = np.fmax(NEARBY_M, 2 * observations.accuracy_m)
-    reach_deg = 1.2 * reach_m / _DEGREE_M
+    reach_deg = 1.2 * observations.reach_m() / _DEGREE_M
     widest_deg = reach_deg / max(np.cos(np.deg2rad(max(abs(south), abs(north)))), 0.01)
     lon, lat = observations.lonlat.T
     middle, half = (west + east) / 2, (east - west) / 2

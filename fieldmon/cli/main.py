@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import typer
-
 from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
 from fieldmon.cli.backup import backup
@@ -14,6 +12,7 @@ from fieldmon.cli.cycles import cycles_seldom_looked_for
 from fieldmon.cli.decide import decide
 from fieldmon.cli.drive import drive
 from fieldmon.cli.export import export
+from fieldmon.cli.help_text import Commands
 from fieldmon.cli.init import init
 from fieldmon.cli.labels import labels
 from fieldmon.cli.log import log
@@ -29,7 +28,7 @@ from fieldmon.cli.status import status
 from fieldmon.cli.treat import treat
 from fieldmon.cli.undo import undo
 
-app = typer.Typer(
+app = Commands(
     name="fieldmon",
     no_args_is_help=True,
     add_completion=False,

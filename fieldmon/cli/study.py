@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import typer
-
+from fieldmon.cli.help_text import Commands
 from fieldmon.cli.study_beliefs import beliefs
 from fieldmon.cli.study_calibrate import calibrate
 from fieldmon.cli.study_no_prior import no_prior
@@ -16,7 +15,7 @@ from fieldmon.cli.study_treatments import treatments
 from fieldmon.cli.study_verdicts import verdicts
 from fieldmon.cli.study_weather import weather
 
-app = typer.Typer(
+app = Commands(
     no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
 )
 app.command("prior")(prior)

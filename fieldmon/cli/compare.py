@@ -24,7 +24,7 @@ from fieldmon.cli.options import (
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
@@ -105,7 +105,7 @@ def compare(options: CompareOptions) -> None:
     from fieldmon.studies.teams.report import report_html  # noqa: PLC0415
     from fieldmon.studies.teams.summary import rows, sentences, table  # noqa: PLC0415
 
-    must_be_folder(options.output)
+    can_be_folder(options.output)
     sizes = robot_numbers(options.robots)
     settings = [each for one in _scenarios(options) for each in _settings(one, sizes, options)]
     made = rows(_outcomes(settings, options))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.pest_options import PestName, living_of
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.errors import SettingError
 
 
@@ -49,7 +49,7 @@ def beliefs(
         with_pest,
     )
 
-    must_be_folder(output)
+    can_be_folder(output)
     living = living_of(pest)
     known = [Scenario(), *all_scenarios(), *in_worlds()]
     known = known if living is None else with_pest(known, living)

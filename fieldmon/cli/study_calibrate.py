@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, check_no_pest
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def calibrate(options: CalibrateOptions) -> None:
     from fieldmon.studies.thesis.chapter5.calibrate import Effort, candidates_csv  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.calibrate import calibrate as search  # noqa: PLC0415
 
-    must_be_folder(options.output)
+    can_be_folder(options.output)
     tried = {"drawn": options.drawn, "kept": options.kept, "steps": options.steps}
     effort = Effort(**tried, final_seeds=options.seeds)
     with counting("Searching") as count:

@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, check_no_pest
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import FileProblem
 
@@ -58,7 +58,7 @@ def no_prior(options: NoPriorOptions) -> None:
     from fieldmon.studies.thesis.chapter4.study import run_no_prior  # noqa: PLC0415
     from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
 
-    must_be_folder(options.output)
+    can_be_folder(options.output)
     with counting("Simulating") as count:
         made = run_no_prior(options.table, options.replicates, options.seed, count)
     for part in made.tables:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 import typer
@@ -12,16 +13,20 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def must_be_folder(output: Path) -> None:
-    """Refuse a folder that is not there, before anything is simulated for it."""
-    if not output.is_dir():
-        raise FileProblem(f"The folder {output} must exist, but it does not. Make it first.")
+def can_be_folder(output: Path) -> None:
+    """Refuse a folder that cannot be made or written to, before anything is simulated for it."""
+    there = next(place for place in (output, *output.absolute().parents) if place.exists())
+    if not there.is_dir():
+        raise FileProblem(f"{output} must be a folder, but {there} is a file. Choose another one.")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise FileProblem(f"{there} must be a folder that you may write to, but you may not.")
 
 
 def write_all(folder: Path, texts: dict[str, str]) -> None:
-    """Write texts into files of a folder, and say so."""
+    """Write texts into files of a folder, which is made where it is not there; say so."""
     from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
 
+    folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         write_whole(folder / name, text.encode())
         typer.echo(f"Written: {folder / name}")

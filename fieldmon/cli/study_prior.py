@@ -12,7 +12,7 @@ from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, living_of
 from fieldmon.cli.preparing import prepared
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
 
@@ -76,7 +76,7 @@ def prior(options: PriorOptions) -> None:
 
     Example: fieldmon study prior --scenario C --seeds 100 -o study
     """
-    must_be_folder(options.output)
+    can_be_folder(options.output)
     choices = options.choices
     if options.maps is not None:
         _on_maps(options.maps, options)

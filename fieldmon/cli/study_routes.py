@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import progress
 from fieldmon.errors import FileProblem, SettingError
 
@@ -63,7 +63,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
         told_of_teams,
     )
 
-    must_be_folder(output)
+    can_be_folder(output)
     shares = budget or [0.1, 0.5]
     if not all(0.0 < share <= 1.0 for share in shares):
         raise SettingError(f"A budget must be a share above 0 and up to 1, but it is {shares}.")

@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, living_of
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
 
@@ -71,7 +71,7 @@ def samplers(options: SamplersOptions) -> None:
     from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
     from fieldmon.studies.samplers.summary import ratio_lines, sentences  # noqa: PLC0415
 
-    must_be_folder(options.output)
+    can_be_folder(options.output)
     if options.pest is not None and (options.tune or options.maps is not None):
         raise SettingError(
             "--pest goes without --maps, where nothing spreads, and without --tune, which searches "

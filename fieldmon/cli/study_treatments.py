@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.pest_options import PestName, living_of
-from fieldmon.cli.study_output import must_be_folder
+from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.waiting import counting
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def treatments(
         treated_scenarios,
     )
 
-    must_be_folder(output)
+    can_be_folder(output)
     names = tuple(sampler or known_samplers())
     for name in names:
         kind_of(name)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.pest_options import PestName, living_of
-from fieldmon.cli.study_output import must_be_folder
+from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.waiting import counting
 
 
@@ -42,7 +42,7 @@ def verdicts(
         usual_questions,
     )
 
-    must_be_folder(output)
+    can_be_folder(output)
     living = living_of(pest)
     questions = usual_questions() + ([] if maps is None else real_questions(maps))
     questions = [replace(each, living=living) for each in questions]

@@ -74,10 +74,11 @@ class OutcomeTable(Generic[Row]):
             self.save()
 
     def save(self) -> None:
-        """Write the file."""
+        """Write the file, into a folder that is made where it is not there."""
         asked = set(self._order)
         others = [key for key in self._by_key if key not in asked]
         rows = [row for key in (*others, *self._order) for row in self._by_key.get(key, [])]
+        self.file.parent.mkdir(parents=True, exist_ok=True)
         write_whole(self.file, csv_text(rows, self._kind).encode())
         self._saved = monotonic()
 

@@ -62,10 +62,10 @@ def test_square_plots_of_several_sizes_and_spreads(run):
     assert "0.2 ha spread 80% to one" in out
 
 
-def test_a_plot_and_hectares_are_too_much_and_a_folder_must_be_there(run):
+def test_a_plot_and_hectares_are_too_much_and_a_folder_must_be_one(run):
     code, _, err, _ = run("compare", ZIP, "--hectares", "1")
     assert (code, "but not both" in err) == (2, True)
-    code, _, err, _ = run("compare", "--hectares", "0.1", "-o", "nowhere")
-    assert (code, "must exist" in err) == (2, True)
+    code, _, err, _ = run("compare", "--hectares", "0.1", "-o", __file__)
+    assert (code, "must be a folder" in err) == (2, True)
     code, _, err, _ = run("compare", "--hectares", "0.1", "--to", "nobody", *SHORT)
     assert (code, "Spread goes to" in err) == (2, True)

@@ -6,7 +6,7 @@ import pytest
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["-o", "none"], "must exist"),
+        (["-o", __file__], "must be a folder"),
         (["--scenario", "Z"], "A scenario must begin with 'Z'"),
     ],
 )

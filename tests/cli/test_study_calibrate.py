@@ -15,10 +15,10 @@ def test_a_search_tells_its_best_and_writes_what_it_tried(run, tmp_path):
     assert len(table(tmp_path / "prior_calibration.csv")) >= 1
 
 
-def test_a_folder_that_is_not_there_is_said_before_anything_is_searched(run):
-    code, _, err, made = run("study", "calibrate", "-o", "none")
+def test_a_folder_that_cannot_be_is_said_before_anything_is_searched(run):
+    code, _, err, made = run("study", "calibrate", "-o", __file__)
     assert (code, made) == (2, set())
-    assert "must exist" in err
+    assert "must be a folder" in err
 
 
 @pytest.mark.parametrize("study", ["calibrate", "no-prior"])

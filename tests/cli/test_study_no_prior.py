@@ -54,7 +54,7 @@ def test_a_row_that_differs_is_shown_with_exit_code_1(run, reference, tmp_path):
     [
         (["--table", "9"], "9"),
         (["--replicates", "1"], "1"),
-        (["-o", "none"], "must exist"),
+        (["-o", __file__], "must be a folder"),
         (["--golden", "none.csv"], "none.csv"),
     ],
 )

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.cli.study_output import must_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.errors import FileProblem
 
 
@@ -14,7 +14,24 @@ def test_all_texts_are_written_and_said(tmp_path, capsys):
     assert capsys.readouterr().out.splitlines() == said
 
 
-def test_a_folder_must_be_there(tmp_path):
-    must_be_folder(tmp_path)
-    with pytest.raises(FileProblem, match="must exist"):
-        must_be_folder(tmp_path / "none")
+def test_a_folder_is_made_when_there_is_something_to_write(tmp_path):
+    folder = tmp_path / "study" / "first"
+    can_be_folder(folder)
+    assert not folder.parent.exists()
+    write_all(folder, {"a.csv": "x\n"})
+    assert (folder / "a.csv").read_text() == "x\n"
+
+
+def test_what_stands_in_the_way_of_a_folder_is_named(tmp_path):
+    (tmp_path / "file").touch()
+    for place in ("file", "file/inside"):
+        with pytest.raises(FileProblem, match=r"must be a folder, but .*file is a file"):
+            can_be_folder(tmp_path / place)
+
+
+def test_a_folder_in_which_one_may_not_write_is_refused_before_anything_is_simulated(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr("os.access", lambda place, _how: place != tmp_path)
+    with pytest.raises(FileProblem, match="may write to"):
+        can_be_folder(tmp_path / "none")

@@ -59,7 +59,7 @@ def test_an_own_plot_is_played_from_its_records(run, tmp_path):
         (["prior", "--scenario", "A", "--seeds", "1"], "2 seeds"),
         (["prior", "--maps", "none"], "none"),
         (["prior", "--plot", ZIP], "--feature"),
-        (["prior", "-o", "none"], "must exist"),
+        (["prior", "-o", __file__], "must be a folder"),
     ],
 )
 def test_bad_words_are_a_sentence(run, words, says):

@@ -9,7 +9,7 @@ from tests.cli.estate import table
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["-o", "none"], "must exist"),
+        (["-o", __file__], "must be a folder"),
         (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
         (["--maps", "."], "must hold one of"),
         (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),

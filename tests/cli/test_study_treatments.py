@@ -6,7 +6,7 @@ import pytest
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["-o", "none"], "must exist"),
+        (["-o", __file__], "must be a folder"),
         (["--sampler", "rose"], "A sampler must be one of"),
         (["--pest", "rose"], "rose"),
     ],

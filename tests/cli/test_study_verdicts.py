@@ -1,10 +1,10 @@
 """`fieldmon study verdicts`, as a person runs it."""
 
 
-def test_its_folder_must_be_there(run):
-    code, _, err, made = run("study", "verdicts", "-o", "none")
+def test_its_folder_must_be_one(run):
+    code, _, err, made = run("study", "verdicts", "-o", __file__)
     assert (code, made) == (2, set())
-    assert "must exist" in err
+    assert "must be a folder" in err
 
 
 def test_a_table_that_is_another_studys_is_not_gone_on_with(run, tmp_path):

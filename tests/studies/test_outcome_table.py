@@ -46,8 +46,8 @@ def test_it_is_written_when_it_is_left_even_by_an_error(tmp_path):
     assert outcomes_from(file.read_text(), "", SeasonOutcome) == outcomes("A", 1)
 
 
-def test_it_is_written_now_and_then(tmp_path, monkeypatch):
-    file = tmp_path / "samplers.csv"
+def test_it_is_written_now_and_then_into_a_folder_that_is_made_for_it(tmp_path, monkeypatch):
+    file = tmp_path / "study" / "samplers.csv"
     table = OutcomeTable(file, [("A", 0)], SeasonOutcome)
     table.keep(("A", 0), outcomes("A", 0))
     assert not file.exists()

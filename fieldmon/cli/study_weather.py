@@ -7,10 +7,11 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.pest_options import PestName, tell_pest
+from fieldmon.cli.waiting import counting
 
 
 def weather(
-    seeds: Annotated[int, typer.Option(min=1, help="Seasons of each, on the same insects.")] = 100,
+    seeds: Annotated[int, typer.Option(min=2, help="Seasons of each, on the same insects.")] = 100,
     shape: Annotated[
         str, typer.Option(help="One shape of the weather, as 'heat wave'; empty: all of them.")
     ] = "",
@@ -30,5 +31,6 @@ def weather(
     if pest:
         tell_pest(lives)
     for name in [shape] if shape else SHAPES:
-        for each in worth_of_weather(range(seeds), [name], lives, days):
-            typer.echo(each.sentence())
+        with counting(name) as count:
+            (worth,) = worth_of_weather(range(seeds), [name], lives, days, count)
+        typer.echo(worth.sentence())

@@ -19,11 +19,12 @@ from fieldmon.infestation import hotspots
 from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import PriorSettings, prior_chance
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io import prepare, read
 from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
 from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.monitoring import worked_route
-from fieldmon.planning.plan import DayPlan, PlanSettings, plan_from, plan_in
+from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed, plan_in
 from fieldmon.plot.row_detection import rows_from_plants
 from fieldmon.reports import season as reports
 from fieldmon.samplers import sampler
@@ -196,8 +197,21 @@ def day_plan(
     wishes: Wishes,
 ) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
-    chance = chance_map(key, day, settings.prior, _plot, _known)
-    return plan_from(_plot, chance, settings, wishes)
+    known = first_belief(key, day, settings.prior, _plot, _known)
+    return plan_believed(_plot, known, settings, wishes)
+
+
+@st.cache_resource(max_entries=_FEW)
+def first_belief(
+    key: str,
+    day: str,
+    prior: PriorSettings,
+    _plot: Plot,
+    _known: tuple[Observations, Array | None],
+) -> tuple[Array, TracedPairs]:
+    """Return the chance map of a day and what a season believes that begins with it."""
+    chance = chance_map(key, day, prior, _plot, _known)
+    return chance, TracedPairs.of(_plot.grid, chance)
 
 
 @st.cache_resource(max_entries=_FEW)

@@ -217,7 +217,20 @@ def plan_from(
 ) -> DayPlan:  # fmt: skip
     """Plan a first day from a chance map ``(n,)``, and from what people wish for besides."""
     # as a season believes: it goes the same way on its first day
-    believed = TracedPairs.of(plot.grid, chance)
+    return plan_believed(plot, (chance, TracedPairs.of(plot.grid, chance)), plans, wishes)
+
+
+def plan_believed(
+    plot: Plot,
+    known: tuple[NDArray[np.float64], TracedPairs],
+    plans: PlanSettings,
+    wishes: Wishes | None = None,
+) -> DayPlan:
+    """Plan a first day from a chance map ``(n,)`` and what a season believes that begins with it.
+
+    Whoever plans the same morning again, for other hours, need not work that out again.
+    """
+    chance, believed = known
     scene = Scene(
         aisles=plot.aisles,
         robot=plans.robot,

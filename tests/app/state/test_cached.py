@@ -6,6 +6,8 @@ from app.state import cached
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import PriorSettings, start_infested
+from fieldmon.planning.plan import PlanSettings, plan_from
+from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.robot import Robot
 from fieldmon.simulation.worker import LaidPlot
 from tests.app.chosen import a_plot
@@ -32,6 +34,21 @@ def test_plots_that_differ_in_one_plant_are_kept_apart_by_their_keys():
     assert len(kept[0]) == len(kept[1]) + 1
     again = cached.chance_map("plot 0", "2026-11-16", PRIOR, other, NOTHING)
     assert again is kept[0]
+
+
+def test_what_is_believed_of_a_morning_is_worked_out_once_for_all_hours():
+    plot = a_plot()
+    short, day = (
+        cached.day_plan(
+            "one morning", "2026-11-16", PlanSettings(Robot(hours=hours), prior=PRIOR),
+            "adaptive", plot, NOTHING, Wishes(),
+        )
+        for hours in (0.2, 2.0)
+    )  # fmt: skip
+    assert short.scene.pair_chance is day.scene.pair_chance
+    anew = plan_from(plot, day.scene.chance, PlanSettings(Robot(hours=2.0), prior=PRIOR))
+    assert len(short.route) < len(day.route)
+    assert day.route.plant.tolist() == anew.route.plant.tolist()
 
 
 def test_a_season_that_was_replaced_by_another_of_its_name_is_opened_anew(tmp_path):

@@ -47,6 +47,9 @@ EveryPlot = Annotated[
     typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
 ]
 
+# how far below what no route can exceed a plan says that another one may find more
+_FAR_BELOW = 0.05
+
 
 @dataclass(frozen=True)
 class PlanOptions:
@@ -129,6 +132,7 @@ def _plan_one(options: PlanOptions) -> None:
 
     from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
     from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
+    from fieldmon.planning.bound_wording import share_above  # noqa: PLC0415
     from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
@@ -150,6 +154,9 @@ def _plan_one(options: PlanOptions) -> None:
     if options.bound:
         today = with_bound(today)
     typer.echo(f"{day_in_words(today.route)}\nPlanned by {options.sampler.value}.")
+    route = today.route
+    if route.found_bound and share_above(route.expected_found, route.found_bound) > _FAR_BELOW:
+        typer.echo("If nobody plans again after a find, a fixed route may find more: --robots 1.")
     tell_assumed(assumed_by((), settings.prior, robot, known.plot.grid))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)

@@ -1,6 +1,7 @@
 """`fieldmon plan` on one plot."""
 
 import json
+import re
 from pathlib import Path
 
 import geopandas as gpd
@@ -22,6 +23,17 @@ def test_a_day_is_planned_and_its_route_written(run, tmp_path):
     assert line["properties"]["seconds"] <= 12 * 3600
     assert f"{len(stops)} of " in out
     assert "seen:" in err
+
+
+def test_a_short_day_far_below_its_bound_names_the_route_that_no_find_changes(run, tmp_path):
+    words = ("plan", ZIP, "--feature", "Gate", "--observations", MITES, "--date", "2026-11-18")
+    finds = {}
+    for hours, more in ((1, ()), (12, ()), (1, ("--robots", 1))):
+        code, out, err, _ = run(*words, "--hours", hours, *more)
+        assert code == 0, err
+        assert ("--robots 1." in out) == (hours == 1 and not more)
+        finds[hours, bool(more)] = float(re.search(r"([\d.]+) finds expected", out)[1])
+    assert finds[1, True] > 1.05 * finds[1, False]
 
 
 def test_the_day_says_what_no_other_route_can_expect_unless_it_is_switched_off(run, tmp_path):

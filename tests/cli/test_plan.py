@@ -25,7 +25,7 @@ def test_a_day_is_planned_and_its_route_written(run, tmp_path):
     assert "seen:" in err
 
 
-def test_a_short_day_far_below_its_bound_names_the_route_that_no_find_changes(run, tmp_path):
+def test_a_short_day_far_below_its_bound_names_the_route_that_no_find_changes(run):
     words = ("plan", ZIP, "--feature", "Gate", "--observations", MITES, "--date", "2026-11-18")
     finds = {}
     for hours, more in ((1, ()), (12, ()), (1, ("--robots", 1))):

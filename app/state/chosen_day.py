@@ -195,7 +195,9 @@ def season_days(choices: Choices) -> list[str]:
 
 def messages_on_records(choices: Choices) -> list[str]:
     """Return what planning says about records it cannot use."""
-    return list(usable(choices.records, np.datetime64(choices.day)).messages())
+    return list(
+        usable(choices.records, np.datetime64(choices.day), choices.prior.hardly_days).messages()
+    )
 
 
 def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:

@@ -174,7 +174,7 @@ def _own(
     begins = day_on(plot.field, told)
     on, living = np.datetime64(begins, "D"), options.living.living(plot.field, begins)
     prior = prior_of(living, begins)
-    tell_unusable(known.records, on)
+    tell_unusable(known.records, on, prior)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
     return (plot, chance), living
 

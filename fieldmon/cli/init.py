@@ -151,7 +151,7 @@ def init(options: InitOptions) -> None:
     begins = starts.on_plot(known.plot.field)
     living = options.living.living(known.plot.field, begins.date())
     settings = options.settings(begins, team, living)
-    tell_unusable(known.records, np.datetime64(settings.begins, "D"))
+    tell_unusable(known.records, np.datetime64(settings.begins, "D"), settings.prior)
     messages = [KeptMessage.of(said.source, said.message) for said in known.messages]
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)
     ahead = season.status(settings.begins).estimate

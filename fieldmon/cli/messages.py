@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.prior import PriorSettings
     from fieldmon.io.prepare import Laid, SourceMessage
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
@@ -151,9 +152,9 @@ def tell_not_come(on: date, field: Field, what: str) -> None:
         )
 
 
-def tell_unusable(records: Observations, day: np.datetime64) -> None:
-    """Print which records say nothing about a day."""
+def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSettings) -> None:
+    """Print which records say nothing, or hardly anything, about a day."""
     from fieldmon.infestation.observations import usable  # noqa: PLC0415
 
-    for sentence in usable(records, day).messages():
+    for sentence in usable(records, day, prior.hardly_days).messages():
         typer.echo(sentence, err=True)

@@ -144,7 +144,7 @@ def _plan_one(options: PlanOptions) -> None:
     living = options.living.living(known.plot.field, begins.date())
     sampler, prior = sampler_of(options.sampler, options.every), prior_of(living, begins.date())
     settings = PlanSettings(robot, sampler, prior)
-    tell_unusable(known.records, on)
+    tell_unusable(known.records, on, prior)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
         raise SettingError(
@@ -192,7 +192,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
         robot_times=worker.robot_times,
         at=starts.at,
     )
-    tell_unusable(plots.records.anywhere, orders.day)
+    tell_unusable(plots.records.anywhere, orders.day, orders.prior)
     plan_all(plots, orders, Day(plots.records, folder, begins))
 
 

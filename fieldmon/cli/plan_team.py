@@ -45,7 +45,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     prior = prior_of(options.living.living(plot.field, begins.date()), begins.date())
     members = tuple(replace(one, robot=options.living.seen(one.robot)) for one in members)
     on = np.datetime64(begins.date(), "D")
-    tell_unusable(known.records, on)
+    tell_unusable(known.records, on, prior)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
     with counting("Routes") as count:
         planned = team.plan_team(

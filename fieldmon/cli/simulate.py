@@ -111,7 +111,7 @@ def simulate(options: SimulateOptions) -> None:
     begins = day_on(known.plot.field, told)
     on, living = np.datetime64(begins, "D"), options.living.living(known.plot.field, begins)
     season, prior = options.season(living), prior_of(living, begins)
-    tell_unusable(known.records, on)
+    tell_unusable(known.records, on, prior)
     plot, records = known.plot, known.records
     chance = prior_chance(plot.grid, plot.field, records, on, prior, known.risk)
     streams = RandomStreams(options.seed)

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 UNKNOWN, ABSENT, PRESENT = -1, 0, 1
 #: a record this close to a plot is taken for one of its own
 NEARBY_M = 100.0
-_YEAR = np.timedelta64(365, "D")
+_DAY = np.timedelta64(1, "D")
+#: a record of the usual half-life, 14 days, counts a thirtieth after so many
+HARDLY_DAYS = 70.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +120,9 @@ class UsableRecords:
         Records that say infested or clean, not later than the day; undated ones included.
     undecided, future, undated, old
         How many were left out because they say neither, because they are of a later day; and how
-        many of those kept have no date, or one more than a year ago.
+        many of those kept have no date, or are so old that they hardly count.
+    hardly_days
+        How old that is.
     """
 
     observations: Observations
@@ -126,6 +130,7 @@ class UsableRecords:
     future: int
     undated: int
     old: int
+    hardly_days: float = HARDLY_DAYS
 
     def messages(self) -> tuple[str, ...]:
         """Return a sentence for each thing that a person should know about the records."""
@@ -136,22 +141,33 @@ class UsableRecords:
             ),
             worded("{n} of the records are of a later day and are left out.", n=later),
             worded("{n} of the records have no date and count as old ones.", n=self.undated),
-            worded("{n} of the records are more than a year old and hardly count.", n=self.old),
+            worded(
+                "{n} of the records are more than {days} days old and hardly count.",
+                n=self.old,
+                days=round(self.hardly_days),
+            ),
         )
         return tuple(sentence for sentence in said if sentence.values["n"])
 
 
-def usable(observations: Observations, on_day: np.datetime64) -> UsableRecords:
-    """Return the records that speak on a day; the caller tells of the others."""
+def usable(
+    observations: Observations, on_day: np.datetime64, hardly_days: float = HARDLY_DAYS
+) -> UsableRecords:
+    """Return the records that speak on a day; the caller tells of the others.
+
+    Those that are more than `hardly_days` old are counted, and kept.
+    """
+    today = on_day.astype("datetime64[D]")
     undecided = observations.present == UNKNOWN
-    future = ~undecided & (observations.day > on_day.astype("datetime64[D]"))
+    future = ~undecided & (observations.day > today)
     kept = observations.take(~undecided & ~future)
     return UsableRecords(
         observations=kept,
         undecided=int(np.count_nonzero(undecided)),
         future=int(np.count_nonzero(future)),
         undated=int(np.count_nonzero(np.isnat(kept.day))),
-        old=int(np.count_nonzero(kept.day < on_day.astype("datetime64[D]") - _YEAR)),
+        old=int(np.count_nonzero((today - kept.day) / _DAY > hardly_days)),
+        hardly_days=hardly_days,
     )
 
 

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 # edges and paths are followed no farther than they change a chance by this
 _LEAST_CHANGE = 1e-4
+# after so many half-lives a record hardly counts
+_HARDLY = 5.0
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,11 @@ class PriorSettings:
     undated_days: float = 14.0
     detection: float = 0.5
     leaf_detection: float = 0.1
+
+    @property
+    def hardly_days(self) -> float:
+        """Age from which on a record hardly counts: after five half-lives a thirtieth is left."""
+        return _HARDLY * self.half_life_days
 
     def __post_init__(self) -> None:
         must_hold_numbers(self, "The prior's")

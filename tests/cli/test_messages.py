@@ -6,6 +6,7 @@ import pytest
 from fieldmon.cli.messages import Terminal, tell_unusable
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.infestation.prior import PriorSettings
 from fieldmon.io.import_report import Remedy, guessed
 from fieldmon.io.prepare import Laid, SourceMessage
 from fieldmon.plot.assumed import Assumed
@@ -87,7 +88,7 @@ def test_records_that_say_nothing_about_a_day_are_named(capsys):
     day = np.datetime64("2026-11-02")
     dates = np.array([day + 5, day - 1])
     records = Observations.of(np.zeros((2, 2)), np.array([PRESENT, PRESENT]), dates)
-    tell_unusable(records, day)
+    tell_unusable(records, day, PriorSettings())
     assert "1 of the records are of a later day" in capsys.readouterr().err
-    tell_unusable(records.take(np.array([1])), day)
+    tell_unusable(records.take(np.array([1])), day, PriorSettings())
     assert capsys.readouterr().err == ""

@@ -5,7 +5,9 @@ import pytest
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations, usable
-from tests.infestation.placed_records import GRID, TODAY, at_middle, together
+from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.record_kernel import record_chance
+from tests.infestation.placed_records import GRID, MIDDLE, TODAY, at_middle, together
 
 
 def test_columns_that_are_not_given_are_unknown():
@@ -63,9 +65,23 @@ def test_records_that_say_neither_and_those_of_tomorrow_are_left_out_and_told_of
     assert not usable(at_middle(PRESENT), TODAY).messages()
 
 
-@pytest.mark.parametrize(("days", "old"), [(0, 0), (365, 0), (366, 1), (10_000, 1)])
-def test_records_of_more_than_a_year_ago_are_told_of(days, old):
+@pytest.mark.parametrize(("days", "old"), [(0, 0), (70, 0), (71, 1), (300, 1), (10_000, 1)])
+def test_records_so_old_that_they_hardly_count_are_told_of(days, old):
     kept = usable(at_middle(PRESENT, days), TODAY)
     assert (kept.old, len(kept.observations)) == (old, 1)
-    said = "1 of the records are more than a year old and hardly count."
+    said = "1 of the records are more than 70 days old and hardly count."
     assert kept.messages() == (said,)[:old]
+
+
+def test_how_old_that_is_follows_from_the_half_life_of_records():
+    assert PriorSettings().hardly_days == usable(at_middle(PRESENT), TODAY).hardly_days
+    short = PriorSettings(half_life_days=4.0)
+    kept = usable(at_middle(PRESENT, 21), TODAY, short.hardly_days)
+    assert kept.messages() == ("1 of the records are more than 20 days old and hardly count.",)
+    # a thirtieth of what it says on its own day
+    nothing = np.zeros(len(GRID))
+    new, old = (
+        record_chance(GRID, nothing, at_middle(PRESENT, days), TODAY, short)[MIDDLE]
+        for days in (0, 20)
+    )
+    assert new / 40 < old < new / 20

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -79,9 +80,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
         xy = xy[:, ::-1]
         messages.append(seen(worded("First and second coordinate were exchanged, as asked.")))
     if options.crs is not None and stated is not None:
-        messages.append(
-            seen(worded("The coordinate system named by hand, {crs}, was used.", crs=options.crs))
-        )
+        messages.append(seen(_named(options.crs, stated)))
     wanted = options.crs or stated
     if wanted is None:
         raise ask_for_crs(
@@ -97,6 +96,20 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
     doubts = [*_outside(xy, lonlat, crs, options), *_distance(lonlat, options)]
     return Georeferenced(lonlat, step_m, (*messages, *more, *through.messages(), *doubts))
+
+
+def _named(crs: str, stated: str) -> str:
+    """Return that a system was named by hand, and the file's own where that is another."""
+    own = None
+    with suppress(ChoiceNeeded):
+        own = system(stated)
+    if own is None or own.equals(system(crs), ignore_axis_order=True):
+        return worded("The coordinate system named by hand, {crs}, was used.", crs=crs)
+    return worded(
+        "The coordinate system named by hand, {crs}, was used instead of the file's own, {own}.",
+        crs=crs,
+        own=own.name,
+    )
 
 
 def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:

@@ -32,8 +32,14 @@ def test_metres_become_degrees_with_the_system_stated_or_named(crs):
 
 
 def test_a_system_named_by_hand_goes_before_the_stated_one_and_that_is_said():
-    placed = place(projected("EPSG:32636"), "EPSG:2039", ReadOptions(crs="EPSG:32636"))
-    assert any("EPSG:32636, was used" in m.sentence for m in placed.messages)
+    for stated, own in (
+        ("EPSG:2039", " instead of the file's own, Israel 1993 / Israeli TM Grid."),
+        ("EPSG:32636", "."),
+        ("no system at all", "."),
+    ):
+        placed = place(projected("EPSG:32636"), stated, ReadOptions(crs="EPSG:32636"))
+        said = f"The coordinate system named by hand, EPSG:32636, was used{own}"
+        assert said in [str(m.sentence) for m in placed.messages]
 
 
 def test_without_a_system_it_is_a_question():

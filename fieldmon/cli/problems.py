@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 # of a name that cannot be one
 _LONGEST = 80
+# the exit code of a command that was stopped by a person
+_STOPPED = 130
 
 
 def run(command: Callable[..., object]) -> None:
@@ -24,13 +26,15 @@ def run(command: Callable[..., object]) -> None:
     try:
         with WAITING:
             code = command(standalone_mode=False)
+        if code == _STOPPED:  # which typer makes of Ctrl-C
+            raise KeyboardInterrupt
         sys.exit(code if isinstance(code, int) else 0)
     except FieldmonError as error:
         _end(str(error), 2)
     except typer.Exit as stop:
         sys.exit(stop.exit_code)
     except (KeyboardInterrupt, typer.Abort):
-        _end("Stopped; nothing was written that is not complete.", 130)
+        _end("Stopped; nothing was written that is not complete.", _STOPPED)
     except BrokenPipeError:
         sys.exit(0)
     except OverflowError as error:

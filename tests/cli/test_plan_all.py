@@ -166,6 +166,7 @@ def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(
     os.kill(command.pid, signal.SIGINT)
     _, complaint = command.communicate(timeout=100)
     assert command.returncode == 130, complaint
+    assert complaint.endswith("Stopped; nothing was written that is not complete.\n")
     half = summary("r")
     assert 0 < len(half) < 24
     # as the stopped run did, but here: starting workers again takes longer than the plots do

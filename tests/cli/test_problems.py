@@ -151,3 +151,13 @@ def test_what_does_not_fit_is_a_sentence(run, season, words, says):
     assert (code, made) == (2, set())
     assert says in err
     assert season.read_bytes() == before
+
+
+def test_a_command_that_is_stopped_says_so(run, monkeypatch):
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(plan, "_plan_one", stopped)
+    code, out, err, made = run("plan", ZIP, "--feature", "Gate")
+    assert (code, out, made) == (130, "", set())
+    assert err == "Stopped; nothing was written that is not complete.\n"

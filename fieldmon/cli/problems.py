@@ -27,14 +27,14 @@ def run(command: Callable[..., object]) -> None:
         with WAITING:
             code = command(standalone_mode=False)
         if code == _STOPPED:  # which typer makes of Ctrl-C
-            raise KeyboardInterrupt
+            _stopped()
         sys.exit(code if isinstance(code, int) else 0)
     except FieldmonError as error:
         _end(str(error), 2)
     except typer.Exit as stop:
         sys.exit(stop.exit_code)
     except (KeyboardInterrupt, typer.Abort):
-        _end("Stopped; nothing was written that is not complete.", _STOPPED)
+        _stopped()
     except BrokenPipeError:
         sys.exit(0)
     except OverflowError as error:
@@ -49,6 +49,10 @@ def run(command: Callable[..., object]) -> None:
         )
     except Exception as error:  # noqa: BLE001 - no traceback ever reaches a person
         _unexpected(error)
+
+
+def _stopped() -> NoReturn:
+    _end("Stopped; nothing was written that is not complete.", _STOPPED)
 
 
 def _unexpected(error: Exception) -> NoReturn:

@@ -43,7 +43,7 @@ _SPRAYER = ("decide rows", "decide on", "decide off", "decide ring", "decide rat
 #: what a decision is handed out as: endings of files, the first one offered first
 _ENDINGS = (
     ".xml.zip", ".grid1.xml.zip", ".grid2.xml.zip", ".v3.xml.zip", ".v3.grid1.xml.zip",
-    ".v3.grid2.xml.zip", ".shp.zip", ".gpkg", ".kml", ".tif",
+    ".v3.grid2.xml.zip", ".shp.zip", ".gpkg", ".geojson", ".kml", ".tif",
 )  # fmt: skip
 
 

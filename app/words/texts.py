@@ -563,7 +563,7 @@ DECIDE_FILES = {
     "v3.grid1.xml.zip": "older terminal: ISOXML 3, grid of zones",
     "v3.grid2.xml.zip": "older terminal: ISOXML 3, grid of rates",
     "shp.zip": "farm program: shapefile", "gpkg": "farm program: GeoPackage",
-    "kml": "phone: KML", "tif": "map of rates: GeoTIFF",
+    "geojson": "web map: GeoJSON", "kml": "phone: KML", "tif": "map of rates: GeoTIFF",
 }  # fmt: skip
 
 HOT_TITLE = "Hot spots"

@@ -36,7 +36,8 @@ Outputs = Annotated[
     list[Path] | None,
     typer.Option(
         "-o", "--output",
-        help="Zones to write: .xml.zip, .grid1.xml.zip, .shp.zip, .gpkg, .kml, .tif; or .pdf.",
+        help="Zones to write: .xml.zip, .grid1.xml.zip, .shp.zip, .gpkg, .geojson, .kml, .tif; "
+        "or .pdf.",
     ),
 ]  # fmt: skip
 Presence = Annotated[
@@ -59,6 +60,9 @@ _LEAVES_OF_PLANTS = (
     "--leaves, --counted and --presence answer a threshold of leaves, but {} is a share of the "
     "plants, which the season itself knows. Leave them out, or name a threshold of leaves."
 )
+
+#: endings of the advice to print
+_PAPER = (".pdf", ".html")
 
 
 def decide(  # noqa: PLR0913, PLR0917 - the command's options
@@ -97,6 +101,8 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     from fieldmon.monitoring.advice import AdviceSettings  # noqa: PLC0415
 
     asked = threshold_of(threshold, _own(thresholds))
+    for path in output or []:
+        _check_name(path)
     of_plants = asked.measure == "share of plants"
     _refuse_idle(
         (of_plants and (leaves or counted or presence), _LEAVES_OF_PLANTS.format(threshold)),
@@ -152,6 +158,19 @@ class _Asked:
     product: str
 
 
+def _check_name(path: Path) -> None:
+    """Refuse a file that could not be written, before the first of them is."""
+    from fieldmon.io.atomic_write import require_folder  # noqa: PLC0415
+    from fieldmon.io.writers.treatment_map import checked_ending  # noqa: PLC0415
+
+    if path.suffix.lower() not in _PAPER:
+        try:
+            checked_ending(path.name)
+        except SettingError as error:
+            raise SettingError(f"{error} The advice to print ends in .pdf or .html.") from error
+    require_folder(path)
+
+
 def _write(asked: _Asked, paths: list[Path]) -> None:
     from fieldmon.compute.units import Units  # noqa: PLC0415
     from fieldmon.io.writers.treatment_map import write_treatment_map  # noqa: PLC0415
@@ -159,7 +178,7 @@ def _write(asked: _Asked, paths: list[Path]) -> None:
     from fieldmon.reports.write import write_report  # noqa: PLC0415
 
     for path in paths:
-        if path.suffix.lower() in {".pdf", ".html"}:
+        if path.suffix.lower() in _PAPER:
             made = advice_report(asked.kept, asked.when, asked.advice, Units(), asked.product)
             typer.echo(f"Advice written to {write_report(made, path)}")
             continue

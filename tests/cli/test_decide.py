@@ -69,3 +69,16 @@ def test_what_cannot_be_is_a_sentence_and_nothing_is_written(run, season, words,
     assert code == 2
     assert said in err
     assert not made
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [("z.png", "advice to print ends in .pdf or .html"), ("none/z.gpkg", "folder none must exist")],
+)
+def test_nothing_is_written_or_kept_where_one_of_the_files_cannot_be(run, season, wrong, says):
+    before = season.read_bytes()
+    words = ["decide", season, "--threshold", "0.1%", *CHEAP]
+    code, _, err, made = run(*words, "-o", "z.pdf", "-o", wrong)
+    assert (code, made) == (2, set())
+    assert says in err
+    assert season.read_bytes() == before

@@ -81,8 +81,8 @@ def write_treatment_map(of: TreatmentMap, to: str | Path) -> Path:
 
     ``.xml.zip`` is ISO 11783-10 TASKDATA version 4 with polygons, ``.v3.xml.zip`` version 3;
     ``.grid1.xml.zip`` and ``.grid2.xml.zip``, likewise with ``.v3`` before them, have a grid of
-    zones or of rates instead. ``.tif`` is a GeoTIFF of rates; ``.shp.zip``, ``.gpkg`` and ``.kml``
-    have a column ``RATE`` and ``UNIT``, ``l/ha``.
+    zones or of rates instead. ``.tif`` is a GeoTIFF of rates; ``.shp.zip``, ``.gpkg``,
+    ``.geojson`` and ``.kml`` have a column ``RATE`` and ``UNIT``, ``l/ha``.
 
     Raises
     ------
@@ -104,16 +104,21 @@ def treatment_map_bytes(of: TreatmentMap, name: str) -> bytes:
     SettingError
         If the ending tells no format.
     """
-    for ending, make in FORMATS.items():
-        if name.lower().endswith(ending):
-            return make(of)
-    raise SettingError(
-        worded(
-            "A treatment map must be called *{names}, but it is {name!r}.",
-            names=", *".join(FORMATS),
-            name=name,
+    return FORMATS[checked_ending(name)](of)
+
+
+def checked_ending(name: str) -> str:
+    """Return the ending in `FORMATS` of a file's name; raise `SettingError` where it has none."""
+    ending = next((ending for ending in FORMATS if name.lower().endswith(ending)), None)
+    if ending is None:
+        raise SettingError(
+            worded(
+                "A treatment map must be called *{names}, but it is {name!r}.",
+                names=", *".join(FORMATS),
+                name=name,
+            )
         )
-    )
+    return ending
 
 
 def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:
@@ -139,6 +144,10 @@ def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:
 
 def _gpkg(of: TreatmentMap) -> bytes:
     return _one_file(of, "treatment.gpkg", "GPKG", layer="treatment")
+
+
+def _geojson(of: TreatmentMap) -> bytes:
+    return _one_file(of, "treatment.geojson", "GeoJSON", RFC7946="YES")
 
 
 def _kml(of: TreatmentMap) -> bytes:
@@ -213,6 +222,7 @@ FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
     ".xml.zip": _taskdata(4),
     ".shp.zip": _shapefile,
     ".gpkg": _gpkg,
+    ".geojson": _geojson,
     ".kml": _kml,
     ".tif": _geotiff,
 }

@@ -19,7 +19,7 @@ ZONES = [
 MAP = TreatmentMap("Gate", PLOT, ZONES, 300.0, "soap")
 
 
-@pytest.mark.parametrize("name", ["t.gpkg", "t.shp.zip", "t.KML"])
+@pytest.mark.parametrize("name", ["t.gpkg", "t.shp.zip", "t.geojson", "t.KML"])
 def test_the_rates_are_read_back_where_they_are(tmp_path, name):
     path = write_treatment_map(MAP, tmp_path / name)
     read = gpd.read_file(path)

@@ -160,7 +160,7 @@ class _Asked:
 
 def _check_name(path: Path) -> None:
     """Refuse a file that could not be written, before the first of them is."""
-    from fieldmon.io.atomic_write import require_folder  # noqa: PLC0415
+    from fieldmon.io.atomic_write import require_place  # noqa: PLC0415
     from fieldmon.io.writers.treatment_map import checked_ending  # noqa: PLC0415
 
     if path.suffix.lower() not in _PAPER:
@@ -168,7 +168,7 @@ def _check_name(path: Path) -> None:
             checked_ending(path.name)
         except SettingError as error:
             raise SettingError(f"{error} The advice to print ends in .pdf or .html.") from error
-    require_folder(path)
+    require_place(path)
 
 
 def _write(asked: _Asked, paths: list[Path]) -> None:

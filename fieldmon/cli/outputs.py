@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.errors import SettingError
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -14,9 +16,28 @@ if TYPE_CHECKING:
     from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot
 
+_RASTERS = (".tif", ".tiff")
+
 ChanceMap = Annotated[
     Path | None, typer.Option(help="Cloud Optimised GeoTIFF to write: chance of each plant.")
 ]
+
+
+def check_outputs(outputs: list[Path] | None, chance_map: Path | None) -> None:
+    """Refuse files that could not be written, before anything is planned or written."""
+    from fieldmon.io.atomic_write import require_place  # noqa: PLC0415
+    from fieldmon.io.writers.handoff import format_of  # noqa: PLC0415
+
+    for path in outputs or []:
+        format_of(path)
+        require_place(path)
+    if chance_map is not None:
+        if chance_map.suffix.lower() not in _RASTERS:
+            raise SettingError(
+                f"--chance-map writes a GeoTIFF: its name must end in .tif, but it is "
+                f"{chance_map.name!r}."
+            )
+        require_place(chance_map)
 
 
 def write_routes(route: Route, outputs: list[Path] | None) -> None:

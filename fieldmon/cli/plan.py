@@ -26,7 +26,13 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_of,
 )
-from fieldmon.cli.outputs import ChanceMap, day_in_words, write_chance_map, write_routes
+from fieldmon.cli.outputs import (
+    ChanceMap,
+    check_outputs,
+    day_in_words,
+    write_chance_map,
+    write_routes,
+)
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.plan_team import plan_team
@@ -107,6 +113,8 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     """
     from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
 
+    if not options.every_plot:
+        check_outputs(options.output, options.chance_map)
     if options.plot is not None and is_season(options.plot):
         if options.robots is not None:
             raise SettingError(

@@ -10,6 +10,18 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 
+def require_place(target: Path) -> None:
+    """Raise `FileProblem` unless a file of this name may be there: in a folder, and none itself."""
+    if target.exists() and not target.is_file():
+        what = "a folder" if target.is_dir() else "not a plain file"
+        raise FileProblem(
+            worded(
+                "{target} must be a file to write to, but it is {what}.", target=target, what=what
+            )
+        )
+    require_folder(target)
+
+
 def require_folder(target: Path) -> None:
     """Raise `FileProblem` unless the folder that a file is written into exists."""
     if not target.parent.is_dir():
@@ -30,14 +42,7 @@ def write_whole(path: str | Path, data: bytes) -> None:
     or a killed process leaves what was there before.
     """
     target = Path(path)
-    if target.exists() and not target.is_file():
-        what = "a folder" if target.is_dir() else "not a plain file"
-        raise FileProblem(
-            worded(
-                "{target} must be a file to write to, but it is {what}.", target=target, what=what
-            )
-        )
-    require_folder(target)
+    require_place(target)
     name = None
     try:
         with tempfile.NamedTemporaryFile(

@@ -8,7 +8,8 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
+from fieldmon.cli.outputs import check_outputs, day_in_words, write_chance_map, write_routes
+from fieldmon.errors import FieldmonError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.writers.geojson import RouteNotes
 from fieldmon.planning.plan import PlanSettings, first_day
@@ -16,6 +17,7 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
+from tests.cli.estate import ZIP
 
 AREA = Frame(5.0, 45.0).geometry_lonlat(MultiPolygon([shapely.box(-30, -25, 30, 25)]))
 PLOT = Plot.of(Field("square", AREA))
@@ -53,3 +55,32 @@ def test_a_day_in_words_says_its_stops_its_hours_and_what_to_expect(today):
     words = day_in_words(today.route)
     assert words.startswith(f"{len(today.route)} of {len(PLOT.grid)} plants in 0.5 h, ")
     assert f"about {today.route.expected_finds:.1f} of them infested" in words
+
+
+@pytest.mark.parametrize(
+    ("outputs", "chance_map", "says"),
+    [
+        (["a.gpx", "none/b.gpx"], None, "folder .*none must exist"),
+        (["a.gpx", "b.xyz"], None, "must end in one of"),
+        (["a.gpx", "folder.csv"], None, "must be a file to write to, but it is a folder"),
+        (["a.gpx"], "chance.png", "must end in .tif, but it is 'chance.png'"),
+        (["a.gpx"], "none/chance.tif", "folder .*none must exist"),
+    ],
+)
+def test_files_that_could_not_be_written_are_refused_before(tmp_path, outputs, chance_map, says):
+    (tmp_path / "folder.csv").mkdir()
+    paths = [tmp_path / name for name in outputs]
+    check_outputs(paths[:1], tmp_path / "chance.tif")
+    with pytest.raises(FieldmonError, match=says):
+        check_outputs(paths, chance_map and tmp_path / chance_map)
+
+
+@pytest.mark.parametrize("what", ["plot", "season", "team"])
+def test_a_plan_writes_none_of_its_files_where_one_cannot_be(run, season, what):
+    words = {"plot": [ZIP, "--feature", "Nursery"], "season": [season]}
+    words["team"] = [*words["plot"], "--robots", "2"]
+    before = season.read_bytes()
+    code, out, err, made = run("plan", *words[what], "-o", "a.gpx", "-o", "none/b.gpx")
+    assert (code, out, made) == (2, "", set())
+    assert "folder none must exist" in err
+    assert season.read_bytes() == before

@@ -101,7 +101,7 @@ def write_handoff(
         before all are made.
     """
     target = Path(to)
-    chosen = _format_of(target, as_format)
+    chosen = format_of(target, as_format)
     known = (e for e in chosen.endings if target.name.lower().endswith(e))
     ending = next(known, target.suffix)
     stem = target.name[: len(target.name) - len(ending)]
@@ -113,7 +113,8 @@ def write_handoff(
     return paths
 
 
-def _format_of(target: Path, name: str | None) -> HandoffFormat:
+def format_of(target: Path, name: str | None = None) -> HandoffFormat:
+    """Return the format of a file by its name, or the one that is named; see `write_handoff`."""
     if name is not None:
         if name.lower() not in FORMATS:
             raise SettingError(

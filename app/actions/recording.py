@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tempfile
 from contextlib import contextmanager
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +18,7 @@ from fieldmon.monitoring import counting_copy
 from fieldmon.monitoring.transactions import is_season
 from fieldmon.plot.grid import plant_at, row_label
 
-from ..show import plant_history
+from ..show import plant_history, recorded_batches
 from ..state import chosen_day, notices, unconfirmed
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
@@ -301,19 +300,17 @@ def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
 
 def show_batches(choices: Choices) -> None:
     """Show what was recorded, the last one first, each with its undo."""
-    for batch in choices.season.batches()[:_MOST]:
+    shown = choices.season.batches()[:_MOST]
+    contents = choices.season.contents([batch.number for batch in shown])
+    for batch in shown:
         if not batch.rows:
             continue
-        at = choices.clock.at(datetime.fromisoformat(batch.at))
-        said = texts.BATCHES_SAID[batch.kind].format(
-            day=choices.units.day(at.date()), time=f"{at:%H:%M}", n=batch.rows,
-            source=texts.isolated(batch.source) if batch.source else "",
-        )  # fmt: skip
+        said = recorded_batches.line(choices, batch, contents.get(batch.number))
         # side by side, not in columns: a button takes what its word needs in each language
         with st.container(horizontal=True, vertical_alignment="center"):
-            st.markdown(said + (f" ({texts.UNDONE})" if batch.undone else ""), width="stretch")
+            st.markdown(said, width="stretch")
             if not batch.undone:
-                st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo,
+                st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo, help=said,
                           args=(choices, batch.number))  # fmt: skip
 
 

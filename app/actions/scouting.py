@@ -10,8 +10,8 @@ import streamlit as st
 
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring.settings import seconds
-from fieldmon.plot.grid import row_label
 
+from ..show import recorded_batches
 from ..state import chosen_day, notices
 from ..words import texts
 from ..words.language import in_words, number
@@ -53,27 +53,27 @@ def tap(choices: Choices, plant: int, result: int) -> None:
     st.session_state["scout_count"] = None
 
 
-def last_tap(choices: Choices) -> int | None:
-    """Return the batch of the last tap that counts, or None."""
-    taps = (b.number for b in choices.season.batches() if b.source == SOURCE and not b.undone)
-    return next(taps, None)
-
-
-def last_said(choices: Choices) -> str:
-    """Return what was recorded last on this day, in words."""
-    done = choices.season.history.inspections.on(choices.on)
-    if not len(done):
-        return ""
-    label = row_label(choices.plot.grid, done.plant[-1:])
-    result = texts.HISTORY_RESULTS[int(done.result[-1])]
+def last_tap(choices: Choices) -> tuple[int, str] | None:
+    """Return the batch of this person's last tap of the day that counts, and what it said."""
+    who, season = choices.who or "", choices.season
+    taps = (
+        b.number for b in season.batches() if (b.source, b.who, b.undone) == (SOURCE, who, False)
+    )
+    number = next(taps, None)
+    if number is None:
+        return None
+    tapped = season.contents([number])[number]
+    if tapped.first != str(choices.on):
+        return None
     said = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
-    return said.format(row=label.line[0], plant=label.number[0], result=result)
+    result = recorded_batches.in_short(tapped.result)
+    return number, said.format(row=tapped.row, plant=tapped.plant, result=result)
 
 
 @notices.reporting
 def undo(choices: Choices, batch: int) -> str:
     """Take the last tap back."""
-    return in_words(choices.season.undo(batch))
+    return in_words(choices.season.undo(batch, who=choices.who or ""))
 
 
 @notices.reporting

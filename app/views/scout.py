@@ -70,7 +70,8 @@ def show(choices: Choices) -> None:
 def _undo(choices: Choices) -> None:
     last = scouting.last_tap(choices)
     if last is not None:
-        st.caption(scouting.last_said(choices))
+        batch, said = last
+        st.caption(said)
         with st.container(key="scout_back"):
             st.button(texts.UNDO_BUTTON, key="scout_undo", width="stretch", icon=":material/undo:",
-                      on_click=scouting.undo, args=(choices, last))  # fmt: skip
+                      on_click=scouting.undo, args=(choices, batch))  # fmt: skip

@@ -684,11 +684,9 @@ LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too
 RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 BATCHES_SAID = {
-    "findings": Plural(
-        "{day} {time} · {source} · {n} plant", "{day} {time} · {source} · {n} plants"
-    ),
-    "treatment": "{day} {time} · treatment of the plot {source}",
-    "corrections": "{day} {time} · corrections: {source}",
+    "findings": Plural("{n} plant, {found} found", "{n} plants, {found} found"),
+    "treatment": "treatment of the plot {source}",
+    "corrections": "corrections: {source}",
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 #: plants times days up to which a season is checked whole whenever its state is asked for
 _WHOLE = 2_000_000
+#: batches of which it is listed what they say
+_DETAILED = 100
 
 ListBatches = Annotated[
     bool, typer.Option("--batches", help="List what was recorded, with numbers to undo.")
@@ -54,13 +57,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     if rows:
         _show_rows(kept, now)
     if batches:
-        for batch in kept.batches():
-            undone = "  (undone)" if batch.undone else ""
-            who = f" by {batch.who}" if batch.who else ""
-            typer.echo(
-                f"{batch.number:5d}  {batch.at[:16]}  {batch.rows:5d} {batch.kind}{who}  "
-                f"{batch.source}{undone}"
-            )
+        _show_batches(kept)
     # all of a long season takes many seconds
     whole = now.plants * (now.day + 1) <= _WHOLE
     for sentence in kept.verify(whole=whole):
@@ -68,6 +65,26 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     if not whole:
         typer.echo(
             "held to their digests: the last mornings; fieldmon log checks the rest", err=True
+        )
+
+
+def _show_batches(kept: Season) -> None:
+    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+
+    clock, told = local_clock(kept.plot.field), kept.batches()
+    contents = kept.contents([batch.number for batch in told[:_DETAILED]])
+    for batch in told:
+        at = clock.at(datetime.fromisoformat(batch.at))
+        who = f" by {batch.who}" if batch.who else ""
+        said, what = contents.get(batch.number), ""
+        if said is not None and said.n == 1:
+            what = f"  row {said.row}, plant {said.plant}: {said.result}"
+        elif said is not None:
+            what = f"  {said.found} found"
+        undone = "  (undone)" if batch.undone else ""
+        typer.echo(
+            f"{batch.number:5d}  {at:%Y-%m-%d %H:%M}  {batch.rows:5d} {batch.kind}{who}  "
+            f"{batch.source}{what}{undone}"
         )
 
 

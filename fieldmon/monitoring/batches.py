@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import touch
@@ -13,12 +13,14 @@ from fieldmon.monitoring.tables import utc_now
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Sequence
 
 _TABLE_OF = {
     "findings": "inspections",
     "corrections": "inspections",
     "treatment": "treatments",
 }
+_RESULTS = {"found": worded("found"), "clean": worded("clean"), "skipped": worded("skipped")}
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,30 @@ class Batch:
     who: str
     rows: int
     undone: bool
+
+
+@dataclass(frozen=True)
+class BatchContents:
+    """What the inspections of a batch say.
+
+    Parameters
+    ----------
+    n, found
+        How many there are, and how many found something.
+    first, last
+        The days of the first and the last of them, as ``2026-11-18``.
+    row, plant, result
+        Of the only one: where it was, and ``"found"``, ``"clean"`` or ``"skipped"``. Of several
+        they say nothing.
+    """
+
+    n: int
+    found: int
+    first: str
+    last: str
+    row: int
+    plant: int
+    result: str
 
 
 @dataclass(frozen=True)
@@ -119,6 +145,17 @@ def all_of(db: sqlite3.Connection) -> tuple[Batch, ...]:
     )
 
 
+def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchContents]:
+    """Return what batches of inspections say, by their numbers."""
+    asked = ", ".join("?" * len(numbers))
+    rows = db.execute(
+        "SELECT batch, count(*), sum(result = 'found'), min(date), max(date), min(line), "  # noqa: S608 - ours
+        f"min(number), min(result) FROM inspections WHERE batch IN ({asked}) GROUP BY batch",
+        tuple(numbers),
+    )
+    return {number: BatchContents(*said) for number, *said in rows}
+
+
 def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
     """Mark a batch (None: the last one that counts) as undone; return which, and what was done."""
     waiting = [batch for batch in all_of(db) if not batch.undone]
@@ -138,8 +175,36 @@ def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
     touch(db, table)
-    source = f" from {batch.source}" if batch.source else ""
-    return batch.number, f"Batch {batch.number} was undone: {batch.rows} {batch.kind}{source}."
+    return batch.number, _undone(batch, contents(db, [batch.number]).get(batch.number))
+
+
+def _undone(batch: Batch, said: BatchContents | None) -> str:
+    """Return what was taken back, in words."""
+    if batch.kind == "findings" and said is not None and said.n == 1:
+        return _undone_one(said.row, said.plant, said.first, said.result)
+    what = {
+        "findings": counted(batch.rows, "inspection"),
+        "corrections": counted(batch.rows, "correction"),
+        "treatment": counted(batch.rows, "treatment"),
+    }[batch.kind]
+    if batch.source:
+        return worded(
+            "Batch {batch} was undone: {what} from {source}.",
+            batch=batch.number,
+            what=what,
+            source=batch.source,
+        )
+    return worded("Batch {batch} was undone: {what}.", batch=batch.number, what=what)
+
+
+def _undone_one(row: int, plant: int, on: str, result: str) -> str:
+    return worded(
+        "Undone: row {row}, plant {plant} on {date} ({result}).",
+        row=row,
+        plant=plant,
+        date=on,
+        result=_RESULTS.get(result, result),
+    )
 
 
 def first_day(db: sqlite3.Connection, number: int) -> int:
@@ -169,7 +234,7 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[int, str]:
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
-    return row[4], f"Undone: row {row[0]}, plant {row[1]} on {row[2]} ({row[3]})."
+    return row[4], _undone_one(*row[:4])
 
 
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:

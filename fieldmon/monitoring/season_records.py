@@ -29,11 +29,12 @@ from fieldmon.monitoring.transactions import Store
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Sequence
     from datetime import date
     from pathlib import Path
 
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.monitoring.batches import Batch
+    from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
 
@@ -244,6 +245,11 @@ class SeasonRecords(OpenSeason):
         """Return everything recorded, the last one first."""
         with self.store.reading() as db:
             return batches.all_of(db)
+
+    def contents(self, numbers: Sequence[int]) -> dict[int, BatchContents]:
+        """Return what batches of inspections say, by their numbers."""
+        with self.store.reading() as db:
+            return batches.contents(db, numbers)
 
     def messages(self) -> tuple[KeptMessage, ...]:
         """Return what the imports had to say."""

@@ -26,7 +26,7 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
     assert np.count_nonzero(history.inspections.result == FOUND) == 2
     code, out, _, _ = run("status", season, "--batches", "--rows")
     assert "r.csv" in out
-    assert "by Ann" in out
+    assert "10 findings by Ann  r.csv  2 found" in out
     assert "never" in out
     assert "chance it is clean" in out
 

@@ -17,7 +17,7 @@ def test_what_was_recorded_last_is_as_if_it_had_not_been(run, season, tmp_path):
     run("record", season, "r.csv", "--date", BEGINS)
     assert not np.array_equal(Season(season).evening(ON), before)
     code, out, _, _ = run("undo", season)
-    assert (code, "5 findings from r.csv" in out) == (0, True)
+    assert (code, "5 inspections from r.csv" in out) == (0, True)
     assert np.array_equal(Season(season).evening(ON), before)
 
 

@@ -1,10 +1,13 @@
 """Everything recorded is a batch, and what is taken back is marked, never deleted."""
 
+import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import batches
 from fieldmon.monitoring.batches import Batch
+from fieldmon.plot.grid import row_label
 
 
 def recorded(db, rows, source="x", who="", kind="findings"):
@@ -38,12 +41,30 @@ def test_a_batch_that_added_nothing_was_none(db):
 def test_the_last_batch_that_counts_is_undone_and_its_rows_stay(db):
     recorded(db, 2, "first")
     recorded(db, 3, "second")
-    assert batches.undo(db, None)[1] == "Batch 2 was undone: 3 findings from second."
-    assert batches.undo(db, None)[1] == "Batch 1 was undone: 2 findings from first."
+    assert batches.undo(db, None)[1] == "Batch 2 was undone: 3 inspections from second."
+    assert batches.undo(db, None)[1] == "Batch 1 was undone: 2 inspections from first."
     assert counting(db) == 0
     assert db.execute("SELECT count(*) FROM inspections").fetchone() == (5,)
     with pytest.raises(SettingError, match="something to undo, but there is nothing"):
         batches.undo(db, None)
+
+
+def test_a_batch_says_how_many_of_its_plants_were_found_and_of_which_days(season):
+    results = Inspections.of(np.array([1, 2, 3]), np.array([0, 1, 1]), np.datetime64("2026-11-16"))
+    several = season.record(results, "day.csv").batch
+    one = season.record(
+        Inspections.of(np.array([4]), np.array([2]), np.datetime64("2026-11-17")), "typed in"
+    ).batch
+    label = row_label(season.plot.grid, np.array([4]))
+    row, plant = int(label.line[0]), int(label.number[0])
+    said = season.contents([several, one, 99])
+    assert set(said) == {several, one}
+    assert (said[several].n, said[several].found) == (3, 2)
+    assert (said[several].first, said[several].last) == ("2026-11-16", "2026-11-16")
+    assert (said[one].row, said[one].plant, said[one].result) == (row, plant, "skipped")
+    undone = f"Undone: row {row}, plant {plant} on 2026-11-17 (skipped)."
+    assert season.undo() == undone
+    assert season.undo() == f"Batch {several} was undone: 3 inspections from day.csv."
 
 
 def test_any_batch_is_undone_by_its_number_but_once(db):

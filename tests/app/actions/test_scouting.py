@@ -6,6 +6,7 @@ from datetime import date
 import numpy as np
 
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.plot.grid import row_label
 from tests.app.driving import go, opened, tap, texts_of
 
 
@@ -47,6 +48,31 @@ def test_the_scout_takes_the_last_tap_back(season_app, season):
     tap(season_app, "scout_undo")
     assert place(season_app) == before
     assert season().history.inspections.result.tolist() == [0]
+
+
+def test_a_scout_takes_back_what_is_said_beside_the_button_and_nobody_elses(season_app, season):
+    go(season_app, "scout")
+    tap(season_app, "scout_found")
+    kept = season()
+    label = row_label(kept.plot.grid, kept.history.inspections.plant)
+    said = f"Last: row {label.line[0]}, plant {label.number[0]}: found"
+    assert said in [one.value for one in season_app.caption]
+    others = Inspections.of(np.array([7, 9]), np.array([0, 0]), np.datetime64("2026-11-16"))
+    kept.record(others.take(slice(1)), "scout mode", "Ben")
+    go(season_app, "scout")
+    assert said in [one.value for one in season_app.caption]
+    tap(season_app, "scout_undo")
+    assert season().history.inspections.plant.tolist() == [7]
+    # what is left is Ben's
+    assert not [one for one in season_app.button if one.key == "scout_undo"]
+
+
+def test_a_tap_of_another_day_is_not_taken_back_here(season_app, season):
+    kept = season()
+    before = Inspections.of(np.array([7]), np.array([0]), np.datetime64("2026-11-17"))
+    kept.record(before, "scout mode")
+    go(season_app, "scout")
+    assert not [one for one in season_app.button if one.key == "scout_undo"]
 
 
 def test_one_hour_more_is_one_however_late_it_is(season_app, season):

@@ -1,0 +1,47 @@
+"""What was recorded, a line for each batch: when, from where, what it said and by whom."""
+
+from __future__ import annotations
+
+from datetime import date, datetime
+from typing import TYPE_CHECKING
+
+from fieldmon.infestation.inspections import RESULT_NAMES
+
+from ..words import texts
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.batches import Batch, BatchContents
+
+    from ..state.choices import Choices
+
+_CODES = {name: code for code, name in RESULT_NAMES.items()}
+
+
+def in_short(result: str) -> str:
+    """Return the result of an inspection, as a season's file names it, in a word."""
+    return texts.HISTORY_RESULTS[_CODES[result]]
+
+
+def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
+    """Return what tells a batch from the others."""
+    at = choices.clock.at(datetime.fromisoformat(batch.at))
+    parts = [f"{choices.units.day(at.date())} {at:%H:%M}"]
+    source = texts.isolated(batch.source) if batch.source else ""
+    if batch.kind != "findings" or said is None:
+        parts.append(texts.BATCHES_SAID[batch.kind].format(source=source, n=batch.rows))
+    else:
+        parts += [source, _what(choices, said)]
+        # results may be brought days later
+        days = [date.fromisoformat(day) for day in dict.fromkeys((said.first, said.last))]
+        if days != [at.date()]:
+            parts.append("–".join(choices.units.day(day) for day in days))
+    parts += [texts.isolated(batch.who) if batch.who else "", texts.UNDONE if batch.undone else ""]
+    return " · ".join(part for part in parts if part)
+
+
+def _what(choices: Choices, said: BatchContents) -> str:
+    if said.n > 1:
+        return texts.BATCHES_SAID["findings"].format(n=said.n, found=said.found)
+    where = texts.TIP_PLANT if choices.plot.grid.in_rows else texts.TIP_ALONE
+    note = texts.TIP_STATE.format(state=in_short(said.result))
+    return where.format(row=said.row, plant=said.plant, note=note)

@@ -1,0 +1,33 @@
+"""What was recorded, so that a person can tell one batch from the others."""
+
+import numpy as np
+
+from app.show.recorded_batches import in_short
+from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
+from fieldmon.plot.grid import row_label
+from tests.app.driving import go
+
+DAY = np.datetime64("2026-11-16")
+
+
+def test_each_batch_is_told_by_what_it_says(season_app, season):
+    kept = season()
+    one = row_label(kept.plot.grid, np.array([5, 6]))
+    first, second = (f"row {one.line[k]}, plant {one.number[k]}" for k in range(2))
+    kept.record(Inspections.of(np.array([5]), np.array([FOUND]), DAY), "typed in")
+    kept.record(Inspections.of(np.array([6]), np.array([SKIPPED]), DAY), "typed in", "Ann")
+    many = Inspections.of(np.arange(10, 14), np.array([0, FOUND, FOUND, 0]), DAY)
+    kept.record(many, "day.csv")
+    kept.undo()
+    go(season_app, "record")
+    lines = [one.value for one in season_app.markdown if "\u2068" in one.value]
+    said = [line.replace("\u2068", "").replace("\u2069", "").split(" · ", 1)[1] for line in lines]
+    # recorded today, and of a day that is not
+    assert said[0] == "day.csv · 4 plants, 2 found · 2026-11-16 · undone"
+    assert said[1] == f"typed in · {second}: could not inspect · 2026-11-16 · Ann"
+    assert said[2] == f"typed in · {first}: found · 2026-11-16"
+    assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:3]}
+
+
+def test_every_result_has_its_word():
+    assert len({in_short(name) for name in RESULT_NAMES.values()}) == len(RESULT_NAMES)

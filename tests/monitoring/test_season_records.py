@@ -36,7 +36,7 @@ def test_undoing_a_batch_gives_back_the_state_before_and_deletes_nothing(season)
     before, plan_before = season.evening(BEGINS), season.plan(BEGINS, keep=False).route.plant
     season.record(some_results(season, found=[0, 2]), "second", "Ann")
     assert not np.array_equal(season.evening(BEGINS), before)
-    assert "5 findings from second" in season.undo()
+    assert "5 inspections from second" in season.undo()
     assert np.array_equal(season.evening(BEGINS), before)
     assert np.array_equal(season.plan(BEGINS, keep=False).route.plant, plan_before)
     with season.store.reading() as db:

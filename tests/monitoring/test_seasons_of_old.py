@@ -5,9 +5,10 @@ changed): planned, recorded, undone, treated, changed. Beside each lies what ``f
 --rows --batches --date 2026-04-09`` said of it, and the files that were recorded.
 """
 
+import re
 import shutil
 from dataclasses import replace
-from datetime import date
+from datetime import date, datetime
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +19,11 @@ from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Season
+from fieldmon.plot.local_clock import local_clock
 
 FOLDER = Path(__file__).with_name("seasons_of_old")
 LAST = date(2026, 4, 9)
+UTC_TIME = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d")
 # season, file, day of findings whose file names none, inspections known again, and those undone
 RECORDED = [
     ("adaptive", "monday", "2026-04-06", 8, 1),
@@ -44,7 +47,13 @@ def test_a_season_says_what_it_said(season, capsys):
         since = [line for line in said if line.startswith(new)]
         assert len(since) == 1
         said.remove(since[0])
-    assert "".join(said) == (FOLDER / f"{season.path.stem}.status.txt").read_text("utf-8")
+    # recorded when, by the clock of the plot instead of UTC, and with what
+    told = (FOLDER / f"{season.path.stem}.status.txt").read_text("utf-8")
+    clock = local_clock(season.plot.field)
+    told = UTC_TIME.sub(
+        lambda at: f"{clock.at(datetime.fromisoformat(f'{at[0]}Z')):%F %H:%M}", told
+    )
+    assert re.sub(r"(findings.*)  \d+ found", r"\1", "".join(said)) == told
     assert "doubtful" not in done.err
 
 
@@ -78,7 +87,7 @@ def test_a_day_goes_on_from_there(season):
     first = today.route.plant[:3]
     season.record(Inspections.of(first, np.full(3, CLEAN), LAST), "today")
     assert (season.evening(LAST)[first] < before[first]).all()
-    assert "3 findings from today" in season.undo()
+    assert "3 inspections from today" in season.undo()
     np.testing.assert_array_equal(season.evening(LAST), before)
 
 

@@ -18,6 +18,8 @@ from fieldmon.errors import PlotError, SettingError
 Float = NDArray[np.float64]
 G = TypeVar("G", bound=shapely.Geometry)
 _FARTHEST_M = 200_000.0
+# longitudes that differ by more lie on both sides of 180, unless they are wrong
+_ROUND_DEG = 350.0
 
 
 @lru_cache(maxsize=64)
@@ -81,6 +83,14 @@ class Frame:
             x, y = (east * axis[0] + north * axis[1] for axis in (along, across))
         xy = np.stack([x, y], axis=1)
         if xy.size and not (np.abs(xy) < _FARTHEST_M).all():
+            if np.ptp(degrees[:, 0]) > _ROUND_DEG:
+                raise PlotError(
+                    worded(
+                        "A plot must lie on one side of longitude 180, but this one lies on both, "
+                        "and longitudes jump from 180 to -180 there. Part it there: each part is "
+                        "a plot of its own."
+                    )
+                )
             raise PlotError(
                 worded(
                     "Everything on a plot must lie within {value:.0f} km of "

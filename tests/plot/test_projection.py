@@ -89,3 +89,11 @@ def test_a_centre_that_is_not_on_earth_is_refused(centre):
 def test_a_bearing_must_be_a_number():
     with pytest.raises(SettingError, match="bearing"):
         Frame(35.0, 30.0, float("nan"))
+
+
+def test_a_plot_on_both_sides_of_longitude_180_is_to_be_parted_there():
+    both = np.array([[179.9995, -16.8], [-179.9995, -16.8], [-179.9995, -16.799]])
+    with pytest.raises(PlotError, match="on one side of longitude 180"):
+        Frame(0.0, -16.8).xy_m(both)
+    # one side of it is as good as any
+    assert np.abs(Frame(-179.9998, -16.8).xy_m(both[1:])).max() < 200.0

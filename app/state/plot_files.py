@@ -13,6 +13,7 @@ import streamlit as st
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import parted
+from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.prepare import Laid, with_plants
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
@@ -172,8 +173,14 @@ def prepared(files: Files, outline: Outline) -> PlotFromFiles:
     plot, missing, key = rasters.without_missing(plot, key)
     risk, said, key = rasters.risk(plot, key)
     of_rows = _said_of_rows(files, plot)
-    messages = (*outline.messages, *of_rows, *missing, *read, *said)
+    messages = (*outline.messages, *_said_of_place(files, plot), *of_rows, *missing, *read, *said)
     return PlotFromFiles(key, plot, records, risk, messages, left_out)
+
+
+def _said_of_place(files: Files, plot: Plot) -> tuple[FileMessage, ...]:
+    """Return what is doubtful about where the plot lies, of the file that says where."""
+    file = files.plot or files.plants or files.rows
+    return tuple(FileMessage(file.asked, message) for message in said_of_place(plot.field))
 
 
 def _said_of_rows(files: Files, plot: Plot) -> tuple[FileMessage, ...]:

@@ -18,7 +18,8 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
-from fieldmon.io.import_report import ImportMessage, doubtful, guessed
+from fieldmon.io.import_report import ImportMessage, doubtful, gathered, guessed
+from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import source_name
 from fieldmon.io.read import (
     read_crews,
@@ -217,6 +218,9 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
             )
         )
     laid, measured = _laid(request, hearing)
+    if (file := sources.plot or sources.plants or sources.rows) is not None:
+        role: Role = "plot" if sources.plot else "plants" if sources.plants else "rows"
+        hearing.say(role, file, said_of_place(laid.plot.field))
     if sources.plants is not None:
         hearing.say("plants", sources.plants, laid.messages)
     elif sources.rows is not None:
@@ -271,6 +275,7 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
         return plots.having((plots.value, crews))
 
     fields, crews = hearing.read("plot", file, read)
+    hearing.say("plot", file, gathered(one for each in fields for one in said_of_place(each)))
     fields = with_rows(fields, sources, request.planting, hearing)
     fields = _with_paths(fields, sources, hearing)
     if (asked := request.records) is not None:

@@ -120,6 +120,20 @@ def clock_at(lon: float, lat: float) -> LocalClock:
     return LocalClock()
 
 
+def at_sea(lon: float, lat: float) -> bool:
+    """Tell whether a place lies in the open sea, some 22 km or more from any land.
+
+    Examples
+    --------
+    >>> from fieldmon.plot.local_clock import at_sea
+    >>> at_sea(30.35, 35.14), at_sea(35.14, 30.35)
+    (True, False)
+    """
+    from tzfpy import get_tz  # noqa: PLC0415 - as above
+
+    return str(get_tz(lon, lat)).startswith("Etc/")
+
+
 def zones_within(bounds: tuple[float, float, float, float]) -> tuple[str, ...]:
     """Return the time zones of land in a part of the earth: west, south, east, north.
 

@@ -62,8 +62,8 @@ def last_tap(choices: Choices) -> tuple[int, str] | None:
     number = next(taps, None)
     if number is None:
         return None
-    tapped = season.contents([number])[number]
-    if tapped.first != str(choices.on):
+    tapped = season.contents([number]).get(number)
+    if tapped is None or (tapped.n, tapped.first) != (1, str(choices.on)):
         return None
     said = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
     result = recorded_batches.in_short(tapped.result)

@@ -19,7 +19,8 @@ _CODES = {name: code for code, name in RESULT_NAMES.items()}
 
 def in_short(result: str) -> str:
     """Return the result of an inspection, as a season's file names it, in a word."""
-    return texts.HISTORY_RESULTS[_CODES[result]]
+    known = result in _CODES  # another program may have written any
+    return texts.HISTORY_RESULTS[_CODES[result]] if known else texts.isolated(result)
 
 
 def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:

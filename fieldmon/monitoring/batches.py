@@ -150,7 +150,8 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     asked = ", ".join("?" * len(numbers))
     rows = db.execute(
         "SELECT batch, count(*), sum(result = 'found'), min(date), max(date), min(line), "  # noqa: S608 - ours
-        f"min(number), min(result) FROM inspections WHERE batch IN ({asked}) GROUP BY batch",
+        f"min(number), min(result) FROM inspections WHERE batch IN ({asked}) "
+        "AND date NOTNULL AND result NOTNULL GROUP BY batch",
         tuple(numbers),
     )
     return {number: BatchContents(*said) for number, *said in rows}

@@ -31,3 +31,5 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
 
 def test_every_result_has_its_word():
     assert len({in_short(name) for name in RESULT_NAMES.values()}) == len(RESULT_NAMES)
+    # another program wrote it
+    assert "eaten" in in_short("eaten")

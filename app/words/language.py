@@ -17,7 +17,7 @@ from pathlib import Path
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
-from fieldmon.compute.wording import Worded
+from fieldmon.compute.wording import Worded, written
 from fieldmon.reports.tongue import ENGLISH as ENGLISH_TONGUE
 from fieldmon.reports.tongue import Tongue
 
@@ -31,6 +31,8 @@ ENGLISH = "en"
 #: each by its own name
 LANGUAGES = {ENGLISH: "English", "he": "עברית", "ar": "العربية", "es": "Español"}
 RIGHT_TO_LEFT = frozenset({"he", "ar"})
+# languages that set the sign of a share apart from its number
+_SHARE_APART = frozenset({ENGLISH, "es"})
 FOLDER = Path(__file__).with_name("languages")
 #: the context of the library's sentences
 LIBRARY = "fieldmon"
@@ -352,14 +354,13 @@ class _Blanks(Formatter):
         self._language = language
 
     def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401
-        written = format(value, format_spec)
         if isinstance(value, Real) and not isinstance(value, bool):
-            return _separated(written, self._language)
-        return written
+            return _number(value, format_spec, self._language)
+        return format(value, format_spec)
 
 
 def _filled(words: str, language: str, args: Any, values: Any) -> str:  # noqa: ANN401
-    if language == ENGLISH:
+    if language == ENGLISH and "%}" not in words:
         return str.format(words, *args, **values)
     return _Blanks(language).vformat(str(words), args, values)
 
@@ -372,7 +373,12 @@ def number(value: float, form: str = "") -> str:
     >>> number(1234.5, ",.1f")
     '1,234.5'
     """
-    return _separated(format(value, form), current())
+    return _number(value, form, current())
+
+
+def _number(value: Any, form: str, language: str) -> str:  # noqa: ANN401 - any number
+    said = written(value, form) if language in _SHARE_APART else format(value, form)
+    return _separated(said, language)
 
 
 def _separated(written: str, language: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 from fieldmon.samplers import of_equal_times
 
 from . import language
-from .language import Plural
+from .language import Plural, Text
 
 
 def isolated(name: str) -> str:
@@ -529,7 +529,8 @@ DECIDE_WRONG_HELP = (
 )
 DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
 DECIDE_NUMBERS = "numbers of the zones"
-DECIDE_ON_MAP, DECIDE_TIP = "zones to treat", "Zone {zone}: {share:.0%} infested; {verdict}"
+DECIDE_ON_MAP = "zones to treat"
+DECIDE_TIP = Text("Zone {zone}: {share:.0%} infested; {verdict}")
 DECIDE_SPRAYER, DECIDE_COSTS, DECIDE_PRODUCT = "Sprayer", "Costs, in any currency", "Product"
 DECIDE_BOXES = {
     "level": "Treat from, % of the plants infested", "sure": "Sure of it, %",
@@ -547,7 +548,7 @@ DECIDE_OWN_HELP = (
     "mean per leaf. They are kept until the page is closed."
 )
 DECIDE_OWN_KEPT = Plural("{n} threshold can be chosen now.", "{n} thresholds can be chosen now.")
-DECIDE_TAKE = "Treat from {share:.1%} of the plants on"
+DECIDE_TAKE = Text("Treat from {share:.1%} of the plants on")
 DECIDE_THRESHOLDS = {
     "almond": "almond", "almond with predators": "almond with predators",
     "strawberry before fruit": "strawberry before fruit",
@@ -569,8 +570,8 @@ DECIDE_FILES = {
 HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
-HISTORY_NOW = "Chance of infestation now: **{now:.1%}** (first morning: {first:.1%})."
-HISTORY_BETWEEN = "If the plot had fewer or more than expected: {low:.1%} to {high:.1%}."
+HISTORY_NOW = Text("Chance of infestation now: **{now:.1%}** (first morning: {first:.1%}).")
+HISTORY_BETWEEN = Text("If the plot had fewer or more than expected: {low:.1%} to {high:.1%}.")
 HISTORY_CHANCE = (
     "A chance says all that is believed of one plant. Its interval says what the chance would be "
     "at the low and high end of what the plot as a whole may have (90 %)."
@@ -771,7 +772,7 @@ NEXT, NEXT_PLACE = "Next", "Row {row} · plant {plant}"
 NEXT_WAY = "{metres} {compass}{along}"
 NEXT_ALONG = ", in this row"
 NEXT_AISLE = ", change rows"
-NEXT_CHANCE = "Chance {chance:.1%} · stop {done} done, {left} to go · {hours} left"
+NEXT_CHANCE = Text("Chance {chance:.1%} · stop {done} done, {left} to go · {hours} left")
 COMPASS = ("north", "north-east", "east", "south-east", "south", "south-west", "west",
            "north-west")  # fmt: skip
 ARROWS = ("⬆️", "↗️", "➡️", "↘️", "⬇️", "↙️", "⬅️", "↖️")

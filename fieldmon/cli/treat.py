@@ -143,7 +143,9 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
     """Say what a treatment asks for: waiting, and what to beware of."""
     (one,) = (treatment for treatment in kept.treatments() if treatment.batch == batch)
     if learnt:
-        typer.echo(f"Assumed: it cleans {one.efficacy:.0%} of infested plants, as learnt before.")
+        typer.echo(
+            f"Assumed: it cleans {100 * one.efficacy:.0f} % of infested plants, as learnt before."
+        )
     waits = one.waits
     if waits.entry_from is not None:
         typer.echo(f"Enter there from {waits.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")

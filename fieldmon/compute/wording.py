@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 
 class Worded(str):  # noqa: SLOT000 - it holds what it was made of
@@ -41,6 +42,29 @@ class Worded(str):  # noqa: SLOT000 - it holds what it was made of
         return made
 
 
+def written(value: Any, form: str) -> str:  # noqa: ANN401 - whatever can be written
+    """Return a value as `format` writes it, but a share as all texts here have it.
+
+    Examples
+    --------
+    >>> written(0.845, ".1%"), written(0.845, ".2f")
+    ('84.5 %', '0.84')
+    """
+    said = format(value, form)
+    return f"{said[:-1]} %" if form.endswith("%") else said
+
+
+class _Blanks(Formatter):
+    def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401
+        return written(value, format_spec)
+
+
+def filled(words: str, values: Mapping[str, Any]) -> str:
+    """Return words with their blanks filled, as `written` writes what stands in them."""
+    # others are many times as fast
+    return _Blanks().vformat(words, (), values) if "%}" in words else words.format(**values)
+
+
 def worded(words: str, **values: Any) -> Worded:  # noqa: ANN401 - whatever can be written
     """Return a sentence from its words and what stands in their blanks.
 
@@ -49,7 +73,7 @@ def worded(words: str, **values: Any) -> Worded:  # noqa: ANN401 - whatever can 
     >>> worded("in rows {low} to {high}", low=3, high=17)
     'in rows 3 to 17'
     """
-    made = Worded(words.format(**values))
+    made = Worded(filled(words, values))
     made.words, made.values = words, values
     return made
 

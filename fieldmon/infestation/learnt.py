@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import written
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
@@ -52,8 +53,9 @@ class Learnt:
         """Return it in words."""
         form = ".0%" if self.is_share else ".1f"
         if self.low == self.high:
-            return f"{self.name} {self.value:{form}}"
-        return f"{self.name} {self.value:{form}} ({self.low:{form}} to {self.high:{form}})"
+            return f"{self.name} {written(self.value, form)}"
+        between = f"{written(self.low, form)} to {written(self.high, form)}"
+        return f"{self.name} {written(self.value, form)} ({between})"
 
 
 _SHARES = ("detection", "jumps beyond neighbours")
@@ -71,7 +73,7 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
     >>> from fieldmon.plot.layout import rectangle
     >>> at_first = TracedPairs.of(rectangle(9, 9), np.full(81, 0.02))
     >>> learnt_from(at_first, 0.84)[0].sentence()
-    'detection 84% (71% to 94%)'
+    'detection 84 % (71 % to 94 %)'
     """
     if not isinstance(belief, TracedPairs):
         return ()

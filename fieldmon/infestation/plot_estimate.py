@@ -61,7 +61,7 @@ class PlotEstimate:
         return (
             f"About {self.expected:.0f} plants are still infested "
             f"(between {self.low} and {self.high}); "
-            f"the chance that the plot is clean is {self.chance_clean:.0%}."
+            f"the chance that the plot is clean is {100 * self.chance_clean:.0f} %."
         )
 
 

@@ -58,7 +58,11 @@ def _plants(day: DayPlan) -> list[dict[str, Any]]:
     label = row_label(day.scene.grid)
     colours = _COLOURS[np.searchsorted(_FROM, day.chance, side="right") - 1]
     return [
-        {"at": at, "colour": colour, "text": f"row {row}, plant {number}: chance {chance:.1%}"}
+        {
+            "at": at,
+            "colour": colour,
+            "text": f"row {row}, plant {number}: chance {100 * chance:.1f} %",
+        }
         for at, colour, row, number, chance in zip(
             day.scene.grid.lonlat().round(8).tolist(),
             colours.tolist(),
@@ -81,7 +85,7 @@ def _stops(day: DayPlan) -> list[dict[str, Any]]:
         {
             "at": at,
             "text": f"stop {order}: row {row}, plant {number}, after {_clock(arrive_s)}, "
-            f"chance {chance:.1%}",
+            f"chance {100 * chance:.1f} %",
         }
         for order, (at, row, number, arrive_s, chance) in enumerate(zip(*columns, strict=True), 1)
     ]

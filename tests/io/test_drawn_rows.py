@@ -67,7 +67,7 @@ def test_blocks_lie_on_their_plot_and_none_over_another():
     told = " ".join(message.sentence for message in messages)
     assert "Rows run in 2 block(s) as drawn: a, b." in told
     assert "b lie over others; the first one counts" in told
-    assert "25% of the plot (1200 m2) lies in no block" in told
+    assert "25 % of the plot (1200 m2) lies in no block" in told
 
 
 def test_blocks_beside_all_plots_are_refused_and_left_over_ones_counted():
@@ -215,7 +215,7 @@ def test_rows_of_a_terrace_follow_the_contours_of_its_raster_a_spacing_apart(tmp
     away_m = np.hypot(*(FRAME.xy_m(grid.lonlat()) + np.array([0.0, 90.0])).T)
     apart_m = np.abs(away_m[one] - away_m[grid.across_plant])
     assert apart_m == pytest.approx(np.full(len(apart_m), 3.0), rel=0.05)
-    assert "They rise or fall by 1.0% at most." in sentences(prepared)
+    assert "They rise or fall by 1.0 % at most." in sentences(prepared)
     assert "leave them" not in sentences(prepared)
 
 

@@ -108,7 +108,7 @@ def test_many_plants_overrule_what_was_said():
     # what is overlooked looks cured
     assert effect(history(*looks), [treated(3, said=0.95)])[0].efficacy < one.efficacy
     assert learnt_efficacy([one], "SOAP").efficacy == one.efficacy
-    assert "told by 50 plants; 95% was said beforehand, which is worth 4 plants" in one.sentence()
+    assert "told by 50 plants; 95 % was said beforehand, which is worth 4 plants" in one.sentence()
 
 
 @pytest.mark.parametrize(
@@ -123,6 +123,8 @@ def test_the_interval_of_a_share_is_the_exact_one(found, n, low, high):
 def test_it_is_said_in_words():
     past = history((1, [0, 1, 60], [FOUND] * 3), (5, [0, 1, 60], [CLEAN, FOUND, FOUND]))
     said = effect(past, [treated(3)])[0].sentence()
-    assert said.startswith("After soap on 2026-04-09: of 2 plants inspected before and after, 100%")
-    assert "Elsewhere 100% (1 of 1" in said
+    assert said.startswith(
+        "After soap on 2026-04-09: of 2 plants inspected before and after, 100 %"
+    )
+    assert "Elsewhere 100 % (1 of 1" in said
     assert date(2026, 4, 9) == BEGINS + timedelta(3)

@@ -18,8 +18,8 @@ SURE = RowReport("20 plants in 4 rows", 0.02, 0.0, in_rows=True)
     [
         ({}, None),
         ({"off_share": 0.009, "misnamed_share": 0.009}, None),
-        ({"off_share": 0.04}, "4% of the plants stand more than a quarter"),
-        ({"misnamed_share": 0.2, "named": True}, "20% of the plants seem to stand in another row"),
+        ({"off_share": 0.04}, "4 % of the plants stand more than a quarter"),
+        ({"misnamed_share": 0.2, "named": True}, "20 % of the plants seem to stand in another row"),
         ({"misnamed_share": 0.2, "named": True}, "the names decided"),
         ({"misnamed_share": 0.6}, "rows were found instead"),
         (

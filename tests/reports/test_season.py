@@ -85,7 +85,7 @@ def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season
     assert {row[3] for row in rows if row[1] == "inspections"} == {"נועה"}
     (treated,) = table(of_season, "Treatments").rows
     on = str(BEGINS + timedelta(days=2))
-    assert treated == (on, "Oil", f"{len(worked.plot.grid):,}", "70%", "")
+    assert treated == (on, "Oil", f"{len(worked.plot.grid):,}", "70 %", "")
     settings = {row[0]: row[1:] for row in table(of_season, "Settings").rows}
     assert settings["Spread to a neighbour, a night"] == ("2 %", "assumed")
     assert settings["Working hours"] == ("1.5", "chosen")

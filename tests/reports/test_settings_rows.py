@@ -57,7 +57,7 @@ def test_the_sentence_names_what_is_assumed_with_its_value():
         ({"robot": Robot(hours=3)}, "Working hours", ("3", "chosen")),
         ({}, "Working hours", ("12", "the usual")),
         ({"robot": Robot(speed_m_s=1.0)}, "Speed", ("3.6 km/h", "chosen")),
-        ({"robot": Robot(detection=0.7)}, "Finds what is there", ("70%", "chosen")),
+        ({"robot": Robot(detection=0.7)}, "Finds what is there", ("70 %", "chosen")),
         ({"sampler": "naive"}, "Who chooses the plants", ("Naive", "chosen")),
         (
             {"belief": BeliefSettings(Spread(rate_per_day=0.1, arrivals_per_day=0.0))},

@@ -92,6 +92,6 @@ def test_rows_that_rose_most_come_first(worked):
     rise = [np.mean((mornings[1] - mornings[0])[line == k]) for k in range(line.max() + 1)]
     best = int(np.argmax(rise))
     if rise[best] > 0.001:
-        assert f"rose most: {best + 1} (+{rise[best]:.1%})" in said
+        assert f"rose most: {best + 1} (+{100 * rise[best]:.1f} %)" in said
     else:
         assert "rose most" not in said

@@ -27,7 +27,7 @@ def test_shares_are_in_percent_and_plants_are_numbers(shown):
     assert shown(
         Learnt("detection", 0.84, 0.71, 0.94), Learnt("arrivals a night", 1.24, 0.3, 4.0)
     ) == [
-        "- An inspection finds 84% of what is there (71% to 94%).",
+        "- An inspection finds 84 % of what is there (71 % to 94 %).",
         "- 1.2 plants a night are infested from outside (0.3 to 4.0).",
     ]
 

@@ -32,7 +32,7 @@ def test_the_answer_stands_at_the_top_and_the_zones_on_the_map(recorded):
     assert not recorded.exception
     said = texts_of(recorded)
     assert said.startswith("**Treat the whole plot")
-    assert "treating pays from 5.0% on" in said.split("\n")[1]
+    assert "treating pays from 5.0 % on" in said.split("\n")[1]
     ids = {layer["id"] for layer in map_of(recorded)["layers"]}
     assert {"zones", "zones-edge"} <= ids
     assert metric(recorded, texts.DECIDE_ENOUGH).endswith("%")
@@ -43,7 +43,7 @@ def test_costs_are_changed_there_and_the_answer_follows(recorded):
     recorded.number_input(key="decide per_ha").set_value(0.0).run()
     assert not recorded.exception
     before = metric(recorded, texts.DECIDE_AREA)
-    assert "(100%)" in before
+    assert "(100 %)" in before
     recorded.number_input(key="decide reserve").set_value(50.0).run()
     assert metric(recorded, texts.DECIDE_AREA) != before
     recorded.number_input(key="decide level").set_value(0.1).run()

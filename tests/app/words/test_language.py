@@ -26,7 +26,7 @@ def test_numbers_in_a_text_are_written_as_in_the_language(speaking):
     speaking("es")
     assert "12.345 días-planta" in texts.VERDICT.format(**verdict)
     assert UnitsInLanguage().metres(1234.5) == "1,23 km"
-    assert language.number(0.125, ".1%") == "12,5%"
+    assert language.number(0.125, ".1%") == "12,5 %"
 
 
 def test_a_worded_sentence_of_the_library_is_said_in_the_language(speaking):
@@ -44,3 +44,17 @@ def test_a_sentence_that_nobody_translated_stays_english_and_says_so(speaking):
     assert language.in_words(worded("Nobody knows {n}.", n=3)) == (
         "\u2066Nobody knows 3.\u2069 [English]"
     )
+
+
+def test_a_share_has_its_sign_apart_where_the_language_sets_it_so(speaking):
+    verdict = worded("{share:.0%} of the plot", share=0.845)
+    assert verdict == "84 % of the plot"
+    assert (
+        language.number(0.125, ".1%")
+        == language.Text("{share:.1%}").format(share=0.125)
+        == "12.5 %"
+    )
+    for code, said in (("es", "12,5 %"), ("he", "12.5%")):
+        speaking(code)
+        assert language.number(0.125, ".1%") == said
+        assert language.Text("{share:.1%}", code).format(share=0.125) == said

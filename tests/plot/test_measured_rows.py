@@ -118,7 +118,8 @@ def test_the_share_of_plants_off_their_row_is_said():
     xy_m[stray] += np.where(xy_m[stray, :1] > 0, 0.7, -0.7) * np.array([1.0, 1.3])
     plot = Plot.around("strays", FRAME.lonlat(xy_m))
     assert plot.rows.off_share == pytest.approx(stray.mean(), abs=0.02)
-    assert any(f"{100 * plot.rows.off_share:.0f} % of the plants stand more" in s for s in plot.rows.doubts)
+    said = f"{100 * plot.rows.off_share:.0f} % of the plants stand more"
+    assert any(said in sentence for sentence in plot.rows.doubts)
 
 
 def test_a_square_planting_has_rows_two_ways_and_takes_the_longer_ones():

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 import shapely
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded, PlotError, SettingError
+from fieldmon.errors import ChoiceNeeded, ObservationError, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
 from fieldmon.io.import_report import ImportMessage, doubtful, gathered, guessed
@@ -31,7 +31,7 @@ from fieldmon.io.read import (
     read_rows,
 )
 from fieldmon.io.readers.crews import Crew
-from fieldmon.io.readers.nearby import on_plants, records_on_plot
+from fieldmon.io.readers.nearby import on_other_plots, on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
@@ -371,7 +371,8 @@ def records_on(
     source
         The records.
     fields
-        Returns every plot of the plot's file, for records that name plots; called only then.
+        Returns every plot of the plot's file, for records that name plots, and to say on which of
+        them records lie of which none is near; called only then.
     measured
         The plot's measured plants, whose labels records may name.
     """
@@ -383,6 +384,12 @@ def records_on(
         known = (plot.field,) if fields is None else fields()
         places = NamedPlaces.of(known, plot.grid, measured, plot.field.name)
         read = read_records(source.file, source.options, plot.field, places)
+    except ObservationError:
+        if fields is not None:
+            every = read_records(source.file, source.options).value
+            if (elsewhere := on_other_plots(every, plot.field, fields())) is not None:
+                raise elsewhere from None
+        raise
     return read.having(read.value, on_plants(read.value, plot.grid))
 
 

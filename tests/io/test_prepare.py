@@ -9,7 +9,7 @@ import shapely
 from rasterio.transform import from_bounds
 from shapely import MultiPolygon
 
-from fieldmon.errors import ChoiceNeeded, FileProblem, PlotError, SettingError
+from fieldmon.errors import ChoiceNeeded, FileProblem, ObservationError, PlotError, SettingError
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
 from fieldmon.io.prepare import Laid, lay, one_of, prepare, prepare_estate, records_on
 from fieldmon.io.read import read_plots
@@ -187,6 +187,29 @@ def test_positions_come_to_the_same_plots_alone_and_on_the_estate():
         same(estate.records.on(field), alone)
         seen += len(alone)
     assert seen > 100
+
+
+def test_records_that_all_lie_on_other_plots_of_the_file_are_told_which():
+    wadi, pond = field_called("Wadi"), field_called("Pond")
+    rows = [(wadi, 1), (pond, 2), (pond, 3)]
+    table = "date,longitude,latitude,count\n" + "".join(
+        f"{DAY},{at.x},{at.y},{count}\n"
+        for field, count in rows
+        for at in [field.boundary.representative_point()]
+    )
+    with pytest.raises(
+        ObservationError,
+        match=r"none of these 3 does. On other plots .* lie: Pond \(2\), Wadi \(1\). Choose",
+    ):
+        prepare(one(ZIP, "Gate", csv(table)))
+    assert len(prepare(one(ZIP, "Pond", csv(table))).records) == 2
+    far = csv(f"date,longitude,latitude,count\n{DAY},35.6,30.9,4\n")
+    with pytest.raises(ObservationError, match="Check the choice of plot"):
+        prepare(one(ZIP, "Gate", far))
+
+
+def field_called(name):
+    return read_plots(ZIP, PlotOptions(feature=name)).value[0]
 
 
 def labelled_vines(path):

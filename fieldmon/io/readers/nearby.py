@@ -16,6 +16,8 @@ from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped, 
 from fieldmon.plot.grid import nearest_plants
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from fieldmon.infestation.observations import Observations
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 _GEOD = pyproj.Geod(ellps="WGS84")
 _FAR_M, _DEGREE_M = 100_000.0, 111_000.0
+_MOST_NAMED = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +115,34 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
             name=field.name,
             n=len(observations),
             nearest=nearest,
+        )
+    )
+
+
+def on_other_plots(
+    observations: Observations, field: Field, others: Iterable[Field]
+) -> ObservationError | None:
+    """Return what to say where records lie on other plots of the same file; None: on none."""
+    known = [other for other in others if other.name != field.name]
+    on = np.array([shapely.contains_xy(each.boundary, *observations.lonlat.T) for each in known])
+    on = on.reshape(len(known), len(observations))
+    beside = observations.take(~on.any(axis=0))  # who lies on a plot is of no neighbour
+    counts = {
+        each.name: int(lying.sum()) + len(records_on_plot(beside, each))
+        for each, lying in zip(known, on, strict=True)
+    }
+    most_first = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
+    if not most_first:
+        return None
+    named = [f"{name} ({counts[name]})" for name in most_first[:_MOST_NAMED]]
+    return ObservationError(
+        worded(
+            "Records must lie on plot {name} or near it, but none of these {n} does. On other "
+            "plots of the file, or near them, lie: {some}. Choose one of those, or records of "
+            "{name}.",
+            name=field.name,
+            n=len(observations),
+            some=", ".join(named) + (", ..." if len(most_first) > _MOST_NAMED else ""),
         )
     )
 

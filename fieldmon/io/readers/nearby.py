@@ -126,7 +126,8 @@ def on_other_plots(
     known = [other for other in others if other.name != field.name]
     on = np.array([shapely.contains_xy(each.boundary, *observations.lonlat.T) for each in known])
     on = on.reshape(len(known), len(observations))
-    beside = observations.take(~on.any(axis=0))  # who lies on a plot is of no neighbour
+    # what lies on a plot is of none of its neighbours
+    beside = observations.take(~np.logical_or.reduce(on, axis=0))
     counts = {
         each.name: int(lying.sum()) + len(records_on_plot(beside, each))
         for each, lying in zip(known, on, strict=True)

@@ -265,7 +265,8 @@ def _said(sentence: object, language: str) -> str | None:
     else:
         form = found.pgettext(LIBRARY, sentence.words)
     if not form and _is_wordless(sentence.words):
-        form = sentence.words
+        apart = language in _SHARE_APART
+        form = sentence.words if apart else sentence.words.replace(" %", "%")
     if not form:
         return None
     if not sentence.values:  # whoever shows it fills its blanks

@@ -1,6 +1,7 @@
 """What there is to translate, and the files that hold it."""
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,14 @@ def test_catalogues_are_as_the_command_writes_them(tmp_path, monkeypatch):
     for code in OTHERS:
         assert catalogues.update(code) == []
         assert (tmp_path / f"{code}.po").read_bytes() == before[code]
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_every_share_of_a_language_has_its_sign_in_one_way(code):
+    other = r"[\d}]%" if code == "es" else r"[\d}]\s%"
+    said = [each.string for each in catalogue(code) if each.id]
+    forms = [form for one in said for form in (one if isinstance(one, tuple) else (one,))]
+    assert [form for form in forms if re.search(other, re.sub(r":[^{}]*%}", "}", form))] == []
 
 
 def test_a_new_text_waits_for_its_translation(tmp_path, monkeypatch):

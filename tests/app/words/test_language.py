@@ -2,7 +2,7 @@
 
 from app.words import language, texts
 from app.words.units import UnitsInLanguage
-from fieldmon.compute.wording import counted, joined, worded
+from fieldmon.compute.wording import counted, figure, joined, worded
 
 
 def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
@@ -58,3 +58,10 @@ def test_a_share_has_its_sign_apart_where_the_language_sets_it_so(speaking):
         speaking(code)
         assert language.number(0.125, ".1%") == said
         assert language.Text("{share:.1%}", code).format(share=0.125) == said
+
+
+def test_a_figure_has_its_sign_as_the_sentences_around_it(speaking):
+    for code, said in (("es", "12,5 %"), ("he", "12.5%"), ("ar", "12.5%")):
+        speaking(code)
+        assert language.in_words(figure(12.5, ".1f", " %")) == said
+        assert language.in_words(figure(0.125, ".1%")) == said

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -159,4 +160,4 @@ def init(options: InitOptions) -> None:
         f"Season begun in {path}: {len(known.records)} records, about {ahead.expected:.0f} plants "
         f"believed infested ({ahead.low} to {ahead.high})."
     )
-    typer.echo(f"Next: fieldmon plan {path} -o route.geojson")
+    typer.echo(f"Next: fieldmon plan {shlex.quote(str(path))} -o route.geojson")

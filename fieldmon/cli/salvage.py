@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -25,7 +26,8 @@ def salvage(
         note = "  (some could not be read)" if name in done.lost else ""
         typer.echo(f"  {rows:8d}  {name}{note}")
     if done.whole:
-        typer.echo(f"{output} is a season again. Compare it with: fieldmon status {output}")
+        again = shlex.quote(str(output))
+        typer.echo(f"{output} is a season again. Compare it with: fieldmon status {again}")
     else:
         typer.echo(
             f"{output} holds what could be read, but the plot or its settings are lost: begin a "

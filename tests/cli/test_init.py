@@ -29,6 +29,12 @@ def test_a_season_keeps_what_it_is_told_and_what_the_files_said(run, tmp_path):
     assert all(sentence in err for _, sentence in kept)
 
 
+def test_the_next_command_can_be_pasted_where_the_name_has_a_space(run):
+    code, out, err, _ = run("init", "Nursery 2026.gpkg", ZIP, "--feature", "Nursery")
+    assert code == 0, err
+    assert "Next: fieldmon plan 'Nursery 2026.gpkg' -o route.geojson" in out
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [

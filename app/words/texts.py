@@ -686,7 +686,7 @@ RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 BATCHES_SAID = {
     "findings": Plural("{n} plant, {found} found", "{n} plants, {found} found"),
-    "treatment": "treatment of the plot {source}",
+    "treatment": "treatment {source}",
     "corrections": "corrections: {source}",
 }
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 import shapely
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded, ObservationError, PlotError, SettingError
+from fieldmon.errors import ChoiceNeeded, FieldmonError, ObservationError, PlotError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
 from fieldmon.io.import_report import ImportMessage, doubtful, gathered, guessed
@@ -385,12 +385,21 @@ def records_on(
         places = NamedPlaces.of(known, plot.grid, measured, plot.field.name)
         read = read_records(source.file, source.options, plot.field, places)
     except ObservationError:
-        if fields is not None:
-            every = read_records(source.file, source.options).value
-            if (elsewhere := on_other_plots(every, plot.field, fields())) is not None:
-                raise elsewhere from None
+        if fields is not None and (elsewhere := _elsewhere(plot.field, source, fields)):
+            raise elsewhere from None
         raise
     return read.having(read.value, on_plants(read.value, plot.grid))
+
+
+def _elsewhere(
+    field: Field, source: RecordSource, fields: Callable[[], tuple[Field, ...]]
+) -> ObservationError | None:
+    """Return what to say where records that can be read lie on other plots of the plot's file."""
+    try:
+        every = read_records(source.file, source.options).value
+    except FieldmonError:  # they were refused for what they are, not for where they lie
+        return None
+    return on_other_plots(every, field, fields())
 
 
 def records_of(

@@ -124,12 +124,13 @@ def on_other_plots(
 ) -> ObservationError | None:
     """Return what to say where records lie on other plots of the same file; None: on none."""
     known = [other for other in others if other.name != field.name]
-    on = np.array([shapely.contains_xy(each.boundary, *observations.lonlat.T) for each in known])
-    on = on.reshape(len(known), len(observations))
+    tree = shapely.STRtree([each.boundary for each in known])
+    record, plot = tree.query(shapely.points(observations.lonlat), predicate="intersects")
+    on = np.bincount(plot, minlength=len(known))
     # what lies on a plot is of none of its neighbours
-    beside = observations.take(~np.logical_or.reduce(on, axis=0))
+    beside = observations.take(~np.isin(np.arange(len(observations)), record))
     counts = {
-        each.name: int(lying.sum()) + len(records_on_plot(beside, each))
+        each.name: int(lying) + len(records_on_plot(beside, each))
         for each, lying in zip(known, on, strict=True)
     }
     most_first = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])

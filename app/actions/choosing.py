@@ -25,9 +25,9 @@ from ..state import (
     living,
     plot_files,
     plot_source,
-    row_settings,
     sample_estate,
     seasons_folder,
+    unit_boxes,
     widget_memory,
     work_day,
 )
@@ -270,7 +270,7 @@ def _units() -> None:
         ):  # fmt: skip
             widget_memory.show(
                 st.selectbox, label, list(options), key=key, default=getattr(now, key),
-                filter_mode=None, format_func=_unit_name, on_change=row_settings.carry_over,
+                filter_mode=None, format_func=_unit_name, on_change=unit_boxes.carry_over,
                 args=(now,),
             )  # fmt: skip
 

@@ -18,6 +18,7 @@ from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
 
 from ..state import deciding, notices, widget_memory
+from ..state.chosen_units import units
 from ..words import language, texts
 from ..words.language import in_words, of_error
 from . import treating
@@ -56,7 +57,7 @@ def threshold() -> None:
 
 def assumed(advice: Advice) -> None:
     """Say what the answer assumes, with the way to say otherwise."""
-    st.caption(in_words(advice.asked.assumed()))
+    st.caption(in_words(advice.asked.assumed(units().of_library)))
     with st.popover(texts.ASSUMED_CHANGE):
         st.markdown(f"**{texts.DECIDE_SPRAYER}**")
         for key in _SPRAYER:
@@ -71,9 +72,15 @@ def assumed(advice: Advice) -> None:
 
 def _box(key: str) -> None:
     low, high, step = _LIMITS[key]
+    now = units()
+    label = texts.DECIDE_BOXES[key.partition(" ")[2]].format(
+        length=texts.UNITS[now.length], area=texts.UNITS[now.area], one_area=in_words(now.one_area)
+    )
     widget_memory.show(
-        st.number_input, texts.DECIDE_BOXES[key.partition(" ")[2]], low, high, step=step, key=key,
-        default=type(step)(deciding.BEGINS[key]), format="%d" if isinstance(step, int) else "%.8g",
+        st.number_input, label, type(step)(deciding.shown(key, low)),
+        type(step)(deciding.shown(key, high)), step=step, key=key,
+        default=type(step)(deciding.shown(key, deciding.BEGINS[key])),
+        format="%d" if isinstance(step, int) else "%.8g",
     )  # fmt: skip
 
 

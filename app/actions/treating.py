@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from shapely import MultiPolygon
 
     from ..state.choices import Choices
+    from ..words.units import UnitsInLanguage
 
 #: boxes of the form for what was said of an application, by what they are about
 _TEXTS = (
@@ -48,7 +49,7 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
         st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
         st.text_input(texts.TREAT_PRODUCT, key="product")
         with st.expander(texts.TREAT_RECORD):
-            _boxes()
+            _boxes(choices.units)
         pressed = st.form_submit_button(texts.TREAT_BUTTON)
     acting.once(pressed, _treat, choices, area, advised)
     _harvest(choices)
@@ -56,12 +57,13 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
         _labels(choices)
 
 
-def _boxes() -> None:
+def _boxes(units: UnitsInLanguage) -> None:
     """Show what a certifier asks of each treatment."""
+    area = texts.UNITS[units.area]
     left, right = st.columns(2)
     left.number_input(texts.TREAT_DOSE, 0.0, None, None, key="treat dose")
     right.text_input(texts.TREAT_UNIT, key="treat unit", placeholder="l/ha")
-    left.number_input(texts.TREAT_WATER, 0.0, None, None, key="treat water")
+    left.number_input(texts.TREAT_WATER.format(area=area), 0.0, None, None, key=_water(units))
     right.text_input(texts.TREAT_GROUP, key="treat group", help=texts.TREAT_GROUP_HELP)
     left.number_input(texts.TREAT_WAIT, 0, None, None, key="treat days", help=texts.TREAT_BY_LABEL)
     right.number_input(
@@ -73,9 +75,15 @@ def _boxes() -> None:
         st.text_input(texts.TREAT_TEXTS[name], key=f"treat {name}")
 
 
-def _said() -> Application:
+def _water(units: UnitsInLanguage) -> str:
+    """Return the box of the water, one for each unit: a number keeps the unit it was typed in."""
+    return f"treat water {units.area}"
+
+
+def _said(units: UnitsInLanguage) -> Application:
     """Return what the boxes say."""
     state: Any = st.session_state
+    water = state[_water(units)]
     dose, unit = state["treat dose"], state["treat unit"].strip()
     if bool(dose) != bool(unit):
         raise SettingError(texts.TREAT_DOSE_UNSAID)
@@ -83,7 +91,7 @@ def _said() -> Application:
     return Application(
         product=state["product"].strip(),
         dose=Dose(float(dose), unit) if dose else None,
-        water_l_ha=state["treat water"] or None,
+        water_l_ha=units.by_hectare(water) if water else None,
         waiting_days=None if days is None else int(days),
         reentry_hours=state["treat hours"],
         irac_groups=irac_groups(state["treat group"]),
@@ -97,7 +105,7 @@ def _said() -> Application:
 def _treat(choices: Choices, area: MultiPolygon | None, advised: str) -> str:
     """Note a treatment; say what to beware of because of it."""
     efficacy, season = st.session_state["efficacy"], choices.season
-    said = _said()
+    said = _said(choices.units)
     said = replace(said, operator=said.operator or choices.who or "")
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)

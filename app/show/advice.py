@@ -55,7 +55,7 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
         st.metric(product or texts.DECIDE_LIQUID, liquid, width="content")
         st.metric(texts.DECIDE_INSIDE, number(zones.inside, ".1f"), width="content")
         st.metric(texts.DECIDE_OUTSIDE, number(zones.outside, ".1f"), width="content")
-        st.metric(texts.DECIDE_SAVING, number(advice.saving, ",.2f"), width="content")
+        st.metric(texts.DECIDE_SAVING, in_words(advice.saved), width="content")
         st.metric(texts.DECIDE_ENOUGH, number(advice.said.enough, ".0%"), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip
 

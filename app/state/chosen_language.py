@@ -7,7 +7,7 @@ from streamlit.runtime.scriptrunner import get_script_run_ctx
 
 from ..words import language
 from ..words.units import usual
-from . import browser, chosen_units, widget_memory
+from . import browser, chosen_units, unit_boxes, widget_memory
 
 #: names the box; also the word in the address
 KEY = "lang"
@@ -39,9 +39,10 @@ def keep_in_address(code: str) -> None:
 
 def carry_over(before: str) -> None:
     """Write dates and areas as is usual in the language now chosen, unless that was changed."""
-    now = chosen()
+    now, units_before = chosen(), chosen_units.units(before)
     language.use(now)
     for name in chosen_units.KEYS:
         was, new = getattr(usual(before), name), getattr(usual(now), name)
         if was != new and widget_memory.value(name) == was:
             widget_memory.change((name,), lambda _, new=new: new)
+    unit_boxes.carry_over(units_before)

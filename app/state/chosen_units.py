@@ -12,8 +12,8 @@ from . import widget_memory
 KEYS = ("length", "area", "date_like")
 
 
-def units() -> UnitsInLanguage:
-    """Return how this session wants numbers written."""
+def units(code: str | None = None) -> UnitsInLanguage:
+    """Return how this session wants numbers written; `code` is its language, if not the spoken."""
     chosen = {name: widget_memory.value(name) for name in KEYS}
     said = {name: value for name, value in chosen.items() if value}
-    return replace(usual(language.current()), **said)
+    return replace(usual(code or language.current()), **said)

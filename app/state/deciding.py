@@ -11,6 +11,8 @@ from fieldmon.decisions.zones import Sprayer, TreatmentCosts
 from fieldmon.monitoring.advice import AdviceSettings
 
 from . import cached, widget_memory
+from .chosen_units import units
+from .unit_boxes import DECIDE_BY_AREA, DECIDE_LENGTHS
 
 if TYPE_CHECKING:
     from fieldmon.decisions.thresholds import Threshold
@@ -42,10 +44,23 @@ LEVEL = "decide level"
 _OWN = "own thresholds"
 
 
+def shown(key: str, value: float) -> float:
+    """Return metres, or what is of a hectare, as its box shows it."""
+    if key in DECIDE_LENGTHS:
+        return units().shown(value)
+    return units().by_area(value) if key in DECIDE_BY_AREA else value
+
+
+def _meant(key: str, now: float) -> float:
+    if key in DECIDE_LENGTHS:
+        return units().in_metres(now)
+    return units().by_hectare(now) if key in DECIDE_BY_AREA else now
+
+
 def asked() -> AdviceSettings:
     """Return what the boxes say; an empty one says what it began with."""
     said = {
-        key: begins if (now := widget_memory.value(key)) is None else float(now)
+        key: begins if (now := widget_memory.value(key)) is None else _meant(key, float(now))
         for key, begins in BEGINS.items()
     }
     box = {key.partition(" ")[2]: value for key, value in said.items()}

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from . import widget_memory
 from .chosen_units import units
-
-if TYPE_CHECKING:
-    from ..words.units import UnitsInLanguage
 
 #: the boxes that hold lengths
 LENGTHS = ("row_spacing", "plant_spacing", "headland", "half_canopy")
@@ -46,13 +41,3 @@ def block_settings(plot_key: str, name: str) -> dict[str, float]:
         setting = f"{key.removeprefix('block_')}_m"
         said[setting] = None if shown is None else now.in_metres(shown)
     return {setting: value for setting, value in said.items() if value is not None}
-
-
-def carry_over(before: UnitsInLanguage) -> None:
-    """Carry lengths that boxes hold over into the unit that is now chosen (for callbacks)."""
-    now = units()
-    if now.length != before.length:
-        widget_memory.change(
-            (*LENGTHS, *BLOCK_LENGTHS, "robot_width"),
-            lambda shown: now.shown(before.in_metres(shown)),
-        )

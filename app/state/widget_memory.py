@@ -46,10 +46,10 @@ def values_of(names: frozenset[str]) -> dict[str, Any]:
 
 
 def change(names: tuple[str, ...], new: Callable[[Any], Any]) -> None:
-    """Change the values of all widgets whose keys begin with one of the names (for callbacks)."""
+    """Change the values of all widgets whose keys are, or begin with, a name (for callbacks)."""
     for key, (page, kept) in list(_values().items()):
         now = st.session_state.get(key, kept)
-        if key.split(" ")[0] in names and now is not None:
+        if (key in names or key.split(" ")[0] in names) and now is not None:
             _values()[key] = (page, new(now))
             # another unit, other limits: its own default must lie within them too
             st.session_state.setdefault(_BEGINS, {})[key] = new(now)

@@ -534,9 +534,9 @@ DECIDE_TIP = Text("Zone {zone}: {share:.0%} infested; {verdict}")
 DECIDE_SPRAYER, DECIDE_COSTS, DECIDE_PRODUCT = "Sprayer", "Costs, in any currency", "Product"
 DECIDE_BOXES = {
     "level": "Treat from, % of the plants infested", "sure": "Sure of it, %",
-    "rate": "Rate, l/ha", "rows": "Rows of a section (0: knapsack)",
-    "on": "Least length of a zone, m", "off": "Least gap between two, m",
-    "ring": "Knapsack: plants around each", "per_ha": "A hectare: product, water, work",
+    "rate": "Rate, l/{area}", "rows": "Rows of a section (0: knapsack)",
+    "on": "Least length of a zone, {length}", "off": "Least gap between two, {length}",
+    "ring": "Knapsack: plants around each", "per_ha": "{one_area}: product, water, work",
     "per_zone": "Each zone", "loss": "An infested plant, a day",
     "days": "Days that it stays infested", "works": "Treating cleans, %",
     "reserve": "Never sprayed, for predators, %",
@@ -697,7 +697,8 @@ TREAT_UNSAID = (
 )
 DECIDE_TREATED = "The zones were treated"
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
-TREAT_DOSE, TREAT_UNIT, TREAT_WATER = "Dose of the product", "Unit of the dose", "Water, l/ha"
+TREAT_DOSE, TREAT_UNIT = "Dose of the product", "Unit of the dose"
+TREAT_WATER = "Water, l/{area}"
 TREAT_GROUP, TREAT_GROUP_HELP = "IRAC group", "The mode of action, such as 6, or 4A+28."
 TREAT_WAIT, TREAT_ENTRY = "Days until harvest", "Hours until re-entry"
 TREAT_BY_LABEL = "Empty: as the season's label table says, where it does."

@@ -68,6 +68,27 @@ class Units:
         return in_unit(value_m2 / AREAS_M2[self.area], ",.2f", self.area)
 
     @property
+    def one_area(self) -> Worded:
+        """Return one of the chosen unit of area, of which a cost or a rate is."""
+        return in_unit(1.0, "g", self.area)
+
+    def by_area(self, per_ha: float) -> float:
+        """Return a cost or a rate of a hectare as that of the chosen unit of area.
+
+        >>> Units(area="dunam").by_area(300.0)
+        30.0
+        """
+        return float(f"{per_ha * AREAS_M2[self.area] / AREAS_M2['ha']:.8g}")
+
+    def by_hectare(self, shown: float) -> float:
+        """Return what `by_area` returned as that of a hectare.
+
+        >>> Units(area="acre").by_hectare(Units(area="acre").by_area(300.0))
+        300.0
+        """
+        return float(f"{shown * AREAS_M2['ha'] / AREAS_M2[self.area]:.7g}")
+
+    @property
     def date_format(self) -> str:
         """Return how dates are typed in, in Streamlit's letters."""
         form = DATES[self.date_like]

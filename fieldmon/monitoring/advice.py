@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, figure, worded
 from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.zones import Sprayer, TreatmentCosts, best_zones, outlines
@@ -36,6 +36,8 @@ _MOST_LOOKS = 1000
 _LONG_DAY_S = 1e7
 # zones of so much of a plot are called the plot
 _WHOLE = 0.995
+# from here on a sum is said without its hundredths
+_ROUND_FROM = 100.0
 
 
 @dataclass(frozen=True)
@@ -70,14 +72,14 @@ class AdviceSettings:
                 )
             )
 
-    def assumed(self) -> str:
-        """Return in words what nobody measured here."""
-        costs = self.costs
+    def assumed(self, units: Units | None = None) -> str:
+        """Return in words what nobody measured here; `units` says of which area costs are."""
+        costs, known = self.costs, units or Units()
         return worded(
-            "Assumed: {per_ha:g} a hectare and {per_zone:g} a zone to treat, {loss:g} lost a day "
-            "by an infested plant over {days:g} days, treating cleans {works:.0%}.",
-            per_ha=costs.per_ha, per_zone=costs.per_zone, loss=costs.infested_plant_day,
-            days=costs.days, works=costs.works,
+            "Assumed: to treat {area} costs {per_area:g} and a zone {per_zone:g}, {loss:g} lost a "
+            "day by an infested plant over {days:g} days, treating cleans {works:.0%}.",
+            area=known.one_area, per_area=known.by_area(costs.per_ha), per_zone=costs.per_zone,
+            loss=costs.infested_plant_day, days=costs.days, works=costs.works,
         )  # fmt: skip
 
 
@@ -147,6 +149,11 @@ class Advice:
         """Return what treating the zones costs less than treating the whole plot."""
         return self.zones.whole_cost - self.zones.cost
 
+    @property
+    def saved(self) -> str:
+        """Return that in words, in no more figures than can be meant."""
+        return figure(self.saving, ",.0f" if abs(self.saving) >= _ROUND_FROM else ",.2f")
+
     @cached_property
     def outlines(self) -> list[MultiPolygon]:
         """Return the area of each zone, lon/lat."""
@@ -191,7 +198,7 @@ class Advice:
 
     def sentences(self, units: Units | None = None) -> list[str]:
         """Return the answer and what it rests on, in sentences."""
-        return [self.headline(units), *self.reasons(), *self.said_of_zones()]
+        return [self.headline(units), *self.reasons(), *self.said_of_zones(units)]
 
     def reasons(self) -> list[str]:
         """Return what the answer rests on, and what would end it sooner."""
@@ -223,14 +230,14 @@ class Advice:
             )
         ]
 
-    def said_of_zones(self, *, above: bool = True) -> list[str]:
+    def said_of_zones(self, units: Units | None = None, *, above: bool = True) -> list[str]:
         """Return where it pays, and what was assumed; `above` compares with the threshold."""
         said = [self.zones.sentence()]
         if len(self.zones):
             said += (
                 [self._zones_said()] * above + [self._worth_said()] + [self._enough_said()] * above
             )
-        return [*said, self.asked.assumed()]
+        return [*said, self.asked.assumed(units)]
 
     def _zones_said(self) -> str:
         verdicts = [one.verdict for one in self.said.zones]
@@ -243,8 +250,8 @@ class Advice:
 
     def _worth_said(self) -> str:
         return worded(
-            "It takes {litres:.0f} l and saves {saving:.2f} against treating the whole plot.",
-            litres=self.litres, saving=self.saving,
+            "It takes {litres:.0f} l and saves {saved} against treating the whole plot.",
+            litres=self.litres, saved=self.saved,
         )  # fmt: skip
 
     def _enough_said(self) -> str:

@@ -22,7 +22,7 @@ def test_the_verdict_is_the_seasons_and_what_is_assumed_is_said(run, season):
         said,
     ]
     assert said.startswith("Do not treat: ")
-    assert "Assumed: 100 a hectare" in out
+    assert "Assumed: to treat 1 ha costs 100 and" in out
 
 
 def test_the_zones_are_written_for_the_sprayer(run, season):

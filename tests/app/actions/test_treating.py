@@ -12,7 +12,8 @@ def noted(app, **said):
     app.text_input(key="product").set_value("Acarol")
     for key, value in said.items():
         box = app.number_input if isinstance(value, (int, float)) else app.text_input
-        box(key=f"treat {key}").set_value(value)
+        # a number keeps the unit of area in which it was typed
+        box(key=f"treat {key} ha" if key == "water" else f"treat {key}").set_value(value)
     next(b for b in app.button if b.label == "Note the treatment").click()
     app.run()
 
@@ -48,6 +49,7 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     (one,) = season().treatments()
     assert (str(one.application.dose), one.application.operator) == ("0.5 l/ha", "Ann")
     assert one.application.active_ingredient == "fenpyroximate"
+    assert one.application.water_l_ha == 800.0
     assert one.application.weather == "18 °C, 2 m/s"
     assert (one.application.waiting_days, one.application.reentry_hours) == (3, 12.0)
     page = texts_of(go(season_app, "season"))
@@ -56,6 +58,19 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     warned = " ".join(one.value for one in season_app.warning)
     assert "is too soon after Acarol" in warned
     assert "Do not enter where Acarol" in " ".join(w.value for w in go(season_app, "today").warning)
+
+
+def test_water_is_noted_by_the_area_in_which_the_plot_is_said(season_app, season):
+    go(season_app, "record")
+    season_app.selectbox(key="area").set_value("dunam").run()
+    season_app.number_input(key="efficacy").set_value(80)
+    water = season_app.number_input(key="treat water dunam")
+    assert water.label == "Water, l/dunam"
+    water.set_value(80)
+    press(season_app, "Note the treatment")
+    assert not season_app.error
+    (one,) = season().treatments()
+    assert one.application.water_l_ha == 800.0
 
 
 def test_a_dose_without_a_unit_is_asked_for(season_app, season):

@@ -15,6 +15,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from fieldmon.compute.jit import loop
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -323,13 +325,17 @@ def _cross_links(
     asked = np.where(np.eye(len(left), dtype=bool), np.inf, apart_m)
     # the gate's own ways are its stubs
     asked[gate], asked[:, gate] = np.inf, np.inf
-    links: dict[int, float] = {}
     over = _from_left_to_right(left, right, cross) - asked
+    # ways only become shorter: where none is too long, none will be
+    rows = np.flatnonzero(over.max(axis=1) > _EXACT_M)
+    left_of, over, asked = left[rows], over[rows], asked[rows]
+    links: dict[int, float] = {}
+    worst = int(np.argmax(over)) if len(over) else 0
     for _ in range(_ROUNDS * 10):
-        a, b = (int(k) for k in np.unravel_index(np.argmax(over), over.shape))
-        if over[a, b] <= _EXACT_M:
+        a, b = divmod(worst, len(left))
+        if not len(over) or over[a, b] <= _EXACT_M:
             return sorted(links.items())
-        room = asked[a, b] - np.abs(left - left[a]) - np.abs(right - right[b])
+        room = asked[a, b] - np.abs(left - left_of[a]) - np.abs(right - right[b])
         room[gate] = -np.inf
         best = int(np.argmax(room))
         if room[best] < 0.0:
@@ -337,24 +343,43 @@ def _cross_links(
         links[best] = min(links.get(best, np.inf), float(room[best]))
         if links[best] < cross[best]:
             cross[best] = links[best]
-            _take_crossing(over, (left, right), (best, cross[best]), asked)
+            worst = _take_crossing(
+                over, np.abs(left_of - left[best]) + cross[best], right, best, asked
+            )
     return None
 
 
-def _take_crossing(
-    over: Float, places: tuple[Float, Float], crossing: tuple[int, float], asked: Float
-) -> None:
-    """Let ways from left to right take one more crossing, or a shorter one.
+@loop
+def _take_crossing(over: Float, to: Float, right: Float, k: int, asked: Float) -> int:
+    """Let ways from left to right take one more crossing, or a shorter one; return the worst way.
 
     To the last bit what `_from_left_to_right` gives with it: the smaller of two numbers is it
-    after the same is added to both, too.
+    after the same is added to both, too. A way is numbered as `argmax` numbers it.
+
+    Parameters
+    ----------
+    over
+        ``(r, e)`` metres that ways from r left nodes to all right ones are too long; changed.
+    to
+        ``(r,)`` metres from the left nodes to the right end of the crossing.
+    right
+        ``(e,)`` places of the right nodes.
+    k
+        The crossing.
+    asked
+        ``(r, e)`` the true metres.
     """
-    (left, right), (k, metres) = places, crossing
-    to = np.abs(left - left[k]) + metres
-    up = (to - right[k])[:, None] + right[k:] - asked[:, k:]
-    np.minimum(over[:, k:], up, out=over[:, k:])
-    down = (to + right[k])[:, None] - right[: k + 1] - asked[:, : k + 1]
-    np.minimum(over[:, : k + 1], down, out=over[:, : k + 1])
+    worst, most = 0, -np.inf
+    for a in range(to.size):
+        down, up = to[a] + right[k], to[a] - right[k]
+        for b in range(k + 1):
+            over[a, b] = min(over[a, b], down - right[b] - asked[a, b])
+        for b in range(k, right.size):
+            over[a, b] = min(over[a, b], up + right[b] - asked[a, b])
+        for b in range(right.size):
+            if over[a, b] > most:
+                worst, most = a * right.size + b, over[a, b]
+    return worst
 
 
 def _from_left_to_right(left: Float, right: Float, cross: Float) -> Float:

@@ -111,8 +111,10 @@ def test_one_more_crossing_is_to_the_last_bit_what_all_of_them_give():
     over = _from_left_to_right(left, right, cross) - asked
     for k in rng.permutation(n):
         cross[k] = rng.uniform(0.0, 60.0)
-        _take_crossing(over, (left, right), (int(k), cross[k]), asked)
+        to = np.abs(left - left[k]) + cross[k]
+        worst = _take_crossing(over, to, right, int(k), asked)
         assert (over == _from_left_to_right(left, right, cross) - asked).all()
+        assert worst == np.argmax(over)
 
 
 def test_ladders_are_made_once_for_a_plot_and_gone_with_it():

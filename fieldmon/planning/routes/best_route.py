@@ -37,7 +37,9 @@ if TYPE_CHECKING:
 # a bound stays one however its sums are rounded
 _ROUNDED = 1e-9
 _LEG_M = 1e-6
-_BISECTIONS = 40
+_PRICES = 40
+# bounds so near each other (as a share) are the same
+_SAME = 1e-9
 _LEAST_PRICE = 1e-7
 # routes begin with the drives of so many of the least bounds
 _STARTED_FROM = 3
@@ -284,7 +286,12 @@ def _relaxations(posed: _Posed) -> Iterator[Priced | Blocks]:
 
 
 def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf) -> PriceBound:
-    """Return the least bound of all prices of time, by bisection of what they fill."""
+    """Return the least bound of all prices of time.
+
+    By prices the bound of each drive is a line, and that of all drives their highest, which has
+    one lowest place. The next price tried is where the lines of the best drives known to either
+    side of it cross, or between them where that comes nearer too slowly (Kelley's cutting planes).
+    """
     began = monotonic()
     reward, costs = below.of_all, below.costs
     stop_s = max(costs.stop_s, 1e-9)
@@ -296,17 +303,21 @@ def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf
     seconds += (min(most_stops, len(reward)) + 1) * _LEG_M * costs.metre_s
     price = low
     met: dict[bool, tuple[Any, float]] = {}
-    for k in range(_BISECTIONS):
-        middle = low if k == 0 else float(np.sqrt(low * high))
+    # what the best drive too long, and the best in time, holds, and the seconds that it leaves;
+    # nothing pays at the highest price
+    lines = {False: (0.0, seconds)}
+    for k in range(_PRICES):
+        middle, least = _between(lines, (low, high), halve=k % 5 == 4) if k else (low, -np.inf)
         one: Any = below.best(middle)
         here = below.bound(one, middle, seconds)
         if here < value:
             value, price = here, middle
-        too_long = below.seconds(one, middle) > seconds
-        met[too_long] = one, middle
-        if monotonic() - began > within_s:
+        left_s = seconds - below.seconds(one, middle)
+        met[left_s < 0.0] = one, middle
+        lines[left_s < 0.0] = here - middle * left_s, left_s
+        if monotonic() - began > within_s or here <= least * (1.0 + _SAME):
             break
-        if too_long:
+        if left_s < 0.0:
             low = middle
         elif k == 0:
             break
@@ -315,6 +326,18 @@ def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf
     if monotonic() - began <= within_s:
         value = min(value, below.bound_by_kind(seconds, price, began + within_s))
     return PriceBound(value * (1.0 + _ROUNDED), price, below, tuple(met.values()))
+
+
+def _between(
+    lines: dict[bool, tuple[float, float]], prices: tuple[float, float], *, halve: bool
+) -> tuple[float, float]:
+    """Return a price between two, and what no bound in between can be less than."""
+    low, high = prices
+    middle = float(np.sqrt(low * high))
+    (held, over_s), (held_in_time, spare_s) = lines[True], lines[False]
+    crossing = (held - held_in_time) / (spare_s - over_s) if spare_s > over_s else middle
+    least = held + crossing * over_s
+    return (crossing if low < crossing < high and not halve else middle), least
 
 
 def _starts(found: PriceBound, robot: Robot, seconds: float) -> Iterator[Int]:

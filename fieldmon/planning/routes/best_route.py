@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -24,7 +26,7 @@ from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
 _ROUNDED = 1e-9
 _LEG_M = 1e-6
 _PRICES = 40
+# so many of them at once: a machine has as many cores
+_AT_ONCE = 2
 # bounds so near each other (as a share) are the same
 _SAME = 1e-9
 _LEAST_PRICE = 1e-7
@@ -261,28 +265,39 @@ def _posed(
     return _Posed(aisles, robot, clock, np.where(_reachable(aisles, clock), values, 0.0))
 
 
-def _bounds(posed: _Posed, within_s: float = np.inf) -> Iterator[PriceBound]:
-    """Yield the bounds of all ways of taking the plot for less than it is: each is one."""
+def _bounds(posed: _Posed, within_s: float = np.inf) -> list[PriceBound]:
+    """Return the bounds of all ways of taking the plot for less than it is: each is one.
+
+    The first is there however long it takes; compiled loops let others go on beside.
+    """
     until = monotonic() + within_s
-    for below in _relaxations(posed):
-        yield upper_bound(below, posed.clock.seconds_left, until - monotonic())
-        if monotonic() > until:
-            return
+
+    def bounded_by(make: Callable[[], Priced | Blocks | None]) -> PriceBound | None:
+        left_s = until - monotonic()
+        below = make() if left_s > 0.0 or make is ways[0] else None
+        return None if below is None else upper_bound(below, posed.clock.seconds_left, left_s)
+
+    ways = list(_relaxations(posed))
+    with ThreadPoolExecutor(_AT_ONCE) as threads:
+        return [found for found in threads.map(bounded_by, ways) if found is not None]
 
 
-def _relaxations(posed: _Posed) -> Iterator[Priced | Blocks]:
-    """Yield what lies below the plot: a ladder, one with aisles hanging on it, several ladders.
+def _relaxations(posed: _Posed) -> Iterator[Callable[[], Priced | Blocks | None]]:
+    """Yield what makes what lies below the plot: a ladder, one with aisles hanging on it, several.
 
     Those of several parts stand beside each other, or hang on each other.
     """
-    ladders = Ladders(posed.aisles)
-    yield Priced(ladders.whole(hanging=False), posed.reward, posed.robot)
-    hanging = ladders.whole(hanging=True)
-    if hanging.hangs.any():
-        yield Priced(hanging, posed.reward, posed.robot)
+    ladders, reward, robot = Ladders(posed.aisles), posed.reward, posed.robot
+
+    def hanging() -> Priced | None:
+        ladder = ladders.whole(hanging=True)
+        return Priced(ladder, reward, robot) if ladder.hangs.any() else None
+
+    yield lambda: Priced(ladders.whole(hanging=False), reward, robot)
+    yield hanging
     for block in blockings(ladders.rungs):
-        yield Blocks(ladders, block, posed.reward, posed.robot)
-        yield hung(ladders, block, posed.reward, posed.robot)
+        yield partial(Blocks, ladders, block, reward, robot)
+        yield partial(hung, ladders, block, reward, robot)
 
 
 def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf) -> PriceBound:

@@ -437,8 +437,19 @@ def outline_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolyg
     """Return the area, lon/lat, that some plants ``(n,)`` fill, each half a spacing around it."""
     half_m = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 * 1.001
     x, y = grid.xy_m[plants].T
+    order = np.lexsort((x, y))
+    x, y = x[order], y[order]
+    # plants on one line that touch are one cell: a hundredth of the cells to unite
+    parted, edge = (
+        (np.diff(y) != 0.0) | (np.diff(x) > 2.0 * half_m[0]),
+        np.full(min(len(x), 1), True),
+    )
+    first = np.flatnonzero(np.concatenate([edge, parted]))
+    last = np.flatnonzero(np.concatenate([parted, edge]))
     # turned along each row where rows bend would gain centimetres: squares follow the plants
-    cells = shapely.box(x - half_m[0], y - half_m[1], x + half_m[0], y + half_m[1])
+    cells = shapely.box(
+        x[first] - half_m[0], y[first] - half_m[1], x[last] + half_m[0], y[first] + half_m[1]
+    )
     whole = shapely.union_all(cells)
     outline: shapely.MultiPolygon = grid.frame.geometry_lonlat(
         shapely.MultiPolygon(list(shapely.get_parts(whole)))

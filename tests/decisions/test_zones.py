@@ -13,12 +13,14 @@ from fieldmon.decisions.zones import (
     TreatmentCosts,
     Zones,
     best_zones,
+    outline_of,
     outlines,
     ring_bound,
     whole_plot,
 )
 from fieldmon.errors import SettingError
 from fieldmon.plot.layout import Planting, rectangle
+from tests.bent import bent_grids
 from tests.crooked import crooked_grids
 
 ROW = rectangle(1, 9, Planting(90.0, 4.0, 2.0))
@@ -185,6 +187,18 @@ def test_where_nothing_is_worth_it_nothing_is_treated():
         "Treat 0.01 ha in 1 zone, 100 % of the plot"
         in best_zones(ROW, np.full(9, 0.9), Sprayer(1), CHEAP).sentence()
     )
+
+
+@given(crooked_grids() | bent_grids(), st.data())
+def test_an_outline_is_all_the_squares_of_its_plants(grid, data):
+    share = data.draw(st.sampled_from([0.0, 0.3, 0.8, 1.0]))
+    plants = np.random.default_rng(len(grid)).random(len(grid)) < share
+    half_m = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 * 1.001
+    corners = np.hstack([grid.xy_m - half_m, grid.xy_m + half_m])[plants]
+    squares = shapely.union_all(shapely.box(*corners.T))
+    outline = outline_of(grid, plants)
+    metres = grid.frame.geometry_m(outline)
+    assert metres.symmetric_difference(squares).area < 1e-6 * max(squares.area, 1.0)
 
 
 def test_outlines_hold_their_plants_and_no_other():

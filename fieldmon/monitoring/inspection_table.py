@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
+# of a digest
+_LENGTH = 24
 
 
 def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
@@ -129,7 +132,7 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
 
 def _digest(*parts: object) -> str:
     text = "|".join("" if part is None else str(part) for part in parts)
-    return digest(text.encode(), length=24, end=b"")
+    return digest(text.encode(), length=_LENGTH, end=b"")
 
 
 def _clock(second: float) -> str | None:
@@ -162,20 +165,21 @@ def not_what_they_say(db: sqlite3.Connection) -> list[int]:
 
     Of two that a phone told alike, the second has a digest with its telling's id in it.
     """
-    wrong = {
-        fid: mark
-        for fid, plant, on, at, result, count, mark in db.execute(
-            "SELECT fid, plant, date, time, result, count, digest FROM inspections "
-            "WHERE digest NOTNULL"
-        )
-        if _digest(plant, on, at, result, count) != mark
-    }
+    # most are as SQLite writes them; of others, as of counts of sixteen digits, Python is asked
+    db.create_function("said", 1, partial(digest, length=_LENGTH, end=b""), deterministic=True)
+    doubted = db.execute(
+        "SELECT fid, plant, date, time, result, count, digest FROM inspections "
+        "WHERE digest NOTNULL AND digest <> said(CAST(coalesce(plant, '') || '|' || "
+        "coalesce(date, '') || '|' || coalesce(time, '') || '|' || coalesce(result, '') || '|' || "
+        "coalesce(count, '') AS BLOB))"
+    )
+    wrong = {fid: mark for fid, *said, mark in doubted if _digest(*said) != mark}
     told = "SELECT id FROM tellings WHERE inspection = ?"
     said = "SELECT plant, date, time, result, count FROM inspections WHERE fid = ?"
     for fid, mark in list(wrong.items()):
         own = _digest(*db.execute(said, (fid,)).fetchone())
         ids = [one for (one,) in db.execute(told, (fid,))]
-        if mark in {digest(own, one, length=24) for one in ids}:
+        if mark in {digest(own, one, length=_LENGTH) for one in ids}:
             del wrong[fid]
     return sorted(wrong)
 

@@ -22,7 +22,7 @@ SHOWN = {
     "season": lambda season: season_report(season, BEGINS, Units()),
     "day": lambda season: DayFacts.of_season(season, BEGINS),
     "certificate": lambda season: certification_report([season, season], Units()),
-    "treatments": lambda season: list(treatments_table(season)),
+    "treatments": treatments_table,
 }
 
 

@@ -65,7 +65,7 @@ def export(
 def _table(kept: list[Season], of: str) -> bytes:
     from fieldmon.reports.record_tables import TABLES, csv_bytes  # noqa: PLC0415
 
-    data = csv_bytes(line for season in kept for line in TABLES[of](season))
+    data = csv_bytes(TABLES[of](season) for season in kept)
     if not data:
         raise SettingError(f"There must be {of} to write, but there are none. No file is written.")
     return data

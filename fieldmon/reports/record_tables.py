@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,16 +14,30 @@ from fieldmon.io.writers.csv import safe_cell
 from fieldmon.monitoring.cautions import label_of, waits
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
+
+    from numpy.typing import NDArray
 
     from fieldmon.monitoring import Season
 
-#: a line of a table by its columns
-Line = dict[str, object]
+#: what stands in each line, by column
+Table = dict[str, list[Any]]
 
 
-def treatments_table(season: Season) -> Iterator[Line]:
-    """Yield a line for each treatment that counts: GLOBALG.A.P.'s fields, and how it is kept."""
+def treatments_table(season: Season) -> Table:
+    """Return a line for each treatment that counts: GLOBALG.A.P.'s fields, and how it is kept."""
+    return _by_column(_treatments(season))
+
+
+def _by_column(lines: Iterable[dict[str, object]]) -> Table:
+    table: Table = {}
+    for line in lines:
+        for name, value in line.items():
+            table.setdefault(name, []).append(value)
+    return table
+
+
+def _treatments(season: Season) -> Iterator[dict[str, object]]:
     with season.one_moment():
         labels, treatments = season.labels(), season.treatments()
     for one in treatments:
@@ -59,47 +73,42 @@ def treatments_table(season: Season) -> Iterator[Line]:
         }
 
 
-def inspections_table(season: Season) -> Iterator[Line]:
-    """Yield a line for each inspection that counts."""
+def inspections_table(season: Season) -> Table:
+    """Return a line for each inspection that counts."""
     done, label, plot = season.history.inspections, season.label, season.plot.field.name
-    texts: dict[object, str] = {}  # the same name stands in thousands of rows
     plants, of = np.unique(done.plant, return_inverse=True)
-    places = [
-        (round(lon, 7), round(lat, 7)) for lon, lat in season.plot.grid.lonlat(plants).tolist()
-    ]
-    columns = (
-        [places[k] for k in of.tolist()],
-        np.datetime_as_string(done.date).tolist(),
-        done.second.tolist(),
-        label.line[done.plant].tolist(),
-        label.number[done.plant].tolist(),
-        [RESULT_NAMES[result] for result in done.result.tolist()],
-        done.count.tolist(),
-        *([texts.setdefault(said, str(said)) for said in each] for each in (done.who, done.notes)),
-    )
-    for (lon, lat), on, second, row, number, result, count, who, notes in zip(
-        *columns, strict=True
-    ):
-        minutes = None if math.isnan(second) else int(second // 60)
-        yield {
-            "plot": plot,
-            "date": on,
-            "time": None if minutes is None else f"{minutes // 60:02d}:{minutes % 60:02d}",
-            "row": row,
-            "plant": number,
-            "lon": lon,
-            "lat": lat,
-            "result": result,
-            "count": None if math.isnan(count) else count,
-            "who": who,
-            "notes": notes,
-        }
+    lon, lat = np.round(season.plot.grid.lonlat(plants), 7).T
+    return {
+        "plot": [plot] * len(done),
+        "date": np.datetime_as_string(done.date).tolist(),
+        "time": _each(done.second, _minute),
+        "row": label.line[done.plant].tolist(),
+        "plant": label.number[done.plant].tolist(),
+        "lon": lon[of].tolist(),
+        "lat": lat[of].tolist(),
+        "result": [RESULT_NAMES[result] for result in done.result.tolist()],
+        "count": _each(done.count, float),
+        "who": done.who.tolist(),
+        "notes": done.notes.tolist(),
+    }
 
 
-def log_table(season: Season) -> Iterator[Line]:
-    """Yield a line for each entry of the log."""
-    for one in season.log():
-        yield {
+def _each(values: NDArray[np.float64], said: Callable[[float], object]) -> list[object]:
+    """Return what is said of each number; None of those that are not known."""
+    known, of = np.unique(values, return_inverse=True)
+    each = [None if math.isnan(value) else said(value) for value in known.tolist()]
+    return [each[k] for k in of.tolist()]
+
+
+def _minute(second: float) -> str:
+    hour, rest = divmod(int(second // 60), 60)
+    return f"{hour:02d}:{rest:02d}"
+
+
+def log_table(season: Season) -> Table:
+    """Return a line for each entry of the log."""
+    return _by_column(
+        {
             "plot": season.plot.field.name,
             "entry": one.number,
             "at_utc": one.at,
@@ -108,25 +117,33 @@ def log_table(season: Season) -> Iterator[Line]:
             "said": one.sentence(),
             "digest": one.digest,
         }
+        for one in season.log()
+    )
 
 
 #: what can be handed out as a table
 TABLES = {"treatments": treatments_table, "inspections": inspections_table, "log": log_table}
 
 
-def csv_bytes(lines: Iterable[Line]) -> bytes:
-    """Return lines as CSV in UTF-8, as spreadsheets open it; empty of none."""
-    cells = _Cells()
+def csv_bytes(tables: Iterable[Table]) -> bytes:
+    """Return tables of the same columns below each other as CSV in UTF-8, as spreadsheets open it.
+
+    Empty where they have no lines.
+    """
     text = io.StringIO(newline="")
-    table = csv.writer(text)
-    for k, line in enumerate(lines):
-        if k == 0:
-            table.writerow(line)
-        table.writerow(
-            [cells[value] if isinstance(value, str) else value for value in line.values()]
-        )
+    written = csv.writer(text)
+    for table in tables:
+        if table and not text.tell():
+            written.writerow(table)
+        written.writerows(zip(*(_cells(column) for column in table.values()), strict=True))
     data = text.getvalue()
     return data.encode("utf-8-sig") if data else b""
+
+
+def _cells(column: list[Any]) -> list[object]:
+    """Return what stands in the cells of a column."""
+    safe = _Cells()
+    return [safe[value] if isinstance(value, str) else value for value in column]
 
 
 class _Cells(dict[str, str]):

@@ -31,8 +31,8 @@ def season(tmp_path_factory):
     return made
 
 
-def read(lines):
-    return list(csv.DictReader(io.StringIO(csv_bytes(lines).decode("utf-8-sig"), newline="")))
+def read(*tables):
+    return list(csv.DictReader(io.StringIO(csv_bytes(tables).decode("utf-8-sig"), newline="")))
 
 
 def test_a_treatment_has_what_a_certifier_asks_and_the_labels_wait(season):
@@ -65,8 +65,9 @@ def test_inspections_and_log_are_there_line_by_line(season):
     log = read(log_table(season))
     assert [line["what"] for line in log] == ["begins", "seen", "labels", "treated"]
     assert log[-1]["digest"] == season.log()[-1].digest
+    assert read(log_table(season), log_table(season)) == [*log, *log]
 
 
 def test_of_nothing_no_table_is_made():
-    assert csv_bytes([]) == b""
+    assert csv_bytes([]) == csv_bytes([{}]) == b""
     assert date(2026, 4, 6) == BEGINS

@@ -26,6 +26,7 @@ _DATES_MM = 19.0
 _WIDEST_MM = 9.0
 # days further apart than this are not joined by a line
 _MOST_APART = 3
+_DOTS_APART_MM = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +119,11 @@ class DayChart:
         parts += [Strokes(whiskers, colours.BAR, 1.2)] if whiskers else []
         parts += [Strokes(joins, colours.ROUTE, 0.3, dashed=True)] if joins else []
         parts += [Strokes(lines, colours.ROUTE, 0.6)] if lines else []
-        return [*parts, Discs(np.stack([x, y], 1), 0.75, fill=colours.ROUTE)]
+        # dots so near each other would be a thick line: those that none joins, and the newest
+        crowded = len(x) > 1 and float(np.median(np.diff(x))) < _DOTS_APART_MM
+        told = np.array([*(run[0] for run in runs if len(run) == 1), len(x) - 1])
+        dots = np.unique(told) if crowded else np.arange(len(x))
+        return [*parts, Discs(np.stack([x[dots], y[dots]], 1), 0.75, fill=colours.ROUTE)]
 
 
 @dataclass(frozen=True, eq=False)

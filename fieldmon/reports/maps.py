@@ -49,6 +49,7 @@ _TURNED_GAINS = 1.25
 _ALONE_MM = 1.2
 # more zones would hide each other
 _MOST_NUMBERS = 60
+_THREE_DIGITS = 100
 _ARROWS_MM, _MOST_STOPS = 24.0, 400
 
 
@@ -272,14 +273,19 @@ def _sprayed(what: PlotMap, placed: _Placed) -> list[Part]:
 
 
 def _hot_numbers(what: PlotMap, placed: _Placed) -> list[Part]:
-    """Return the number of each hot spot at the upper left of its outline."""
+    """Return the number of each hot spot at the upper left of its outline, where it has room."""
     parts: list[Part] = []
+    taken = np.empty((0, 3))
     for number, shape in enumerate(outlines_m(what.grid, what.spots), start=1):
         corners = placed(shapely.get_coordinates(shape.exterior))
-        place = corners[np.argmin(corners.sum(axis=1))]
-        x, y = place.tolist()
+        x, y = corners[np.argmin(corners.sum(axis=1))].tolist()
+        radius = 2.0 if number < _THREE_DIGITS else 2.6
+        # the surest has its number: one over another can neither be read
+        if (np.hypot(taken[:, 0] - x, taken[:, 1] - y) < taken[:, 2] + radius).any():
+            continue
+        taken = np.vstack([taken, (x, y, radius)])
         parts += [
-            Discs(place[None], 2.0, fill=colours.INK, edge=colours.PAPER, width=0.3),
+            Discs(np.array([[x, y]]), radius, fill=colours.INK, edge=colours.PAPER, width=0.3),
             Lettering(x, y, f"{number}", 7.5, colours.PAPER, "middle", bold=True),
         ]
     return parts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,8 @@ from fieldmon.reports.drawing import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fpdf import FPDF
     from numpy.typing import NDArray
 
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
 #: a point of type in millimetres
 PT_MM = 25.4 / 72
 _ALIGN = {"start": "L", "middle": "C", "end": "R"}
-# a disc is drawn with so many corners: smaller than a plant, and a hundredth of a curve's bytes
+# a disc with an edge has so many corners: smaller than a plant, a hundredth of a curve's bytes
 _CORNERS = 16
 
 
@@ -77,31 +80,52 @@ def _segments(pdf: FPDF, part: Segments, at: NDArray[np.float64]) -> None:
 
 def _areas(pdf: FPDF, part: Areas, at: NDArray[np.float64]) -> None:
     """Fill rings and draw their edges; what lies in a hole is left out by cutting it."""
-    paints = {(True, True): "B", (True, False): "f", (False, True): "S", (False, False): "S"}
-    paint_by = paints[bool(part.fill), bool(part.edge)]
-    with pdf.local_context(fill_opacity=part.opacity, stroke_join_style="round"):
-        if part.fill:
-            pdf.set_fill_color(*part.fill)
-        if part.edge:
-            _pen(pdf, part.edge, part.width)
+    with _filling(pdf, part) as paint_by:
         for ring in part.rings:
             _path(pdf, ring + at, paint_by, closed=True)
 
 
+@contextmanager
+def _filling(pdf: FPDF, part: Areas | Discs) -> Iterator[str]:
+    """Choose colours; give how areas are painted with them."""
+    paints = {(True, True): "B", (True, False): "f", (False, True): "S", (False, False): "S"}
+    opacity = part.opacity if isinstance(part, Areas) else 1.0
+    with pdf.local_context(fill_opacity=opacity, stroke_join_style="round"):
+        if part.fill:
+            pdf.set_fill_color(*part.fill)
+        if part.edge:
+            _pen(pdf, part.edge, part.width)
+        yield paints[bool(part.fill), bool(part.edge)]
+
+
 def _path(pdf: FPDF, corners: NDArray[np.float64], paint_by: str, *, closed: bool = False) -> None:
     """Draw a line as `FPDF.polyline` does, which takes ten times as long: a map has thousands."""
+    _paths(pdf, corners[None], f" h\n {paint_by}" if closed else f" {paint_by}")
+
+
+def _paths(pdf: FPDF, corners: NDArray[np.float64], ends: str) -> None:
+    """Draw lines of equally many corners ``(k, c, 2)``, each with what ends it."""
     points = (corners * [1, -1] + [0, pdf.h]) * pdf.k
-    drawn = [f"{x:.2f} {y:.2f} l" for x, y in points.tolist()]
-    drawn[0] = f"{drawn[0][:-1]}m"
-    ends = [" h"] if closed else []
-    pdf._out("\n".join([*drawn, *ends, f" {paint_by}"]))  # noqa: SLF001 - it has no other way
+    k, c, _ = points.shape
+    each = "\n".join(["%.2f %.2f m", *(c - 1) * ["%.2f %.2f l"], ends])
+    drawn = "\n".join(k * [each]) % tuple(points.ravel().tolist())
+    pdf._out(drawn)  # noqa: SLF001 - it has no other way
 
 
 def _discs(pdf: FPDF, part: Discs, at: NDArray[np.float64]) -> None:
+    places = np.reshape(part.places, (-1, 1, 2)) + at
+    if not len(places):
+        return
+    if part.fill and not part.edge:
+        # what a round pen leaves that does not move
+        with pdf.local_context(stroke_cap_style="round"):
+            _pen(pdf, part.fill, 2.0 * part.radius)
+            _paths(pdf, np.repeat(places, 2, axis=1), " S")
+        return
     turn = np.linspace(0, 2 * np.pi, _CORNERS, endpoint=False)
     about = part.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    rings = tuple(place + about for place in part.places)
-    _areas(pdf, Areas(rings, part.fill, part.edge, part.width), at)
+    with _filling(pdf, part) as paint_by:
+        _paths(pdf, places + about, f" h\n {paint_by}")
 
 
 def letter(pdf: FPDF, fonts: FontSet, part: Lettering, at: tuple[float, float]) -> None:

@@ -77,6 +77,16 @@ def test_one_day_alone_has_a_mark_and_an_interval():
     assert [one for one in parts(drawing, Strokes) if one.colour == colours.BAR]
 
 
+def test_dots_of_a_long_season_do_not_run_together():
+    few, many = (line([5] * n, *range(n)).draw(SIZE) for n in (40, 200))
+    assert [len(dots.places) for dots in parts(few, Discs)] == [40]
+    (dots,) = parts(many, Discs)
+    assert len(dots.places) == 1
+    apart = line([5] * 201, *range(100), 150, *range(200, 300)).draw(SIZE)
+    (dots,) = parts(apart, Discs)
+    assert len(dots.places) == 2
+
+
 def test_nothing_at_all_still_has_axes():
     drawing = DayChart(days(0), np.zeros(1), Units()).draw(SIZE)
     assert {"0", "2026-11-02"} <= set(drawing.words())

@@ -167,6 +167,25 @@ def test_finds_hot_spots_and_their_numbers_are_drawn():
     assert "1" in [one.text for one in parts(drawing, Lettering) if one.bold]
 
 
+def test_of_many_hot_spots_no_number_hides_another():
+    grid = rectangle(60, 60)
+    row, place = np.divmod(np.arange(len(grid)), 60)
+    made = a_map(grid, found=np.flatnonzero((row % 6 < 2) & (place % 6 < 2)))
+    assert len(made.spots) == 50
+    drawing = made.draw((60.0, 60.0))
+    discs = [one for one in parts(drawing, Discs) if one.fill == colours.INK]
+    at, radius = (
+        np.concatenate([one.places for one in discs]),
+        np.array([one.radius for one in discs]),
+    )
+    apart = np.hypot(*(at[:, None] - at).T) - radius[:, None] - radius
+    assert apart[~np.eye(len(at), dtype=bool)].min() >= 0.0
+    numbers = [one.text for one in parts(drawing, Lettering) if one.bold and one.text.isdigit()]
+    # the surest has its number
+    assert numbers[0] == "1"
+    assert 10 < len(numbers) == len(discs) < len(made.spots)
+
+
 def test_rows_are_numbered_as_far_as_there_is_room():
     few, many = (a_map(rectangle(n, 9)).draw((60.0, 60.0)).words() for n in (5, 300))
     assert {"1", "2", "3", "4", "5"} <= set(few)

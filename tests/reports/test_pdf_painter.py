@@ -43,7 +43,8 @@ def colour(rgb):
         (Segments(np.array([[1.0, 2, 30, 2]]), RED, 0.5), "RG"),
         (Areas((SQUARE,), fill=RED), "rg"),
         (Areas((SQUARE,), edge=RED), "RG"),
-        (Discs(SQUARE, 1.0, fill=RED), "rg"),
+        (Discs(SQUARE, 1.0, fill=RED), "RG"),
+        (Discs(SQUARE, 1.0, fill=RED, edge=BLUE), "rg"),
     ],
 )
 def test_each_part_is_drawn_in_its_colour(part, sign):

@@ -130,4 +130,4 @@ def test_finds_of_one_plant_on_two_days_are_said_to_be_one_plant(tmp_path):
         season.record(Inspections.of(plants, np.array([1], np.int8), on))
     report = season_report(season, BEGINS + timedelta(days=1), Units())
     (found,) = [each for each in one(report, KeyFigures).figures if each.label == "Plants found"]
-    assert (found.value, found.note) == ("1", "2 finds, some plants twice")
+    assert (found.value, found.note) == ("1", "in 2 finds")

@@ -28,10 +28,13 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     at = choices.clock.at(datetime.fromisoformat(batch.at))
     parts = [f"{choices.units.day(at.date())} {at:%H:%M}"]
     source = texts.isolated(batch.source) if batch.source else ""
-    if batch.kind != "findings" or said is None:
-        parts.append(texts.BATCHES_SAID[batch.kind].format(source=source, n=batch.rows))
-    else:
+    if batch.kind == "findings" and said is not None:
         parts += [source, _what(choices, said)]
+    else:
+        parts.append(texts.BATCHES_SAID[batch.kind].format(source=source, n=batch.rows))
+    if batch.kind == "treatment" and said is not None:
+        parts.append(texts.PLANTS_COUNTED.format(n=said.n))
+    if batch.kind != "corrections" and said is not None:
         # results may be brought days later
         days = [date.fromisoformat(day) for day in dict.fromkeys((said.first, said.last))]
         if days != [at.date()]:

@@ -69,6 +69,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
 
 
 def _show_batches(kept: Season) -> None:
+    from fieldmon.compute.wording import counted  # noqa: PLC0415
     from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
 
     clock, told = local_clock(kept.plot.field), kept.batches()
@@ -77,7 +78,9 @@ def _show_batches(kept: Season) -> None:
         at = clock.at(datetime.fromisoformat(batch.at))
         who = f" by {batch.who}" if batch.who else ""
         said, what = contents.get(batch.number), ""
-        if said is not None and said.n == 1:
+        if said is not None and batch.kind == "treatment":
+            what = f"  {counted(said.n, 'plant')}, {said.first}"
+        elif said is not None and said.n == 1:
             what = f"  row {said.row}, plant {said.plant}: {said.result}"
         elif said is not None:
             what = f"  {said.found} found"

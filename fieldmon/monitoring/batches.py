@@ -54,17 +54,17 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchContents:
-    """What the inspections of a batch say.
+    """What the inspections or the treatment of a batch say.
 
     Parameters
     ----------
     n, found
-        How many there are, and how many found something.
+        How many inspections there are, and how many found something; plants treated, and 0.
     first, last
         The days of the first and the last of them, as ``2026-11-18``.
     row, plant, result
-        Of the only one: where it was, and ``"found"``, ``"clean"`` or ``"skipped"``. Of several
-        they say nothing.
+        Of the only inspection: where it was, and ``"found"``, ``"clean"`` or ``"skipped"``. Of
+        several and of a treatment they say nothing.
     """
 
     n: int
@@ -146,15 +146,20 @@ def all_of(db: sqlite3.Connection) -> tuple[Batch, ...]:
 
 
 def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchContents]:
-    """Return what batches of inspections say, by their numbers."""
+    """Return what batches of inspections and treatments say, by their numbers."""
     asked = ", ".join("?" * len(numbers))
+    treated = db.execute(
+        "SELECT batch, sum(plants), 0, min(date), max(date), 0, 0, '' FROM treatments "  # noqa: S608 - ours
+        f"WHERE batch IN ({asked}) AND date NOTNULL GROUP BY batch",
+        tuple(numbers),
+    ).fetchall()
     rows = db.execute(
         "SELECT batch, count(*), sum(result = 'found'), min(date), max(date), min(line), "  # noqa: S608 - ours
         f"min(number), min(result) FROM inspections WHERE batch IN ({asked}) "
         "AND date NOTNULL AND result NOTNULL GROUP BY batch",
         tuple(numbers),
     )
-    return {number: BatchContents(*said) for number, *said in rows}
+    return {number: BatchContents(*said) for number, *said in [*rows, *treated]}
 
 
 def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:

@@ -247,7 +247,7 @@ class SeasonRecords(OpenSeason):
             return batches.all_of(db)
 
     def contents(self, numbers: Sequence[int]) -> dict[int, BatchContents]:
-        """Return what batches of inspections say, by their numbers."""
+        """Return what batches of inspections and treatments say, by their numbers."""
         with self.store.reading() as db:
             return batches.contents(db, numbers)
 

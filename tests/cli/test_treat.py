@@ -59,6 +59,8 @@ def test_what_was_applied_is_kept_and_what_to_beware_of_is_said(run, season, tmp
     assert "beware: Harvest on 2026-11-05 is too soon after Acarol" in err
     assert "beware: The dose of Acarol on 2026-11-02, 0.6 l/ha, is more than its label" in err
     (one,) = Season(season).treatments()
+    _, listed, _, _ = run("status", season, "--batches")
+    assert f"  {int(one.place.plants.sum())} plants, 2026-11-0" in listed
     lines = Season(season).label.line
     assert np.array_equal(one.place.plants, np.isin(lines, [1, 2]))
     _, out, _, _ = run("status", season, "--date", BEGINS)
@@ -71,6 +73,8 @@ def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, seas
     assert code == 0, err
     run("treat", season, "--efficacy", "0.8", "--area", "z.gpkg", "--date", BEGINS)
     (one,) = Season(season).treatments()
+    _, listed, _, _ = run("status", season, "--batches")
+    assert f"  {int(one.place.plants.sum())} plants, 2026-11-0" in listed
     zones = gpd.read_file("z.gpkg")
     sprayed = shapely.union_all(zones[zones["RATE"] > 0].geometry)
     inside = shapely.contains_xy(sprayed, Season(season).plot.grid.lonlat())

@@ -53,7 +53,8 @@ def test_a_season_says_what_it_said(season, capsys):
     told = UTC_TIME.sub(
         lambda at: f"{clock.at(datetime.fromisoformat(f'{at[0]}Z')):%F %H:%M}", told
     )
-    assert re.sub(r"(findings.*)  \d+ found", r"\1", "".join(said)) == told
+    more = r"(findings.*|treatment.*)  (\d+ found|\d+ plants, [\d-]+)"
+    assert re.sub(more, r"\1", "".join(said)) == told
     assert "doubtful" not in done.err
 
 

@@ -1,9 +1,13 @@
 """What was recorded, so that a person can tell one batch from the others."""
 
+from datetime import date
+
 import numpy as np
+from shapely import MultiPolygon, box
 
 from app.show.recorded_batches import in_short
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
+from fieldmon.monitoring import Application
 from fieldmon.plot.grid import row_label
 from tests.app.driving import go
 
@@ -27,6 +31,20 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     assert said[1] == f"typed in · {second}: could not inspect · 2026-11-16 · Ann"
     assert said[2] == f"typed in · {first}: found · 2026-11-16"
     assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:3]}
+
+
+def test_a_treatment_is_told_by_how_many_plants_were_treated_and_when(season_app, season):
+    kept = season()
+    kept.treat(date(2026, 11, 16), 0.8, application=Application("soap"))
+    west, south, east, north = kept.plot.field.boundary.bounds
+    half = MultiPolygon([box(west, south, east, (south + north) / 2)])
+    kept.treat(date(2026, 11, 16), 0.8, half, application=Application("oil"))
+    every, some = (int(one.place.plants.sum()) for one in kept.treatments())
+    assert some < every == len(kept.plot.grid)
+    go(season_app, "record")
+    said = [one.value.replace(",", "") for one in season_app.markdown if "treatment" in one.value]
+    assert f"treatment \u2068oil\u2069 · {some} plants · 2026-11-16" in said[0]
+    assert f"treatment \u2068soap\u2069 · {every} plants · 2026-11-16" in said[1]
 
 
 def test_every_result_has_its_word():

@@ -212,10 +212,10 @@ def mark_day(choices: Choices) -> None:
     if choices.is_today:
         return
     now = choices.units.day(choices.today)
-    left, right = st.columns([5, 1], vertical_alignment="center")
-    left.warning(texts.OTHER_DAY.format(day=choices.units.day(choices.day), today=now))
-    right.button(texts.BACK_TO_TODAY, key="back_to_today", width="stretch",
-                 on_click=work_day.back_to_today, args=(plot_source.chosen(),))  # fmt: skip
+    # below each other: beside the sentence there is no room for the button's words
+    st.warning(texts.OTHER_DAY.format(day=choices.units.day(choices.day), today=now))
+    st.button(texts.BACK_TO_TODAY, key="back_to_today",
+              on_click=work_day.back_to_today, args=(plot_source.chosen(),))  # fmt: skip
 
 
 def _which(file: File, names: list[str]) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import timedelta
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 PARTS = {
     "route": ("casing", "route", "arrows", "gate"),
     "hot": ("hot", "hot-edge"),
+    "treated": ("treated", "treated-edge"),
     "records": ("records",),
     "numbers": (),
     "rows": ("row-lines",),
@@ -32,6 +34,8 @@ PARTS = {
 }
 # more days than these are a film in steps of several
 _FRAMES = 60
+# what was treated is shown for so many days, that of the treatment being the first
+_TREATED_DAYS = 14
 _FINDS = ("finds0", "finds1", "found")
 
 
@@ -43,8 +47,10 @@ def day_map(
     driven = chosen_day.route(choices)
     route = driven.route
     shades = shaded(choices, first)
+    sprayed = treated(choices)
     layers = [
         *plan(choices),
+        *sprayed,
         *marks.with_hot(plants(choices), _hot_layers(choices)),
         *route_of(choices, route),
         *records(choices),
@@ -56,7 +62,7 @@ def day_map(
     return MapContent(
         **field_map.of_plot(choices, len(route)), layers=layers,
         switches=switches(layers, off, ("numbers", "rows")), shades=shades,
-        legend=legend(choices), play=play,
+        legend=legend(choices, treated=bool(sprayed)), play=play,
         labels=[*labels.stops(route), *words(choices)],
     )  # fmt: skip
 
@@ -99,11 +105,27 @@ def switches(
     )
 
 
-def legend(choices: Choices) -> list[legends.LegendPart]:
+def legend(choices: Choices, *, treated: bool = False) -> list[legends.LegendPart]:
     """Return the legend of a day's map."""
     dark = choices.dark
     return [legends.by_chance(dark=dark), legends.by_state(), legends.by_age(dark=dark),
-            *legends.signs(dark=dark), *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
+            *legends.signs(dark=dark, treated=treated),
+            *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
+
+
+def treated(choices: Choices) -> list:
+    """Return what was treated lately, up to the chosen day; made once."""
+    season = choices.season
+    if season is None:
+        return []
+
+    def make() -> list:
+        since = choices.on - timedelta(days=_TREATED_DAYS)
+        done = [one for one in season.treatments() if since < one.on <= choices.on]
+        return marks.treated(done, choices.plot.field, choices.units, dark=choices.dark)
+
+    shown = f"{choices.key} {choices.revision} {choices.day} {choices.dark} {choices.units}"
+    return cached.layers(f"treated {shown}", make)
 
 
 def plan(choices: Choices) -> list:

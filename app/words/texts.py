@@ -151,6 +151,7 @@ LEGEND_CHANCE = "Chance that a plant is infested"
 LEGEND_ROUTE, LEGEND_GATE = "route, arrows show the way", "gate: start and end"
 LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
 LEGEND_HOT = "hot spot: finds cluster more than chance allows"
+LEGEND_TREATED = "treated in the last two weeks"
 LEGEND_SEEN, LEGEND_NOT_SEEN = "record: pests seen", "record: none seen"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
 LEGEND_TRUTH = "infested, not yet found (only a simulation knows)"
@@ -429,6 +430,7 @@ TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
 TIP_LOOKS = Plural(", inspected {n} time", ", inspected {n} times")
 TIP_FINDS = Plural(", found {n} time", ", found {n} times")
 TIP_HOT = "hot spot {n}: {found} found of {inspected} inspected"
+TIP_TREATED, TIP_TREATED_WITH = "treated on {day}", "treated on {day}: {product}"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
 TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
 LABEL_GATE, LABEL_NO_GO, LABEL_BLOCK = "gate", "no-go", "block {n}"
@@ -508,7 +510,7 @@ UNDATED = "Records without a date are always shown."
 SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspected",
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
-              "hot": "hot spots", "records": "records", "rows": "row numbers",
+              "hot": "hot spots", "treated": "treated", "records": "records", "rows": "row numbers",
               "plan": "plan of the plot", "ground": "ground"}  # fmt: skip
 
 # -- to treat or not

@@ -12,16 +12,20 @@ from fieldmon.infestation.hotspots import outlines_m
 from fieldmon.plot.grid import row_corners
 
 from ...words import texts
-from .colours import GATE, HOT, HOT_IN_DARK, TRUTH, TRUTH_IN_DARK
+from .colours import GATE, HOT, HOT_IN_DARK, TREATED, TREATED_IN_DARK, TRUTH, TRUTH_IN_DARK
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.observations import Observations
+    from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
 
+    from ...words.units import UnitsInLanguage
     from .colours import Colour
 
 # so many places on a hot spot's edge are tried for its number where its middle is taken
@@ -65,6 +69,30 @@ def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
     points = [k for k, layer in enumerate(layers) if layer.type == "PlantsLayer"]
     under = min([*points, len(layers)])
     return [*layers[:under], *spots[:1], *layers[under:], *spots[1:]]
+
+
+def treated(
+    treatments: Sequence[KeptTreatment], field: Field, units: UnitsInLanguage, *, dark: bool = False
+) -> list[Layer]:
+    """Return what was treated of a plot, if anything was: its tint, and its outline."""
+    rows = []
+    for one in treatments:
+        product, day = one.application.product, units.day(one.on)
+        text = texts.TIP_TREATED.format(day=day)
+        if product:
+            text = texts.TIP_TREATED_WITH.format(day=day, product=texts.isolated(product))
+        rows += [
+            {"p": np.round(shapely.get_coordinates(part.exterior), 7).tolist(), "t": text}
+            for part in shapely.get_parts(one.place.area.intersection(field.boundary))
+            if part.geom_type == "Polygon"
+        ]
+    colour = TREATED_IN_DARK if dark else TREATED
+    return [
+        Layer("PolygonLayer", rows, id="treated", get_polygon="p", get_fill_color=[*colour, 26],
+              stroked=False),
+        Layer("PathLayer", rows, id="treated-edge", get_path="p", get_color=list(colour),
+              width_min_pixels=2, get_width=0.4),
+    ] if rows else []  # fmt: skip
 
 
 def blocks(field: Field, *, dark: bool = False) -> list[Layer]:

@@ -1,13 +1,17 @@
 """What a day's map shows: made once for what it shows, and anew once something is recorded."""
 
+from datetime import timedelta
+
 import numpy as np
 import pytest
+from shapely import MultiPolygon, box
 
 from app.show import map_layers
 from app.show.maps import colours
 from app.state import chosen_day
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Application
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.app.shown_plants import plants_in
 from tests.monitoring.seasons import BEGINS, Insects, a_season
@@ -157,3 +161,25 @@ def test_a_day_is_played_anew_where_its_route_is_another_one(choices):
     assert len(first["stops"]) == len(route)
     longer = chosen(choices.plot, choices.records, robot=choices.robot, day="2026-11-18")
     assert map_layers.day_map(longer).play["key"] != first["key"]
+
+
+def test_what_was_treated_lately_is_shown_with_its_day_and_product(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    west, south, east, north = season.plot.field.boundary.bounds
+    half = MultiPolygon([box(west, south, east, (south + north) / 2)])
+    season.treat(BEGINS, 0.8, half, application=Application("soap"))
+    done = season.treat(BEGINS + timedelta(days=3), 0.8)
+    tips = ["treated on 2026-04-06: \u2068soap\u2069", "treated on 2026-04-09"]
+    for days, said in ((0, tips[:1]), (3, tips), (13, tips), (14, tips[1:]), (17, [])):
+        day = map_layers.day_map(in_season(season, BEGINS + timedelta(days=days)))
+        shown = [layer for layer in day.layers if layer.id == "treated"]
+        assert [row["t"] for layer in shown for row in layer.data] == said
+        assert ("treated" in {one.key for one in day.switches if one.on}) == bool(said)
+        assert ("treated" in {one["of"] for one in day.legend}) == bool(said)
+    season.undo(done.batch)
+    day = map_layers.day_map(in_season(season, BEGINS + timedelta(days=3)))
+    (shown,) = [layer for layer in day.layers if layer.id == "treated"]
+    assert [row["t"] for row in shown.data] == tips[:1]
+    # under the plants, which can be tapped
+    ids = [layer.id for layer in day.layers]
+    assert ids.index("treated") < ids.index("plants-chance")

@@ -253,6 +253,12 @@ def loops_reached(function):
     return seen
 
 
+def loops_run():
+    """Return the code of all loops that ran so far: Python tells nobody when one is called."""
+    every = [one for one in gc.get_objects() if isinstance(one, Dispatcher) and one.overloads]
+    return {function.__code__ for one in every for function in loops_reached(one.py_func)}
+
+
 def _own_part(code):
     """Return what a body does itself, without the functions and classes in it."""
     consts = tuple(one for one in code.co_consts if not isinstance(one, CodeType))
@@ -285,6 +291,7 @@ class Warm:
         sys.settrace(lambda frame, *_: self.at_import.add(frame.f_code))
         self.session = collected(tree, self.files)
         sys.settrace(None)
+        self.at_import |= loops_run()
         self.items = {item.nodeid: item for item in self.session.items}
         self.functions = functions_within(tree / "fieldmon")
         self.answers = answers_kept("fieldmon")
@@ -461,9 +468,10 @@ class Warm:
         sys.meta_path.insert(0, _Instead(name, file, now))
         files = list(dict.fromkeys(one.split("::")[0] for one in tests))
         folder = self.session.config._tmp_path_factory._given_basetemp
+        # before tests are found: what their modules hold is worked out by these loops, too
+        _compile_anew(lambda one: one.__code__.co_filename == file)
         self.session = collected(self.tree, [self.tree / one for one in files])
         self.session.config._tmp_path_factory._given_basetemp = folder
-        _compile_anew(lambda one: one.__code__.co_filename == file)
         found = {item.nodeid: item for item in self.session.items}
         return [found[one] for one in tests]  # one that is not there any more was noticed
 

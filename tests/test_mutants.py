@@ -158,6 +158,10 @@ def twice(x):
 @loop
 def seats(x):
     return twice(x) + 1
+
+@loop
+def never(x):
+    return x
 """
 
 
@@ -167,7 +171,12 @@ def test_a_fault_shows_in_loops_that_were_compiled_before(tmp_path, monkeypatch)
     monkeypatch.syspath_prepend(str(tmp_path))
     import loops_of_mutants
 
+    every = (loops_of_mutants.seats, loops_of_mutants.twice, loops_of_mutants.never)
+    codes = [one.py_func.__code__ for one in every]
+    assert not mutants_warm.loops_run().intersection(codes)
     assert loops_of_mutants.seats(4) == 9
+    # what ran while tests were found cannot be changed where it stands: they may hold its results
+    assert mutants_warm.loops_run().intersection(codes) == {*codes[:2]}
     monkeypatch.setattr("fieldmon.compute.jit._KeptLoops.load_overload", lambda *_: None)
     monkeypatch.setattr("fieldmon.compute.jit._KeptLoops.save_overload", lambda *_: None)
     standing = mutants_warm.functions_within(file)

@@ -34,7 +34,8 @@ def test_ages_are_whole_days_without_a_gap():
 
 @pytest.mark.parametrize("dark", [False, True])
 def test_every_layer_that_can_be_switched_has_its_signs_in_its_own_colours(dark):
-    parts = {part["of"]: part["items"] for part in legends.signs(dark=dark)}
+    parts = {part["of"]: part["items"] for part in legends.signs(dark=dark, treated=True)}
+    assert {part["of"] for part in legends.signs(dark=dark)} == parts.keys() - {"treated"}
     switched = set(map_layers.PARTS) - {"numbers", "rows", "plan", "before"}
     assert set(parts) == switched, "numbers are words, and a plan has signs of its own"
     route, hot = (
@@ -42,5 +43,7 @@ def test_every_layer_that_can_be_switched_has_its_signs_in_its_own_colours(dark)
     )
     assert [sign[:2] for sign in parts["route"]] == [("line", route), ("ring", colours.GATE)]
     assert parts["hot"][0][:2] == ("outline", hot)
+    treated = colours.TREATED_IN_DARK if dark else colours.TREATED
+    assert parts["treated"][0][:2] == ("outline", treated)
     seen, unseen = parts["records"]
     assert (seen[0], unseen[0]) == ("dot", "ring")

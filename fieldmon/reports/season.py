@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
 from fieldmon.reports.charts import DayChart
 from fieldmon.reports.content import (
@@ -279,11 +281,13 @@ def _batches(facts: _Facts) -> Block:
     batches = facts.season.batches()
     if not batches:
         return Listing(words.BATCHES, (words.BATCHES_NONE,))
-    rows = []
+    rows, clock = [], local_clock(facts.season.plot.field)
     for one in batches:
         kind = words.BATCH_KINDS[one.kind]
         said = worded(words.BATCH_UNDONE, kind=kind) if one.undone else kind
-        rows.append((one.at[:16].replace("T", " "), said, one.source, one.who, figure(one.rows)))
+        at = clock.at(datetime.fromisoformat(one.at))
+        when = f"{facts.units.day(at.date())} {at:%H:%M}"
+        rows.append((when, said, one.source, one.who, figure(one.rows)))
     return Table(
         words.BATCHES, words.BATCH_COLUMNS, tuple(rows), (0.2, 0.24, 0.32, 0.14, 0.1),
         rest=words.BATCHES_REST, left=(0, 1, 2, 3),

@@ -1,6 +1,7 @@
 """A season on four pages: its figures are the season's."""
 
-from datetime import timedelta
+from datetime import datetime, timedelta
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import pytest
@@ -79,10 +80,14 @@ def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(of_se
     assert [int(row[0]) for row in rows] == np.unique(line).tolist()
 
 
-def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season, worked):
+def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season, worked, last):
     rows = table(of_season, "What was recorded").rows
     assert [row[2] for row in rows] == [batch.source for batch in worked.batches()]
     assert {row[3] for row in rows if row[1] == "inspections"} == {"נועה"}
+    # by the clock of the plot, in the chosen way of writing dates
+    dotted = season_report(worked, last, Units(date_like="16.11.2026"))
+    at = datetime.fromisoformat(worked.batches()[0].at).astimezone(ZoneInfo("Asia/Jerusalem"))
+    assert table(dotted, "What was recorded").rows[0][0] == f"{at:%d.%m.%Y %H:%M}"
     (treated,) = table(of_season, "Treatments").rows
     on = str(BEGINS + timedelta(days=2))
     assert treated == (on, "Oil", f"{len(worked.plot.grid):,}", "70 %", "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -26,10 +27,11 @@ def opened(files: Iterable[Path]) -> list[Season]:
     seasons = [Season(file) for file in files]
     for one, other in combinations(seasons, 2):
         if one.is_copy(other.path):
+            pasted = shlex.join([str(one.path), str(other.path)])
             raise SettingError(
                 f"Each season must be given once, but {one.path} and {other.path} are the same or "
                 "copies of one: what both hold would stand there twice. Leave one away, or bring "
-                f"them together first: fieldmon merge {one.path.name} {other.path.name}"
+                f"them together first: fieldmon merge {pasted}"
             )
     return seasons
 

@@ -1,5 +1,6 @@
 """Several seasons into one: each counts once."""
 
+import shlex
 import shutil
 
 import pytest
@@ -12,7 +13,11 @@ from tests.cli.test_merge import worked
 
 
 def test_a_season_is_not_taken_twice_nor_beside_its_copy(run, season, tmp_path):
-    copy = shutil.copy(season, tmp_path / "copy.gpkg")
+    copy = shutil.copy(season, tmp_path / "my copy.gpkg")
+    with pytest.raises(SettingError) as told:
+        opened([season, copy])
+    # the way out can be pasted, whatever the files are called and wherever they are
+    assert shlex.split(str(told.value).rpartition(": fieldmon merge ")[2]) == [str(season), str(copy)]
     worked(run, season, "a.csv", {0}, "Ann")
     for other in (season, copy):
         with pytest.raises(SettingError, match="would stand there twice"):

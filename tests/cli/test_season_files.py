@@ -17,7 +17,10 @@ def test_a_season_is_not_taken_twice_nor_beside_its_copy(run, season, tmp_path):
     with pytest.raises(SettingError) as told:
         opened([season, copy])
     # the way out can be pasted, whatever the files are called and wherever they are
-    assert shlex.split(str(told.value).rpartition(": fieldmon merge ")[2]) == [str(season), str(copy)]
+    assert shlex.split(str(told.value).rpartition(": fieldmon merge ")[2]) == [
+        str(season),
+        str(copy),
+    ]
     worked(run, season, "a.csv", {0}, "Ann")
     for other in (season, copy):
         with pytest.raises(SettingError, match="would stand there twice"):

@@ -84,3 +84,12 @@ def test_a_day_is_planned_by_what_can_be_seen():
     seen = belief.in_sight
     assert (seen.chance < belief.chance).all()
     assert (seen.chance > 0.3 * belief.chance).all()
+
+
+def test_it_matters_once_anything_came_that_may_hide():
+    fresh = Latency.none(np.full(N, 1e-6))
+    assert not fresh.matters
+    # some nights hide nothing any more, and most plants got nothing
+    came = np.where(EVERY == 7, 0.1, 0.0)
+    assert (fresh.hides > 0).any()
+    assert fresh.overnight(np.zeros(N), came).matters

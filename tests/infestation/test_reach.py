@@ -91,3 +91,17 @@ def test_short_jumps_are_followed_as_far_as_those_of_any_pest_and_the_farthest_a
     for scale_m, plants in ((1.0, RADIUS), (500.0, 30)):
         made = pest_kernels(np.array([3.0, 3.0]), DistanceKernel("exponential", scale_m))
         assert made.shape == (6, 2 * plants + 1, 2 * plants + 1)
+
+
+def test_a_pest_may_jump_half_or_twice_as_far_and_farther_along_or_across_the_rows():
+    made = pest_kernels(np.array([3.0, 3.0]), DistanceKernel("exponential", 6.0))
+    away = np.arange(made.shape[1]) - made.shape[1] // 2
+    # how far jumps go on average (rows run along the second axis)
+    along, across = (np.sqrt((made.sum(axis=side) * away**2).sum(axis=1)) for side in (1, 2))
+    far = np.hypot(along, across)
+    assert along[:3] == pytest.approx(across[:3], rel=0.01)
+    assert far[1] == pytest.approx(far[0] / 2, rel=0.2)
+    assert 1.3 < far[2] / far[0] < 2.0, "cut where it is followed no farther"
+    assert along[3] == pytest.approx(along[0], rel=0.1)
+    assert along[3] / across[3] == pytest.approx(3.0, rel=0.25)
+    assert 1.5 < across[4] / along[4] < 3.0

@@ -174,3 +174,12 @@ def test_a_night_that_tells_nothing_apart_brings_the_same_chances(pest):
         told, untold = told.overnight(spread), untold.untold_night(spread)
         np.testing.assert_allclose(untold.chance, told.chance, rtol=1e-12)
         np.testing.assert_allclose(untold.pair_chance, told.pair_chance, rtol=1e-10)
+
+
+def test_without_arrivals_is_left_what_did_not_come_from_outside():
+    belief = TracedPairs.of(GRID, FLAT)
+    shares = np.zeros_like(belief.shares)
+    shares[:, AT_START], shares[:200, ANYWHERE], shares[:200, AT_START] = 1.0, 0.75, 0.25
+    left = replace(belief, shares=shares).without_arrivals
+    assert left.chance[:200] == pytest.approx(0.25 * FLAT[:200], rel=1e-6)
+    assert left.chance[200:] == pytest.approx(FLAT[200:], rel=1e-6)

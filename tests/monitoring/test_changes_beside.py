@@ -10,6 +10,7 @@ import pytest
 
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes_beside import _reaches
 from tests.monitoring.open_elsewhere import as_qgis, beside, left_by_a_crash
 from tests.monitoring.seasons import a_plot, a_season, state, three_results
 
@@ -131,3 +132,22 @@ def test_while_another_program_writes_its_journal_is_left_alone(path):
         db.execute("UPDATE fieldmon SET value = value WHERE key = 'revision'")
         assert len(Season(path).history.inspections) == 12
         db.execute("ROLLBACK")
+
+
+def test_a_page_behind_the_files_last_that_is_not_in_the_log_is_missed():
+    def log(*frames):
+        size, salts = 512, b"saltsalt"
+        head = bytes(8) + size.to_bytes(4) + bytes(4) + salts + bytes(8)
+        parts = [
+            page.to_bytes(4) + ends.to_bytes(4) + salts + bytes(8) + bytes(size)
+            for page, ends in frames
+        ]
+        return head + b"".join(parts)
+
+    # a season of four pages grew to six
+    assert _reaches(log((2, 0), (5, 0), (6, 6)), 4)
+    assert not _reaches(log((2, 0), (5, 6)), 4)
+    assert not _reaches(log((2, 0), (6, 6)), 4)
+    # what no transaction ended does not count
+    assert _reaches(log((2, 4), (5, 0)), 4)
+    assert not _reaches(log((2, 3)), 4)

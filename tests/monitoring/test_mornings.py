@@ -3,14 +3,18 @@
 import shutil
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
 import pytest
 
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.mornings import Mornings
+from fieldmon.monitoring.mornings import Mornings, _causes, _packed, _unpacked
+from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS
 
 LAST = 21
@@ -187,3 +191,23 @@ def test_few_mornings_of_a_long_season_are_at_hand(path):
     mornings.of(LAST)
     assert len(mornings.known) <= 2 + LAST // 8 + 8
     assert the_same(mornings.of(3), all_over(season)[3])
+
+
+def test_who_inspected_matters_where_they_find_as_much_as_they_are_said_to(path):
+    history = Season(path).history
+    n = len(history.inspections)
+    by = [
+        replace(history, inspections=replace(history.inspections, who=np.full(n, name, object)))
+        for name in ("Ann", "Ben")
+    ]
+    assert _causes(by[0], LAST) == _causes(by[1], LAST)
+    team = [replace(one, detection_of={"ann": 0.9, "ben": 0.5}) for one in by]
+    assert _causes(team[0], LAST) != _causes(team[1], LAST)
+
+
+def test_a_morning_of_another_plot_is_not_taken():
+    first = TracedPairs.of(rectangle(4, 5), np.full(20, 0.1))
+    kept = _packed(first.learn(np.array([3], np.int32), np.array([True]), Learning(0.8)))
+    assert the_same(_unpacked(first, kept), _unpacked(first, kept))
+    # as many plants, and other pairs
+    assert _unpacked(TracedPairs.of(rectangle(2, 10), np.full(20, 0.1)), kept) is None

@@ -1,8 +1,10 @@
 """What can be saved of a damaged season is saved."""
 
 import random
+import shutil
 import sqlite3
 from contextlib import closing
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import History
 from fieldmon.monitoring.salvage import salvage
 from tests.monitoring.seasons import BEGINS, state
+from tests.monitoring.test_seasons_of_old import FOLDER
 
 
 def test_a_damaged_file_is_refused_or_right_and_mostly_salvaged(path, tmp_path):
@@ -149,3 +152,27 @@ def test_a_file_that_exists_is_never_overwritten(path, tmp_path):
     with pytest.raises(FileProblem, match="exists already"):
         salvage(path, tmp_path / "mine.gpkg")
     assert (tmp_path / "mine.gpkg").read_text() == "mine"
+
+
+def test_a_log_with_a_hole_is_begun_anew_and_says_why(path, tmp_path):
+    with closing(sqlite3.connect(path)) as db:
+        (n,) = db.execute("SELECT count(*) FROM log").fetchone()
+        assert n > 2
+        db.execute("DELETE FROM log WHERE fid = 2")
+        db.commit()
+    salvage(path, tmp_path / "rescued.gpkg")
+    rescued = Season(tmp_path / "rescued.gpkg")
+    first = rescued.log()[0]
+    assert "could not be saved whole" in first.sentence()
+    assert rescued.held_to_log() == ()
+
+
+def test_a_file_of_an_earlier_version_is_salvaged_with_the_columns_that_it_has(tmp_path):
+    old = shutil.copy(FOLDER / "of_format_6.gpkg", tmp_path / "old.gpkg")
+    done = salvage(Path(old), tmp_path / "rescued.gpkg")
+    assert done.whole
+    was = Season(shutil.copy(old, tmp_path / "opened.gpkg")).history
+    now = Season(tmp_path / "rescued.gpkg").history
+    assert len(was.inspections) > 0
+    assert now.inspections.plant.tolist() == was.inspections.plant.tolist()
+    assert len(now.treatments) == len(was.treatments)

@@ -70,3 +70,9 @@ def test_entry_over_a_night_in_which_clocks_are_put_back_is_at_the_second_two_oc
 def test_what_nobody_said_is_not_shown():
     nothing = WaitingPeriod(datetime(2026, 5, 1, tzinfo=UTC), None, None, JERUSALEM)
     assert (nothing.harvest_from, nothing.entry_from) == (None, None)
+
+
+def test_entry_over_a_night_in_which_clocks_are_put_forward_is_after_all_its_hours():
+    ended = end_of(JERUSALEM, date(2026, 3, 26), time(20))
+    # at 02:00 it was 03:00: by the clock alone only eleven hours would have passed
+    assert WaitingPeriod(ended, None, 12, JERUSALEM).entry_from == datetime(2026, 3, 27, 9)

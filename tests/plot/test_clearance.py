@@ -42,6 +42,13 @@ def test_without_a_width_nothing_changes():
     assert aisles.told_shut() == ""
 
 
+def test_of_a_robot_with_room_everywhere_nothing_is_said():
+    aisles = Aisles.of(rectangle(4, 6, Planting(row_spacing_m=4.0))).for_robot(Robot(width_m=0.5))
+    assert aisles.clearance is not None
+    assert not aisles.shut.any()
+    assert aisles.told_shut() == ""
+
+
 def test_half_the_width_the_canopy_and_a_little_are_kept_off_plants():
     grid = rectangle(4, 6, Planting(half_canopy_m=0.4))
     needs = Clearance.of(Robot(width_m=0.6, length_m=0.8), grid)

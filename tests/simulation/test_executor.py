@@ -164,3 +164,14 @@ def _allow_no_failure(dask_scheduler):
 
 def _die(setting, seeds):  # noqa: ARG001
     os._exit(1)
+
+
+def test_who_leaves_threads_leaves_no_chunk_that_has_not_begun():
+    def left():
+        with executor.threads(1) as workers:
+            done = [workers.pool.submit(time.sleep, 0.05) for _ in range(50)]
+            raise KeyboardInterrupt(done)
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        left()
+    assert sum(one.cancelled() for one in stopped.value.args[0]) >= 45

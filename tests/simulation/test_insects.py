@@ -178,3 +178,20 @@ def test_the_map_believes_of_the_pest_that_there_is_unless_told_of_another():
     assert ages_of(pest=living)
     assert ages_of(believed_pest=living)
     assert not ages_of()
+
+
+def test_without_hidden_nights_what_is_new_shows_the_next_morning():
+    def rule(grid, infested, key):
+        return night(grid, infested, Spread(1.0), key)
+
+    insects = NightInsects(GRID, at(40), rule)
+    insects.pass_night(np.empty(0, np.int32), 0, key(0))
+    assert insects.showing(1).sum() == insects.infested.sum() == 5
+
+
+def test_a_map_that_is_told_no_rate_goes_by_the_pest_s_nights():
+    living = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
+    settings = SeasonSettings(pest=living)
+    assert settings.believed_night(GRID)(3) == living.spread(3, GRID.frame)
+    told = SeasonSettings(pest=living, believed_spread=Spread(0.3))
+    assert told.believed_night(GRID)(3) == Spread(0.3)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.simulation.team_worth import marginal_gains, told
+from fieldmon.simulation.team_worth import _round, marginal_gains, told
 
 
 def losses(**changes):
@@ -63,3 +63,11 @@ def test_what_saves_little_but_surely_is_known_to_save():
     (gain,) = marginal_gains({1: lost + np.array([0.4, 0.5, 0.6]), 2: lost})
     assert 0.0 < gain.saved.low < 1.0
     assert gain.known
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [(0.04, "0.0"), (-0.04, "0.0"), (-1.0, "-1.0"), (-1.02, "-1.0"), (12.4, "12")],
+)
+def test_nothing_is_nothing_and_a_loss_keeps_its_sign(value, said):
+    assert _round(value) == said

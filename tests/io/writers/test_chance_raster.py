@@ -8,6 +8,7 @@ import rasterio
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pyproj import Transformer
+from scipy.spatial import cKDTree
 
 from fieldmon.errors import FileProblem, PlotError
 from fieldmon.io.rasters.read import read_raster
@@ -180,3 +181,25 @@ def test_the_zone_is_that_of_the_longitude_and_the_last_one_ends_the_world(lon, 
         write_chance_raster(grid, chances(grid), tmp_path / "map.tif")
         with opened(tmp_path / "map.tif") as picture:
             assert picture.crs.to_epsg() == 32_000 + 100 * north + zone
+
+
+@pytest.mark.parametrize("bearing", [0.0, 33.0, 71.0])
+def test_a_pixel_is_filled_where_its_middle_lies_on_a_plants_ground(bearing):
+    grid = lay(PLOT, Planting(bearing, 4.0, 1.5))
+    made = chance_raster(grid, chances(grid))
+    rows, columns = np.indices(made.values.shape)
+    east = made.west_m + (columns.ravel() + 0.5) * made.pixel_m
+    north = made.north_m - (rows.ravel() + 0.5) * made.pixel_m
+    back = Transformer.from_crs(made.crs, "OGC:CRS84", always_xy=True)
+    xy_m = grid.frame.xy_m(np.stack(back.transform(east, north), axis=1))
+    # how far beyond a plant's half spacings each pixel is, of the nearest plant so measured
+    half_m = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2
+    beyond, _ = cKDTree(grid.xy_m / half_m).query(xy_m / half_m, p=np.inf)
+    filled = made.values.ravel() != NODATA
+    own = np.zeros(made.values.shape, bool)
+    to_map = Transformer.from_crs("OGC:CRS84", made.crs, always_xy=True)
+    at = np.stack(to_map.transform(*grid.lonlat().T), axis=1)
+    own[((made.north_m - at[:, 1]) / made.pixel_m).astype(int),
+        ((at[:, 0] - made.west_m) / made.pixel_m).astype(int)] = True  # fmt: skip
+    clear = np.abs(beyond - 1.0) > 0.02
+    assert (filled == ((beyond < 1.0) | own.ravel()))[clear].all()

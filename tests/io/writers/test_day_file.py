@@ -7,7 +7,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fieldmon.io.writers import write_handoff
@@ -92,6 +92,7 @@ def test_any_name_can_stand_in_xml_and_stays_as_long(text):
     ]
 
 
+@example(n=1, most=2)
 @given(n=st.integers(0, 1200), most=st.integers(2, 260))
 def test_pieces_of_a_line_are_short_and_each_begins_where_the_last_one_ended(n, most):
     cut = pieces(n, most)

@@ -99,6 +99,9 @@ def test_the_map_is_true_to_scale_and_not_mirrored(tmp_path, plan):
     text = path.read_text("utf-8")
     metres = float(re.search(r'class="scale">([\d.]+) m<', text).group(1))
     bar_mm = float(re.search(r"h([\d.]+)\" stroke", text).group(1))
+    # a round number, and about a fifth of the drawing
+    assert f"{metres:e}"[0] in "125"
+    assert 186.0 / 5 / 2.6 < bar_mm <= 186.0 / 5 + 0.01
     assert bar_mm / metres == pytest.approx(abs(turn), rel=0.01)
     north = float(re.search(r"rotate\((-?[\d.]+)\)", text).group(1))
     # up on paper, turned back, is this angle from the rows, whose bearing is the frame's

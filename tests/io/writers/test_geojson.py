@@ -2,10 +2,12 @@
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pyogrio
 
+from fieldmon.infestation.forecast import Forecast
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
@@ -96,3 +98,21 @@ def test_figures_of_the_day_have_three_decimals_and_stops_are_counted_from_one(t
         assert said[name] == round(value, 3)
     assert [stop["properties"]["order"] for stop in stops] == list(range(1, len(route) + 1))
     assert all("block" not in stop["properties"] for stop in stops)  # there is one only
+
+
+def test_who_drives_is_said_of_a_team_alone(tmp_path):
+    plan = usual()
+    told = [
+        geojson_of(replace(plan, notes=replace(plan.notes, who=who)), tmp_path)["features"][0]
+        for who in (None, "Ann")
+    ]
+    assert [one["properties"].get("who") for one in told] == [None, "Ann"]
+
+
+def test_the_mornings_ahead_are_said_with_their_interval(tmp_path):
+    plan = usual()
+    ahead = Forecast(np.array([4.04, 5.0]), np.array([2, 3.0]), np.array([7, 9.0]), None)
+    noted = replace(plan, notes=replace(plan.notes, ahead=lambda: ahead))
+    said = json.dumps(geojson_of(noted, tmp_path))
+    for part in ("[4.0, 5.0]", "[2.0, 3.0]", "[7.0, 9.0]", '"chance": 0.9', ahead.basis()):
+        assert part in said

@@ -125,6 +125,11 @@ def test_comment_and_description_say_the_same_as_converters_drop_one_of_them(tmp
         assert "plant" in waypoint.find(f"{GPX}cmt").text
 
 
+def test_the_file_is_named_by_its_day(tmp_path, plan):
+    root = gpx_of(plan, tmp_path)
+    assert root.find(f"{GPX}metadata/{GPX}name").text == plan.title
+
+
 def test_the_bounds_hold_every_place_and_nothing_more(tmp_path, plan):
     root = gpx_of(plan, tmp_path)
     bounds = root.find(f"{GPX}metadata/{GPX}bounds")

@@ -2,6 +2,7 @@
 
 import json
 from collections import deque
+from types import SimpleNamespace
 
 import numpy as np
 import pyproj
@@ -302,3 +303,10 @@ def test_on_crooked_plots_the_graph_joins_every_stop_and_crosses_no_row(field, s
     there = plan.grid.frame.xy_m(enu.lonlat(graph.xy_m))
     assert np.abs(there[graph.of_vertex] - plan.route.line_m).max() < 0.005
     assert not any(crosses_rows(plan.grid, there[pair]) for pair in graph.pair)
+
+
+def test_who_stands_at_the_gate_faces_the_way_that_comes():
+    xy_m = np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]])
+    graph = SimpleNamespace(xy_m=xy_m, of_vertex=np.arange(3))
+    plan = SimpleNamespace(route=SimpleNamespace(line_stop=np.array([0, 1, 2])))
+    assert nav2._yaws(plan, graph) == pytest.approx([0.0, 0.0, np.pi / 2])

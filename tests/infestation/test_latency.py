@@ -56,6 +56,14 @@ def test_a_clean_look_leaves_what_hides():
     assert (by_candidate[1:] < 1e-5).all()
 
 
+def test_what_came_to_one_plant_last_night_is_reckoned_with():
+    calm = Latency.none(FLAT)
+    assert not calm.matters
+    came = np.where(EVERY == 7, 0.1, 0.0)
+    assert calm.overnight(FLAT, FLAT + came).matters
+    assert not calm.overnight(FLAT, FLAT).matters
+
+
 def test_what_came_shows_once_its_nights_are_over():
     latency = Latency.none(np.full(N, 1e-6)).overnight(np.zeros(N), np.full(N, 0.1))
     for nights in range(NIGHTS + 1):

@@ -102,6 +102,12 @@ def test_a_pest_may_jump_half_or_twice_as_far_and_farther_along_or_across_the_ro
     assert along[:3] == pytest.approx(across[:3], rel=0.01)
     assert far[1] == pytest.approx(far[0] / 2, rel=0.2)
     assert 1.3 < far[2] / far[0] < 2.0, "cut where it is followed no farther"
+    # and where nothing is cut: how fast chances fall from the third plant of a row to the ninth
+    # (at 27 m three times as many plants share a jump as at 9 m)
+    middle = made.shape[1] // 2
+    falls = np.log(made[:3, middle, middle + 3] / made[:3, middle, middle + 9] / 3)
+    assert falls[0] == pytest.approx(6 * 3.0 / 6.0, rel=0.02)
+    assert falls[0] / falls[1:] == pytest.approx([0.5, 2.0], rel=0.02)
     assert along[3] == pytest.approx(along[0], rel=0.1)
     assert along[3] / across[3] == pytest.approx(3.0, rel=0.25)
     assert 1.5 < across[4] / along[4] < 3.0

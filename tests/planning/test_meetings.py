@@ -2,13 +2,17 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from fieldmon.planning.meetings import meetings
 from fieldmon.planning.plan import plan_in
-from fieldmon.plot.layout import rectangle
+from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
+from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.base import NEVER, Sampler, Scene, Stops
+from tests.bent import FRAME
 from tests.second_by_second import in_aisles
 
 AISLES = Aisles.of(rectangle(4, 10))
@@ -84,3 +88,34 @@ def test_meetings_are_when_two_stand_in_one_aisle_second_by_second(seed):
     for a, b in ((0, 1), (0, 2), (1, 2)):
         together = (there[a] == there[b]) & (there[a] >= 0)
         np.testing.assert_array_equal(told[a, b][clear[a, b]], together[clear[a, b]])
+
+
+def test_where_rows_bend_who_drives_through_is_met_and_all_that_start_later_as_much_later():
+    turn, far_m = np.meshgrid(np.linspace(0.0, 0.4, 12), 60.0 + 3.0 * np.arange(5))
+    arcs = [
+        np.stack([far_m * np.sin(turn + block / 2), far_m * np.cos(turn + block / 2)], axis=2)
+        for block in range(3)
+    ]
+    lines = np.concatenate(arcs)
+    rows = RowLines(Polylines.each(list(lines)), np.repeat(np.arange(3), 5))
+    plants = lines.reshape(-1, 2), np.repeat(np.arange(15), 12)
+    ground = Ground(None, shapely.MultiPolygon())
+    planting = Planting(row_spacing_m=3.0, plant_spacing_m=2.5)
+    aisles = Aisles.of(bent_grid(FRAME, rows, plants, ground, planting))
+    robot, n = Robot(row_change_s=0.0, turn_180_s=0.0), len(aisles.grid)
+    never = np.full(n, NEVER, np.int32)
+    scene = Scene(aisles, robot, np.full(n, 0.1), never, seconds_left=robot.day_s)
+    # both from the first block to the third, through the second
+    across = [plan_in(scene, Fixed(0, n - 1)).route] * 2
+    begun_s = np.array([0.0, 10.0])
+    now, later = meetings(across, begun_s), meetings(across, begun_s + 1000.0)
+    between = set(aisles.grid.corridor[5:10].tolist())
+    passing = [met for met in now if met.aisle in between]
+    assert passing
+    left_s, came_s = across[0].leave_s[0], across[0].arrive_s[1]
+    for met in passing:  # the whole way counts: while both are on it
+        assert (met.since_s, met.until_s) == pytest.approx((10.0 + left_s, came_s))
+    for one, other in zip(now, later, strict=True):
+        assert (one.who, one.aisle) == (other.who, other.aisle)
+        moved_s = np.subtract(other[2:], one[2:])
+        assert moved_s == pytest.approx([1000.0, 1000.0])

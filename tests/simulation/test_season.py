@@ -44,6 +44,16 @@ def test_the_same_seed_gives_the_same_season(name):
         assert (one.chance == other.chance).all()
 
 
+def test_who_stays_where_a_day_ends_begins_the_first_at_the_gate():
+    stays, comes_back = (
+        season(robot=Robot(hours=2.0, returns=returns)) for returns in (False, True)
+    )
+    for first in (stays[0].work, comes_back[0].work):
+        assert first.plant[0] == stays[0].work.plant[0]
+        assert first.arrive_s[0] == comes_back[0].work.arrive_s[0]
+    assert stays[1].work.arrive_s[0] < comes_back[1].work.arrive_s[0]
+
+
 def test_another_seed_gives_another_season():
     assert any(
         (a.infested != b.infested).any() for a, b in zip(season(), season(seed=4), strict=True)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.io.writers import write_handoff
+from fieldmon.io.writers.field_sheet import _scale_bar
 from fieldmon.plot.layout import rectangle
 from tests.io.writers.handed import DAYS, START, crooked, day, long, usual
 from tests.pages import HOSTILE, Page, held
@@ -82,6 +83,19 @@ def test_names_are_text_whatever_stands_in_them(tmp_path, name):
             "td",
         ),
     }
+
+
+def test_a_bar_of_any_scale_is_the_longest_round_number_of_a_fifth_of_the_drawing():
+    size = np.array([186.0, 240.0])
+    for scale in np.geomspace(0.05, 50.0, 60):
+        bar = str(_scale_bar(scale, size))
+        metres = float(re.search(r">([\d.e+-]+) m<", bar).group(1))
+        there_could_be = [k * 10.0**n for n in range(-3, 5) for k in (1, 2, 5)]
+        fitting = [round_m for round_m in there_could_be if round_m * scale <= 186.0 / 5]
+        assert metres == pytest.approx(max(fitting))
+        assert float(re.search(r"h([\d.]+)", bar).group(1)) == pytest.approx(
+            metres * scale, abs=0.01
+        )
 
 
 def test_the_map_is_true_to_scale_and_not_mirrored(tmp_path, plan):

@@ -205,11 +205,15 @@ def walk(new_tab, address):
     for name in ("study", "prior", ""):
         page.goto(f"{address}/{name}")
         page.wait_for_selector(IDLE, timeout=240_000)
-    for name, room in rooms.ROOMS.items():
-        open_room(page, texts.ROOMS[name])
-        for part in room.parts[1:]:
-            open_part(page, texts.PARTS[part])
-            page.wait_for_selector(IDLE, timeout=180_000)
+    try:
+        for name, room in rooms.ROOMS.items():
+            open_room(page, texts.ROOMS[name])
+            for part in room.parts[1:]:
+                open_part(page, texts.PARTS[part])
+                page.wait_for_selector(IDLE, timeout=180_000)
+    except PlaywrightTimeout as late:
+        late.add_note(f"Its console says: {complaints}; asked last: {page.requests[-12:]}")
+        raise
     still(page)
     page.close()
     return page.requests, complaints

@@ -86,7 +86,7 @@ def in_panel(name: str) -> None:
     load(map_sent=waiting.begin())
     from .actions import ways_in  # noqa: PLC0415
     from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
-    from .actions.choosing import choose, mark_day  # noqa: PLC0415
+    from .actions.choosing import choose, choose_display, mark_day  # noqa: PLC0415
     from .state import notices  # noqa: PLC0415
 
     if name == "today" and ways_in.is_first_run():
@@ -102,11 +102,13 @@ def in_panel(name: str) -> None:
     with body:
         if chosen.choices is None:
             view("plot").bring(chosen.problem)
-            return
-        try:
-            view("rooms").show(name, chosen.choices, view)
-        except FieldmonError as error:
-            st.error(of_error(error))
+        else:
+            try:
+                view("rooms").show(name, chosen.choices, view)
+            except FieldmonError as error:
+                st.error(of_error(error))
+    with foot:
+        choose_display()
 
 
 def wide(run: str, *, of_plot: bool) -> None:
@@ -116,11 +118,14 @@ def wide(run: str, *, of_plot: bool) -> None:
             view(run).show()
             return
         load()
-        from .actions.choosing import choose  # noqa: PLC0415 - as just loaded
+        from .actions.choosing import choose, choose_display  # noqa: PLC0415 - as just loaded
 
         with st.expander(texts.PLOT_FROM):
-            chosen = choose(st.container(), st.container(), lambda _: None)
+            head, foot = st.container(), st.container()
+            chosen = choose(head, foot, lambda _: None)
         view(run).show(chosen.choices)
+        with foot:
+            choose_display()
 
 
 def page_study() -> None:

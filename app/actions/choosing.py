@@ -59,7 +59,7 @@ _DAY = "day {source}"
 
 
 def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
-    """Show where and when in the head, who works and how numbers are written in the foot.
+    """Show where and when in the head, who works in the foot.
 
     Returns the choices, or the problem that keeps from them.
     """
@@ -90,9 +90,6 @@ def _chosen(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
             return Chosen(_from_season(source, foot))
         except FieldmonError as error:
             return Chosen(problem=error)
-        finally:
-            with foot:
-                _units()
 
 
 def _source() -> str:
@@ -250,10 +247,14 @@ def _work() -> tuple[Robot, str]:
     return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler
 
 
-# -- units
+# -- language and units
 
 
-def _units() -> None:
+def choose_display() -> None:
+    """Show how words and numbers are written.
+
+    What was chosen is known before, see `chosen_units.units`: so a page shows it below all else.
+    """
     with st.expander(texts.DISPLAY):
         code = widget_memory.show(
             st.selectbox, texts.LANGUAGE, list(language.LANGUAGES), key=chosen_language.KEY,

@@ -7,12 +7,13 @@ of a season, then another page, was the sample estate again.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import streamlit as st
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 T = TypeVar("T")
 _VALUES, _PAGE, _BEGINS = "widget values", "page", "widget begins"
@@ -21,6 +22,17 @@ _VALUES, _PAGE, _BEGINS = "widget values", "page", "widget begins"
 def turn(page: str) -> None:
     """Say which page is about to be shown."""
     st.session_state[_PAGE] = page
+
+
+@contextmanager
+def part(name: str) -> Iterator[None]:
+    """Show a part of the page: a box of several parts begins again, as on another page."""
+    page = st.session_state.get(_PAGE, "")
+    turn(f"{page} {name}")
+    try:
+        yield
+    finally:
+        turn(page)
 
 
 def first(key: str, value: object) -> None:

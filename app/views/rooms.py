@@ -26,6 +26,5 @@ def show(name: str, choices: Choices, view: Callable[[str], ModuleType]) -> None
             default=parts[0], format_func=texts.PARTS.__getitem__, required=True,
             label_visibility="collapsed", width="stretch",
         )  # fmt: skip
-    # a box that several parts have begins again with what was chosen, as on another page
-    widget_memory.turn(f"{name} {part}")
-    view(part).show(choices)
+    with widget_memory.part(part):
+        view(part).show(choices)

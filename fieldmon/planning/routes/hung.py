@@ -67,7 +67,8 @@ class HungLadder(Priced):
         self, ladder: Ladder, reward: Float, robot: Robot, parts: dict[int, HungPart]
     ) -> None:
         super().__init__(ladder, reward, robot)
-        self.robot, self.parts = robot, parts
+        self.robot = robot
+        self.parts: dict[int, HungPart] = parts
         self._bonus = _BONUS * float(reward.sum())
         self._must: dict[int, bool] = {}
 

@@ -20,7 +20,8 @@ from fieldmon.compute.jit import loop
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.travel import Aisles, TravelTable
+    from fieldmon.plot.travel import Aisles
+    from fieldmon.plot.travel_table import TravelTable
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

@@ -13,7 +13,8 @@ from fieldmon.planning.routes.hung import _tree, hung
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock

@@ -103,8 +103,8 @@ class Drawn(NamedTuple):
     passes: Int
 
 
-class PartBeside(Protocol):
-    """A part of the plot that is visited from an element of a ladder; see `HungPart`."""
+class HangingPart(Protocol):
+    """A part of the plot that hangs on a ladder as one of its elements; see `PendantPart`."""
 
     def stops(self, price: float, *, ends: bool) -> Int:
         """Return the plants of the best drive in it at a price, in order."""
@@ -132,7 +132,7 @@ class Priced:
         self.tables: Tables = tables(returns=robot.returns)
         self.reward = np.ascontiguousarray(reward[ladder.plant])
         self.of_all = reward
-        self.parts: Mapping[int, PartBeside] = {}
+        self.parts: Mapping[int, HangingPart] = {}
         self._gate_passes = np.array(GATE_CLOSED if robot.returns else GATE_OPEN)
         e, s = len(ladder.across_m), len(self.tables.passes)
         ways = e, N_WAYS

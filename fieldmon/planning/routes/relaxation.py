@@ -84,8 +84,8 @@ class Rungs(NamedTuple):
     ``low``, ``high`` ``(k,)``: x of the rung's ends; ``up`` ``(k,)`` its y. ``apart_m``
     ``(2, 2, k + 1, k + 1)``: from the left (0) or right (1) end of an aisle to the left or right
     end of another; the last is the gate, whose two ends are one. ``part`` ``(k,)``: 0 of an aisle;
-    of a part of the plot that is one place of this ladder (`fieldmon.planning.routes.hung`), 1 on
-    its left headland, 2 on its right.
+    of a part of the plot that is one place of this ladder (see `pendant_parts`), 1 on its left
+    headland, 2 on its right.
     """
 
     low: Float

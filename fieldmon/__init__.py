@@ -51,9 +51,10 @@ if TYPE_CHECKING:
     from fieldmon.planning import routes
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
-    from fieldmon.plot.block import Block, cut_blocks
+    from fieldmon.plot.block import Block
+    from fieldmon.plot.block_cutting import cut_blocks
     from fieldmon.plot.field import Field
-    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.planting import Planting
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
     from fieldmon.samplers import SAMPLERS
@@ -96,9 +97,10 @@ _MODULES = {
     "pests.weather": ("Weather",),
     "planning.plan": ("DayPlan", "plan_day"),
     "planning.route": ("Route",),
-    "plot.block": ("Block", "cut_blocks"),
+    "plot.block": ("Block",),
+    "plot.block_cutting": ("cut_blocks",),
     "plot.field": ("Field",),
-    "plot.layout": ("Planting",),
+    "plot.planting": ("Planting",),
     "plot.plot": ("Plot",),
     "plot.robot": ("Robot", "Viewpoints", "rover", "scout"),
     "samplers": ("SAMPLERS",),

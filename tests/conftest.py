@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 from fieldmon.compute.cores import cores
-from tests.both_ends import BothEnds, in_order, workers
+from tests.xdist_order import BothEnds, in_order, workers
 
 # tests start some hundred processes: what these and the other worker import is made into bytecode
 # once, whatever the environment says

@@ -13,7 +13,8 @@ from shapely import MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 
 _part = st.floats(0.0, 1.0)

@@ -9,7 +9,7 @@ import shapely
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.plot.grid import row_corners
+from fieldmon.plot.row_course import row_corners
 
 from ..show.map_view import Drawable
 from ..show.maps import marks

@@ -187,4 +187,4 @@ def treated(choices: Choices, advice: Advice) -> None:
 
 def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report
     made = advice_report(choices.season, choices.on, advice, choices.units.of_library, product)
-    return made.said_in(language.tongue(language.current()))
+    return made.said_in(language.for_reports(language.current()))

@@ -10,7 +10,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.io.writers import FORMATS, HandoffPlan
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 
 from ..show import qr_code
 from ..state import chosen_day, phone

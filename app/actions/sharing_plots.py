@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.io.writers.geojson import RouteNotes, route_geojson
+from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.io.writers.geojson import route_geojson
 
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.digest import digest
+
 from ..state import cached, ground, map_tiles, web_maps
 from ..state.kept_ground import GroundPicture, GroundTiles
 from .maps import ground_layers
@@ -57,7 +59,7 @@ def of(choices: Choices) -> GroundShown:
 
 
 def _picture(made: GroundPicture, *, dark: bool) -> list[Layer]:
-    key = f"ground {cached.digest(made.picture.image)} {made.picture.corners_lonlat.tolist()}"
+    key = f"ground {digest(made.picture.image)} {made.picture.corners_lonlat.tolist()}"
     return cached.layers(
         f"{key} {made.is_relief} {dark}",
         lambda: [ground_layers.picture(made.picture, is_relief=made.is_relief, dark=dark)],

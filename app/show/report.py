@@ -25,13 +25,13 @@ def of_season(choices: Choices) -> Report:
     made = cached.season_report(
         choices.key, choices.revision, choices.day, choices.units.of_library, choices.season
     )
-    return made.said_in(language.tongue(language.current()))
+    return made.said_in(language.for_reports(language.current()))
 
 
 def for_certifier(choices: Choices) -> Report:
     """Return the record of the season up to the chosen day, for a certifier."""
     made = certification_report([choices.season], choices.units.of_library, choices.on)
-    return made.said_in(language.tongue(language.current()))
+    return made.said_in(language.for_reports(language.current()))
 
 
 def of_day(choices: Choices) -> Report:
@@ -49,8 +49,8 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
     )  # fmt: skip
-    units, tongue = choices.units.of_library, language.tongue(language.current())
-    return lambda: day_report(facts, units).said_in(tongue)
+    units, of_paper = choices.units.of_library, language.for_reports(language.current())
+    return lambda: day_report(facts, units).said_in(of_paper)
 
 
 def _settings(choices: Choices) -> WorkSettings:

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
+from fieldmon.compute.digest import digest
 from fieldmon.io.options import Upload
-
-from . import cached
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -81,7 +80,7 @@ def keep(kind: str, parts: Iterable[UploadedFile]) -> None:
     if not uploads:
         take_out(kind)
         return
-    key = cached.digest(b"".join(u.name.encode() + b"\0" + u.data for u in uploads))
+    key = digest(b"".join(u.name.encode() + b"\0" + u.data for u in uploads))
     brought()[kind] = File(key, uploads[0] if len(uploads) == 1 else uploads, kind)
 
 

@@ -8,8 +8,7 @@ leaves out, beside a key that stands for them.
 from __future__ import annotations
 
 from dataclasses import replace
-from hashlib import sha256
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import streamlit as st
@@ -17,7 +16,7 @@ import streamlit as st
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation import hotspots
 from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io import prepare, read
@@ -54,6 +53,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
     from fieldmon.io.rasters.values import Backdrop, RasterOptions
@@ -81,20 +81,16 @@ if TYPE_CHECKING:
     from fieldmon.simulation.worker import LaidPlot
 
     from .comparison import ComparisonSettings
-    from .tried_answers import TriedAnswer
 
     Array = NDArray[np.float64]
+
+Tried = TypeVar("Tried")
 
 #: shown while something is made, in the language of whoever waits
 _WORKING = Late(lambda: texts.WORKING)
 _FEW = 24
 # maps of many plants are megabytes each, a day's figures a few numbers
 _MAPS, _DAYS, _FILMS = 60, 200, 6
-
-
-def digest(data: bytes) -> str:
-    """Return what stands for a file's bytes in keys."""
-    return sha256(data).hexdigest()
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
@@ -119,7 +115,7 @@ def records(
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=_WORKING)
-def tried(key: str, _make: Callable[[], TriedAnswer]) -> TriedAnswer:  # noqa: ARG001
+def tried(key: str, _make: Callable[[], Tried]) -> Tried:  # noqa: ARG001
     """Return what an answer to an import's question leads to, be it nowhere.
 
     `key` stands for the file, what was answered before, and the answer.

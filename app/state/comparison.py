@@ -14,9 +14,9 @@ import numpy as np
 
 from fieldmon.planning.members import Teamwork
 from fieldmon.simulation import executor
-from fieldmon.simulation.design import Combination
 from fieldmon.simulation.experiment import Experiment, Memory, run
 from fieldmon.simulation.statistics import half_interval, summary_statistics
+from fieldmon.simulation.study_plot import Combination
 from fieldmon.simulation.team_season import Team
 from fieldmon.simulation.team_worth import marginal_gains
 from fieldmon.simulation.worker import LaidPlot, simulated_season

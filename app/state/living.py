@@ -21,7 +21,7 @@ from .brought_files import brought, messages_of, settled
 if TYPE_CHECKING:
     from datetime import date
 
-    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.import_report import Imported
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather

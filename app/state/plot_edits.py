@@ -10,7 +10,7 @@ import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 
 from fieldmon.errors import SettingError
-from fieldmon.plot.block import cut_blocks
+from fieldmon.plot.block_cutting import cut_blocks
 from fieldmon.plot.row_drawing import smooth_row
 
 from ..words import texts

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.compute.digest import digest
+
 from ..actions import driving, watching
 from ..show import drive_play, field_map
 from ..state import cached, widget_memory
@@ -37,7 +39,7 @@ def show(choices: Choices) -> None:
         return
     else:
         data = brought.getvalue()
-        key = f"{shown} {cached.digest(data)}"
+        key = f"{shown} {digest(data)}"
         day = cached.recorded_drive(key, data, choices.plot, scene)
         st.caption(texts.DRIVE_BELIEVED)
     if day is not None:

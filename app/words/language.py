@@ -18,8 +18,8 @@ from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 from fieldmon.compute.wording import Worded, written
-from fieldmon.reports.tongue import ENGLISH as ENGLISH_TONGUE
-from fieldmon.reports.tongue import Tongue
+from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
+from fieldmon.reports.language import ReportLanguage
 
 from .kept_sentences import KnownSentences, sentences
 
@@ -334,17 +334,17 @@ def _is_wordless(words: str) -> bool:
 
 
 @cache
-def tongue(language: str) -> Tongue:
+def for_reports(language: str) -> ReportLanguage:
     """Return a language for reports."""
     if language == ENGLISH:
-        return ENGLISH_TONGUE
+        return ENGLISH_REPORTS
     found = _catalogue(language)
 
     def say(sentence: str) -> str:
         return _said(sentence, language) or _said_again(str(sentence), language) or str(sentence)
 
-    letters = "".join(sorted({*"".join(found.words()), *ENGLISH_TONGUE.letters}))
-    return Tongue(language, say, language in RIGHT_TO_LEFT, letters)
+    letters = "".join(sorted({*"".join(found.words()), *ENGLISH_REPORTS.letters}))
+    return ReportLanguage(language, say, language in RIGHT_TO_LEFT, letters)
 
 
 # -- numbers and dates

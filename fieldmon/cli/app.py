@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.beside import app_package
+from fieldmon.cli.app_package import app_package
 from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import SettingError
 

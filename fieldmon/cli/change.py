@@ -20,9 +20,9 @@ from fieldmon.cli.options import (
     sampler_settings,
 )
 from fieldmon.cli.pest_options import PestOptions, tell_pest
+from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
-from fieldmon.cli.tongues import Language, checked_language
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:

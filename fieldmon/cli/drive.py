@@ -168,7 +168,8 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     """Drive a day on a plot of which nothing but records is known."""
     import numpy as np  # noqa: PLC0415
 
-    from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior_settings import PriorSettings  # noqa: PLC0415
     from fieldmon.monitoring.monitor import Monitor  # noqa: PLC0415
     from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
     from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415

@@ -28,10 +28,10 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
+from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
-from fieldmon.cli.tongues import Language, checked_language
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:

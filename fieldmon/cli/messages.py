@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
-    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.prepare import Laid, SourceMessage
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.infestation.pest_in_weather import PestInWeather
-    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
@@ -134,7 +134,7 @@ def check_no_pest(name: str | None, study: str) -> None:
 def prior_of(living: PestInWeather | None, on: date) -> PriorSettings:
     """Return how records become chances for a day, as the pest and its weather have it."""
     from fieldmon.infestation.pest_prior import prior_for  # noqa: PLC0415
-    from fieldmon.infestation.prior import PriorSettings  # noqa: PLC0415
+    from fieldmon.infestation.prior_settings import PriorSettings  # noqa: PLC0415
 
     usual = PriorSettings()
     if living is None:

@@ -2,86 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
-    Bounded,
-    Every,
-    Feature,
-    MaybePlotFile,
-    OneSampler,
-    Outputs,
-    Passing,
-    PlotFiles,
-    Records,
-    Robots,
-    StartTime,
-    WorkDate,
-    WorkerOptions,
     sampler_of,
 )
 from fieldmon.cli.outputs import (
-    ChanceMap,
     check_outputs,
     day_in_words,
     write_chance_map,
     write_routes,
 )
-from fieldmon.cli.pest_options import PestOptions, prior_of
+from fieldmon.cli.pest_options import prior_of
+from fieldmon.cli.plan_options import PlanOptions
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.plan_team import plan_team
 from fieldmon.cli.preparing import estate, prepared
-from fieldmon.cli.sampler_names import USUAL_SAMPLER
-from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.io.sources import PlotRequest
 
-Now = Annotated[
-    str | None,
-    typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
-]
-EveryPlot = Annotated[
-    bool,
-    typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
-]
-
 # how far below what no route can exceed a plan says that another one may find more
 _FAR_BELOW = 0.05
-
-
-@dataclass(frozen=True)
-class PlanOptions:
-    """What `fieldmon plan` is told."""
-
-    plot: MaybePlotFile = None
-    output: Outputs = None
-    observations: Records = None
-    feature: Feature = None
-    sampler: OneSampler = USUAL_SAMPLER
-    every: Every = None
-    on: WorkDate = None
-    start: StartTime = "06:00"
-    now: Now = None
-    worker: WorkerOptions = field(default_factory=WorkerOptions)
-    living: PestOptions = field(default_factory=PestOptions)
-    files: PlotFiles = field(default_factory=PlotFiles)
-    chance_map: ChanceMap = None
-    every_plot: EveryPlot = False
-    bound: Bounded = True
-    robots: Robots = None
-    passing: Passing = None
-
-    def starts(self) -> WorkStart:
-        """Return when the work starts, as it was told."""
-        return WorkStart(day(self.on), clock(self.start))
 
 
 @with_options
@@ -138,7 +87,7 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
 def _plan_one(options: PlanOptions) -> None:
     import numpy as np  # noqa: PLC0415
 
-    from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+    from fieldmon.io.writers.day_file import RouteNotes  # noqa: PLC0415
     from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
     from fieldmon.planning.bound_wording import share_above  # noqa: PLC0415
     from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415

@@ -22,7 +22,7 @@ from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.batch import plan_task
 
 if TYPE_CHECKING:

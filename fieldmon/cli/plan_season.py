@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from datetime import date
     from pathlib import Path
 
-    from fieldmon.cli.plan import PlanOptions
+    from fieldmon.cli.plan_options import PlanOptions
     from fieldmon.monitoring import Season
 
 # what a plan of a season may be told; all else was chosen when it began

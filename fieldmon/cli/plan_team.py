@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from fieldmon.cli.plan import PlanOptions
+    from fieldmon.cli.plan_options import PlanOptions
     from fieldmon.planning.team import TeamPlan
 
 
@@ -66,7 +66,7 @@ def _tell(planned: TeamPlan, begins: datetime) -> None:
 
 
 def _write(planned: TeamPlan, begins: datetime, plot: str, files: list[list[Path]]) -> None:
-    from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+    from fieldmon.io.writers.day_file import RouteNotes  # noqa: PLC0415
 
     parts = zip(planned.members, planned.days, planned.starts_s, files, strict=True)
     for member, day, starts_s, paths in parts:

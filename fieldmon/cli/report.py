@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.report_languages import Language, spoken
 from fieldmon.cli.times import day
-from fieldmon.cli.tongues import Language, spoken
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -82,9 +82,9 @@ def report(  # noqa: PLR0913, PLR0917 - the command's options
 
     checked_ending(output)
     kept = opened(seasons)
-    tongue, units = spoken(language, kept[0].settings.language)
+    spoken_in, units = spoken(language, kept[0].settings.language)
     made = _certified(kept, until, units) if certification else _made(kept[0], on, until, units)
-    to = write_report(made.said_in(tongue), output, paper.value)
+    to = write_report(made.said_in(spoken_in), output, paper.value)
     typer.echo(f"Report written to {to}")
 
 

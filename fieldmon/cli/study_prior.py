@@ -149,7 +149,8 @@ def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
     """Return a plot of a file; its records' chance map if there are any, on their last day."""
     import numpy as np  # noqa: PLC0415
 
-    from fieldmon.infestation.prior import PriorSettings, prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior_settings import PriorSettings  # noqa: PLC0415
     from fieldmon.io.options import PlotOptions  # noqa: PLC0415
     from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource  # noqa: PLC0415
     from fieldmon.studies.thesis.chapter5.sites import Site  # noqa: PLC0415

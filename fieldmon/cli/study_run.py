@@ -18,7 +18,8 @@ from fieldmon.cli.waiting import counting
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from fieldmon.simulation.design import Design, StudyPlot
+    from fieldmon.simulation.design import Design
+    from fieldmon.simulation.study_plot import StudyPlot
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class StudyOptions:
         from fieldmon.io.options import PlotOptions  # noqa: PLC0415
         from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource  # noqa: PLC0415
         from fieldmon.plot.plot import planting_of  # noqa: PLC0415
-        from fieldmon.simulation.design import StudyPlot  # noqa: PLC0415
+        from fieldmon.simulation.study_plot import StudyPlot  # noqa: PLC0415
 
         told = day(self.on)
         records = None if self.observations is None else RecordSource(self.observations)

@@ -1,4 +1,4 @@
-"""What a belief about a plot is, how findings change it, and the bounds of its chances."""
+"""What a belief about a plot is, and how findings change it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -16,11 +15,6 @@ if TYPE_CHECKING:
     from fieldmon.infestation.spread import Spread
     from fieldmon.infestation.tracing import Traces
     from fieldmon.pests.pest import Pest
-
-#: no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
-LEAST_CHANCE, MOST_CHANCE = 1e-6, 1.0 - 1e-6
-# round the loops of a lattice the same news arrives twice: no plant settles its neighbour more
-_MOST_DEPENDENCE = 0.9
 
 
 @dataclass(frozen=True)
@@ -96,29 +90,3 @@ class Belief(Protocol):
     def treated(self, left: NDArray[np.float64]) -> Belief:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
         ...
-
-
-@inlined
-def lesser(a: float, b: float) -> float:
-    """Return the lesser of two numbers: as `min`, which looks out for NaN and so is slower."""
-    return a if a < b else b  # noqa: FURB136 - see above
-
-
-@inlined
-def greater(a: float, b: float) -> float:
-    """Return the greater of two numbers, likewise."""
-    return a if a > b else b  # noqa: FURB136 - see above
-
-
-@inlined
-def bounded_chance(chance: float) -> float:
-    """Return a chance that evidence can undo."""
-    return lesser(greater(chance, LEAST_CHANCE), MOST_CHANCE)
-
-
-@inlined
-def bounded_pair_chance(pair_chance: float, p: float, q: float) -> float:
-    """Return the chance of both of two plants, within what their own chances p and q allow."""
-    independent = p * q
-    most = independent + _MOST_DEPENDENCE * (lesser(p, q) - independent)
-    return greater(lesser(pair_chance, most), greater(p + q - 1.0, 0.0))

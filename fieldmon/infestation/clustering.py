@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
-from fieldmon.infestation.belief import bounded_pair_chance
+from fieldmon.infestation.chance_bounds import bounded_pair_chance
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,8 @@ import numpy as np
 from fieldmon.compute.random_streams import coin_table
 from fieldmon.infestation.dispersal import ToAdjacent, dispersal_of, settle
 from fieldmon.infestation.pest_in_weather import kernel_of
-from fieldmon.infestation.prior import PriorSettings, edge_chance
+from fieldmon.infestation.prior import edge_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,8 +11,8 @@ from scipy import fft
 
 from fieldmon.compute.jit import loop, routine
 from fieldmon.compute.random_streams import coin, coin_bits
-from fieldmon.infestation.belief import lesser
 from fieldmon.infestation.cells import Cells
+from fieldmon.infestation.chance_bounds import lesser
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.jit import loop
-from fieldmon.infestation.belief import LEAST_CHANCE, MOST_CHANCE
+from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

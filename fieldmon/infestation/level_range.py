@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import MOST_CHANCE
+from fieldmon.infestation.chance_bounds import MOST_CHANCE
 from fieldmon.infestation.plot_estimate import doubted_level
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_pairs import TracedPairs

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.jit import loop
-from fieldmon.infestation.belief import bounded_pair_chance, greater, lesser
+from fieldmon.infestation.chance_bounds import bounded_pair_chance, greater, lesser
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

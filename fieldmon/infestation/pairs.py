@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
-from fieldmon.infestation.belief import (
+from fieldmon.infestation.chance_bounds import (
     LEAST_CHANCE,
     MOST_CHANCE,
     bounded_chance,

@@ -14,7 +14,7 @@ from fieldmon.pests.development import daily_warmth, whole_generation
 if TYPE_CHECKING:
     from datetime import date
 
-    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
 

@@ -11,7 +11,8 @@ from scipy import fft
 
 from fieldmon.infestation.cells import Cells
 from fieldmon.infestation.kernels import DistanceKernel
-from fieldmon.infestation.prior import PriorSettings, edge_chance
+from fieldmon.infestation.prior import edge_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

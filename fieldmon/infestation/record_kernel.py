@@ -14,7 +14,7 @@ import numpy as np
 
 from fieldmon.compute.jit import kept, routine
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.belief import MOST_CHANCE
+from fieldmon.infestation.chance_bounds import MOST_CHANCE
 from fieldmon.infestation.nearby_plants import (
     FAR_M,
     PlantRows,
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.observations import Observations
-    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]

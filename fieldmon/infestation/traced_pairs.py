@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import loop, part
-from fieldmon.infestation.belief import LEAST_CHANCE, MOST_CHANCE, lesser
 from fieldmon.infestation.calibration_slope import no_inspections, note_inspection
+from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE, lesser
 from fieldmon.infestation.clustering import (
     CLUSTERING,
     ClusterEstimate,

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
-from fieldmon.infestation.belief import bounded_chance, lesser
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.cells import Cells
+from fieldmon.infestation.chance_bounds import bounded_chance, lesser
 from fieldmon.infestation.clustering import no_evidence
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, PlotError, SettingError
 from fieldmon.io.import_report import Imported, doubtful, dropped, guessed, seen
 from fieldmon.io.read import read_blocks, read_rows
-from fieldmon.plot.block import blocks_from_outline, cut_blocks
+from fieldmon.plot.block_cutting import blocks_from_outline, cut_blocks
 from fieldmon.plot.plot import planting_of
 
 if TYPE_CHECKING:

@@ -35,7 +35,7 @@ from fieldmon.io.readers.nearby import on_other_plots, on_plants, records_on_plo
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot, planting_of
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from fieldmon.compute.arguments import must_be, numbers, shown
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.monitoring.history import BeliefSettings, in_sight
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label

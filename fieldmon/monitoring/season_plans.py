@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes, season_log
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day

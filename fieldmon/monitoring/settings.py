@@ -14,7 +14,7 @@ from fieldmon.compute.arguments import day_of, must_be, must_be_known, of_kind
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json

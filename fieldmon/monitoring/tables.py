@@ -22,9 +22,10 @@ from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, 
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import PlantGrid, row_corners, row_label
+from fieldmon.plot.grid import PlantGrid, row_label
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_course import row_corners
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:

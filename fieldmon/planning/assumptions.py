@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.robot import USUAL_TIMES, Robot, scout

@@ -11,7 +11,12 @@ import shapely
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
-    from fieldmon.planning.plan import DayPlan
+    from numpy.typing import NDArray
+
+    from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
+
+    Floats = NDArray[np.float64]
 
 # chances from which a colour holds: pale to dark, told apart without hue too
 _FROM = np.array([0.0, 0.01, 0.02, 0.05, 0.10, 0.25, 0.50])
@@ -25,9 +30,12 @@ _ROUTE = [20, 80, 200]
 _SURROUNDINGS = 1.3  # what the view shows, as a share of the plot's extent
 
 
-def deck_of(day: DayPlan) -> pdk.Deck:
-    """Return a deck with the layers ``plot``, ``plants``, ``route`` and ``stops``."""
-    grid, route = day.scene.grid, day.route
+def deck_of(route: Route, chance: Floats) -> pdk.Deck:
+    """Return a deck with the layers ``plot``, ``plants``, ``route`` and ``stops``.
+
+    `chance` is what is believed of every plant, ``(n,)``.
+    """
+    grid = route.aisles.grid
     area = grid.frame.geometry_lonlat(grid.drivable_m)
     layers = [
         pdk.Layer(
@@ -35,16 +43,16 @@ def deck_of(day: DayPlan) -> pdk.Deck:
             get_line_color=[110, 120, 110], line_width_min_pixels=2,
         ),
         pdk.Layer(
-            "ScatterplotLayer", _plants(day), id="plants", get_position="at", pickable=True,
-            get_fill_color="colour", get_radius=0.3 * min(grid.plant_spacing_m, grid.row_spacing_m),
-            radius_min_pixels=1.5,
+            "ScatterplotLayer", _plants(grid, chance), id="plants", get_position="at",
+            pickable=True, get_fill_color="colour", radius_min_pixels=1.5,
+            get_radius=0.3 * min(grid.plant_spacing_m, grid.row_spacing_m),
         ),
         pdk.Layer(
             "PathLayer", [{"path": route.line_lonlat().tolist()}], id="route", get_path="path",
             get_color=_ROUTE, width_min_pixels=2,
         ),
         pdk.Layer(
-            "ScatterplotLayer", _stops(day), id="stops", get_position="at", pickable=True,
+            "ScatterplotLayer", _stops(route), id="stops", get_position="at", pickable=True,
             filled=False, stroked=True, get_line_color=_ROUTE, line_width_min_pixels=1.5,
             get_radius=0.4 * grid.plant_spacing_m, radius_min_pixels=3,
         ),
@@ -54,9 +62,9 @@ def deck_of(day: DayPlan) -> pdk.Deck:
     )
 
 
-def _plants(day: DayPlan) -> list[dict[str, Any]]:
-    label = row_label(day.scene.grid)
-    colours = _COLOURS[np.searchsorted(_FROM, day.chance, side="right") - 1]
+def _plants(grid: PlantGrid, believed: Floats) -> list[dict[str, Any]]:
+    label = row_label(grid)
+    colours = _COLOURS[np.searchsorted(_FROM, believed, side="right") - 1]
     return [
         {
             "at": at,
@@ -64,18 +72,17 @@ def _plants(day: DayPlan) -> list[dict[str, Any]]:
             "text": f"row {row}, plant {number}: chance {100 * chance:.1f} %",
         }
         for at, colour, row, number, chance in zip(
-            day.scene.grid.lonlat().round(8).tolist(),
+            grid.lonlat().round(8).tolist(),
             colours.tolist(),
             *(label.line.tolist(), label.number.tolist()),
-            day.chance.tolist(),
+            believed.tolist(),
             strict=True,
         )
     ]
 
 
-def _stops(day: DayPlan) -> list[dict[str, Any]]:
-    route = day.route
-    label = row_label(day.scene.grid, route.plant)
+def _stops(route: Route) -> list[dict[str, Any]]:
+    label = row_label(route.aisles.grid, route.plant)
     columns = (
         route.stops_lonlat().round(8).tolist(),
         *(label.line.tolist(), label.number.tolist()),

@@ -11,9 +11,10 @@ import numpy as np
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations, must_be_records
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.local_clock import local_clock
@@ -116,7 +117,7 @@ class DayPlan:
         """
         from fieldmon.planning.explore import deck_of  # noqa: PLC0415 - loads pydeck
 
-        return deck_of(self)
+        return deck_of(self.route, self.chance)
 
 
 def plan_day(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from shapely import LineString
 
     from fieldmon.infestation.forecast import Forecast
-    from fieldmon.io.writers.geojson import RouteNotes
+    from fieldmon.io.writers.day_file import RouteNotes
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Scene
@@ -142,7 +142,7 @@ class Route:
         ['day.gpx']
         """
         from fieldmon.io.writers import HandoffPlan, write_handoff  # noqa: PLC0415 - as above
-        from fieldmon.io.writers.geojson import RouteNotes  # noqa: PLC0415
+        from fieldmon.io.writers.day_file import RouteNotes  # noqa: PLC0415
 
         return write_handoff(HandoffPlan(self, self.notes or RouteNotes("", "")), path, as_format)
 

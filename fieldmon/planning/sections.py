@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
-    from fieldmon.plot.travel import Aisles, Clock, TravelTable
+    from fieldmon.plot.travel import Aisles, Clock
+    from fieldmon.plot.travel_table import TravelTable
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

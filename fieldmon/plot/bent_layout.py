@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.aisle_lines import RowAisles
-    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.planting import Planting
     from fieldmon.plot.polylines import Polylines
     from fieldmon.plot.projection import Frame
 

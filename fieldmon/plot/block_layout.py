@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.block import Block
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.planting import Planting
     from fieldmon.plot.projection import Frame
     from fieldmon.plot.strips import Intervals
 

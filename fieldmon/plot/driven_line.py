@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.road_network import RoadNetwork
-    from fieldmon.plot.travel import TravelTable
+    from fieldmon.plot.travel_table import TravelTable
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import shapely
 
 from fieldmon.compute.arrays import offsets, read_only
 from fieldmon.compute.wording import counted, worded
@@ -289,17 +288,6 @@ def plant_at(grid: PlantGrid, line: int, number: int) -> int:
             )
         )
     return plant
-
-
-def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
-    """Return each row as a line to draw, ``(k, 2)`` metres: its ends, and where it bends."""
-    ends = zip(grid.row_start[:-1].tolist(), (grid.row_start[1:] - 1).tolist(), strict=True)
-    if grid.aisles_m is None:
-        return [grid.xy_m[[a, b]] for a, b in ends]
-    from fieldmon.plot.row_course import row_courses  # noqa: PLC0415 - it compiles
-
-    thin = shapely.simplify(row_courses(grid), 0.05, preserve_topology=False)
-    return [shapely.get_coordinates(line) for line in thin]
 
 
 def before_rows(

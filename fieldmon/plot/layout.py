@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,6 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.compute.arrays import offsets, runs
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
@@ -27,6 +26,7 @@ from fieldmon.plot.measured_rows import (
     said_rows,
 )
 from fieldmon.plot.plant_names import PlantNames
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,
@@ -58,72 +58,6 @@ if TYPE_CHECKING:
 
 _PARAN = (35.15, 30.36)
 _LOWER, _UPPER = 1, -1
-
-
-@dataclass(frozen=True)
-class Planting:
-    """How a plot is planted.
-
-    Parameters
-    ----------
-    row_bearing_deg
-        Direction of the rows, degrees clockwise from true north; None: found.
-    row_spacing_m, plant_spacing_m
-        From row to row, and from plant to plant in a row (thesis: 4 m and 3 m).
-    headland_m
-        Free of plants at both ends of each row, where rows are changed. The default leaves 4 m:
-        enough for a small robot or a person; tractors take 6 m or more.
-    half_canopy_m
-        How far plants reach to each side of their middle; None: not known. It counts for robots
-        whose width is known.
-    faces
-        1: a row is inspected from the aisle above it (higher y). 2: both faces of each row are
-        inspected, each from its own aisle.
-    outer_faces
-        With two faces: whether faces that look at no other row are inspected too (the thesis
-        leaves them out).
-    """
-
-    row_bearing_deg: float | None = None
-    row_spacing_m: float = 4.0
-    plant_spacing_m: float = 3.0
-    headland_m: float = 4.0
-    faces: int = 1
-    outer_faces: bool = True
-    half_canopy_m: float | None = None
-
-    def __post_init__(self) -> None:
-        must_hold_numbers(self, "The planting's")
-        if self.half_canopy_m is not None and not 0.0 <= self.half_canopy_m <= 10.0:
-            raise SettingError(
-                worded(
-                    "A planting's half_canopy_m must be 0 to 10 metres, but it is {half_canopy_m}.",
-                    half_canopy_m=self.half_canopy_m,
-                )
-            )
-        for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
-            if not 0.05 <= getattr(self, name) <= 1000.0:
-                raise SettingError(
-                    worded(
-                        "A planting's {name} must be 0.05 to 1000 metres, but it is {value}.",
-                        name=name,
-                        value=getattr(self, name),
-                    )
-                )
-        if self.row_bearing_deg is not None and not np.isfinite(self.row_bearing_deg):
-            raise SettingError(
-                worded(
-                    "A row bearing must be a number of degrees, but it is {row_bearing_deg}.",
-                    row_bearing_deg=self.row_bearing_deg,
-                )
-            )
-        if self.faces not in (1, 2):
-            raise SettingError(
-                worded(
-                    "A row has 1 or 2 faces to inspect, but the planting says {faces}.",
-                    faces=self.faces,
-                )
-            )
 
 
 def lay(field: Field, planting: Planting) -> PlantGrid:

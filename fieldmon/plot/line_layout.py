@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.aisle_lines import RowAisles
     from fieldmon.plot.bent_layout import Ground
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.planting import Planting
     from fieldmon.plot.projection import Frame
 
     Float = NDArray[np.float64]

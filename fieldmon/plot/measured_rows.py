@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.layout import Planting
     from fieldmon.plot.plant_names import PlantNames
+    from fieldmon.plot.planting import Planting
     from fieldmon.plot.projection import Frame
 
     Float = NDArray[np.float64]

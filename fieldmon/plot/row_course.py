@@ -38,6 +38,15 @@ def row_courses(grid: PlantGrid) -> NDArray[np.object_]:
     return np.asarray(shapely.linestrings(xy_m, indices=owner), np.object_)
 
 
+def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
+    """Return each row as a line to draw, ``(k, 2)`` metres: its ends, and where it bends."""
+    ends = zip(grid.row_start[:-1].tolist(), (grid.row_start[1:] - 1).tolist(), strict=True)
+    if grid.aisles_m is None:
+        return [grid.xy_m[[a, b]] for a, b in ends]
+    thin = shapely.simplify(row_courses(grid), 0.05, preserve_topology=False)
+    return [shapely.get_coordinates(line) for line in thin]
+
+
 def _in_gaps(grid: PlantGrid, aisles: Polylines, aisle: Int) -> tuple[Int, Float]:
     """Return where rows bend between plants ``(k, 2)``, and the plant before each."""
     row, place_m = grid.row, grid.along_m

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
-    from fieldmon.plot.layout import Planting
+    from fieldmon.plot.planting import Planting
 
     Float = NDArray[np.float64]
 

@@ -15,6 +15,7 @@ from fieldmon.compute.wording import counted
 from fieldmon.plot.clearance import Clearance, told_shut
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.road_network import RoadNetwork, find_roads, row_lines
+from fieldmon.plot.travel_table import TravelTable
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -30,41 +31,6 @@ _TOUCH_M = 0.01
 _BLOCK = 64
 # what is kept half as exactly is no more than it was
 _LESS = 1.0 - 1e-6
-
-
-class TravelTable(NamedTuple):
-    """What compiled loops need to know of a plot: plants, rows, and the ways between rows.
-
-    Parameters
-    ----------
-    x_m
-        ``(n,)`` place of each plant along its lane.
-    row
-        ``(n,)`` int32 row of each plant.
-    row_start
-        ``(r + 1,)`` offsets: plants of row k are ``row_start[k]:row_start[k + 1]``.
-    end_x_m
-        ``(r, 2)`` places of the ends of each row's lane, low and high.
-    between_m
-        ``(2r + 1, 2r + 1)`` shortest ways between lane ends: 2k is the low-x end of lane k,
-        2k + 1 its high-x end, 2r the gate.
-    corridor
-        ``(r,)`` rows with the same number are inspected from the same stretch of aisle.
-    side
-        ``(r,)`` on which side of its lane the row is: -1 lower y, +1 higher y.
-    """
-
-    x_m: Float
-    row: NDArray[np.int32]
-    row_start: NDArray[np.int64]
-    end_x_m: Float
-    between_m: Float
-    corridor: NDArray[np.int32]
-    side: NDArray[np.int8]
-
-    def __repr__(self) -> str:
-        plants, rows = counted(len(self.x_m), "plant"), counted(len(self.end_x_m), "row")
-        return f"<TravelTable: {plants} in {rows}>"
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.reports.drawing import Drawing, Lettering
-from fieldmon.reports.tongue import ENGLISH, Tongue
+from fieldmon.reports.language import ENGLISH, ReportLanguage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -133,12 +133,12 @@ class Report:
     title: str
     on: date
     sheets: tuple[Sheet, ...]
-    tongue: Tongue = ENGLISH
+    language: ReportLanguage = ENGLISH
 
-    def said_in(self, tongue: Tongue) -> Report:
+    def said_in(self, language: ReportLanguage) -> Report:
         """Return the report in a language; the plot's name stays as it is."""
-        sheets = _said(self.sheets, tongue.say)
-        return Report(self.plot, tongue.say(self.title), self.on, sheets, tongue)
+        sheets = _said(self.sheets, language.say)
+        return Report(self.plot, language.say(self.title), self.on, sheets, language)
 
     def words(self) -> Iterator[str]:
         """Yield every text that goes on paper, but not those in drawings."""

@@ -28,8 +28,8 @@ from fieldmon.reports.content import (
 )
 from fieldmon.reports.drawing import Lettering
 from fieldmon.reports.fonts import FontSet
+from fieldmon.reports.language import ENGLISH
 from fieldmon.reports.pdf_painter import PT_MM, letter, paint
-from fieldmon.reports.tongue import ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from fpdf import FPDF
 
     from fieldmon.reports.drawing import Colour
-    from fieldmon.reports.tongue import Tongue
+    from fieldmon.reports.language import ReportLanguage
 
 #: width and height, millimetres
 PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
@@ -82,7 +82,7 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         )
     from fpdf import FPDF  # noqa: PLC0415 - a second to import
 
-    fonts = FontSet.of([*report.words(), *_own_words(report.tongue)])
+    fonts = FontSet.of([*report.words(), *_own_words(report.language)])
     pdf = FPDF(format=PAPERS[paper])
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         for font in fonts.fonts:
@@ -94,7 +94,7 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         pdf.set_text_shaping(use_shaping_engine=True)
         pdf.set_auto_page_break(auto=False)
         pdf.set_title(f"{report.plot}: {report.title}")
-        pdf.set_lang(report.tongue.code)
+        pdf.set_lang(report.language.code)
         pdf.set_creation_date(datetime.combine(report.on, datetime.min.time(), UTC))
         page = _Page(pdf, fonts, PAPERS[paper], report)
         for number, sheet in enumerate(report.sheets, start=1):
@@ -102,9 +102,9 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         return bytes(pdf.output())
 
 
-def _own_words(tongue: Tongue) -> Iterator[str]:
+def _own_words(language: ReportLanguage) -> Iterator[str]:
     """Yield what drawings and pages write themselves, and all that numbers are made of."""
-    yield tongue.letters
+    yield language.letters
     yield "0123456789.,:;-–+%/()°'\" abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
@@ -120,7 +120,7 @@ class _Page:
     @property
     def mirrored(self) -> bool:
         """Whether all that has a side stands on the other one; maps and charts do not."""
-        return self.report.tongue.right_to_left
+        return self.report.language.right_to_left
 
     def _left(self, x: float, wide: float) -> float:
         """Return where a box of a width begins whose place is told from where reading begins."""
@@ -248,7 +248,7 @@ class _Page:
         letter(self.pdf, self.fonts, part, (0.0, 0.0))
 
     def _said(self, sentence: str) -> str:
-        return self.report.tongue.say(sentence)
+        return self.report.language.say(sentence)
 
     @property
     def _align(self) -> str:

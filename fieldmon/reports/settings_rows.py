@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.units import Units
     from fieldmon.infestation.pest_in_weather import PestInWeather
-    from fieldmon.infestation.prior import PriorSettings
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.spread import Spread
     from fieldmon.monitoring import Season
     from fieldmon.plot.assumed import Assumed

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Linked, PlantGrid
-    from fieldmon.plot.travel import TravelTable
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.base import WouldFind
 
     Floats = NDArray[np.float64]

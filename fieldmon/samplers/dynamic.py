@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Csr, PlantGrid
-    from fieldmon.plot.travel import TravelTable
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.base import WouldFind
 
 # the upper bits of a positive float64 rise with it, in 8 steps an octave: 7 to 13 % each

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.plot.travel import TravelTable
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.base import WouldFind
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.travel import TravelTable
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.base import WouldFind
 
 _ONLINE = 0

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Sequence
     from pathlib import Path
 
-    from fieldmon.simulation.design import Design, StudyPlot
+    from fieldmon.simulation.design import Design
+    from fieldmon.simulation.study_plot import StudyPlot
     from fieldmon.simulation.worker import ChunkSeasons
 
 # readers of datasets pass over names that begin so

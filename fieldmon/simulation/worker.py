@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.pest_prior import prior_for
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.pest_in_weather import PestInWeather
-    from fieldmon.simulation.design import Combination, StudyPlot
     from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.study_plot import Combination, StudyPlot
     from fieldmon.simulation.team_season import Team
 
     Setting = tuple[StudyPlot, Combination]

@@ -11,7 +11,8 @@ from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
 from fieldmon.io.options import ReadOptions
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from app.state.choices import Choices
 from app.words.units import UnitsInLanguage
 from fieldmon.infestation.observations import Observations
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 

@@ -25,7 +25,7 @@ from app.words import language
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from tests.app.driving import begun, opened
-from tests.app.on_screen import dressed, picture
+from tests.app.map_in_browser import dressed, picture
 from tests.paths import ROOT, SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")

@@ -23,7 +23,7 @@ from playwright.sync_api import sync_playwright
 
 from app.state import rooms
 from app.words.language import LANGUAGES
-from tests.app.on_screen import faults
+from tests.app.map_in_browser import faults
 from tests.paths import ROOT
 
 SIZES = {

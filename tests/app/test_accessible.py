@@ -17,7 +17,7 @@ from app.state.kept_ground import GroundPicture
 from app.words import texts
 from fieldmon.io.rasters.read import Backdrop
 from tests.app.driving import until
-from tests.app.on_screen import (
+from tests.app.map_in_browser import (
     IDLE,
     MAP,
     faults,

@@ -12,7 +12,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from tests.app.driving import PAGES, go, opened
-from tests.app.on_screen import IDLE, open_part, open_room, rest
+from tests.app.map_in_browser import IDLE, open_part, open_room, rest
 from tests.monitoring.seasons import a_plot
 
 EVIL = "evil.example"

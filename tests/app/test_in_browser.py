@@ -34,7 +34,7 @@ from fieldmon.plot.grid import row_label
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import scout
 from tests.app.driving import until, zipped
-from tests.app.on_screen import (
+from tests.app.map_in_browser import (
     DRAWN,
     IDLE,
     MAP,

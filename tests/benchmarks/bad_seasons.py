@@ -14,7 +14,8 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler

@@ -42,7 +42,8 @@ import shapely
 from PIL import Image
 from playwright.sync_api import Error, sync_playwright
 
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from tests.benchmarks.first_screen import DRAWN, IDLE, MAP, ROOT, answers, started
 from tests.benchmarks.test_bench_grid import crooked_plot
 from tests.conftest import CHROMIUM, FLAGS

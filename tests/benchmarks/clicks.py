@@ -24,7 +24,8 @@ import numpy as np
 from playwright.sync_api import sync_playwright
 from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from tests.benchmarks.first_screen import DRAWN, IDLE, ROOT, answers, served
 from tests.benchmarks.test_bench_grid import crooked_plot
 from tests.conftest import CHROMIUM, FLAGS

@@ -12,11 +12,11 @@ import time
 
 import numpy as np
 
-from fieldmon.planning.routes.ladder import best_walk, full_budget
+from fieldmon.planning.routes.exact_walk import best_walk, full_budget
 from fieldmon.studies.routes import milp
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.heuristics import HEURISTICS
-from tests.planning.routes.test_ladder import drive_and_check, every_walk, small
+from tests.planning.routes.test_exact_walk import drive_and_check, every_walk, small
 
 SAME = 1e-9
 

@@ -41,7 +41,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.derived_layers import map_digest
 from fieldmon.monitoring.geopackage import insert
 from fieldmon.planning.workday import draw_detections
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from tests.benchmarks.test_bench_grid import crooked_plot

@@ -25,14 +25,16 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.independent import IndependentPlants, overnight
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
-from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.prior import prior_chance, start_infested
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles

@@ -5,7 +5,8 @@ import pytest
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import Aisles, crosses_rows
 

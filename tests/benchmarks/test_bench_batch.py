@@ -61,9 +61,10 @@ def test_a_study_of_seasons(benchmark, tmp_path, workers):
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.plot import planting_of
     from fieldmon.simulation import executor
-    from fieldmon.simulation.design import Design, StudyPlot, study_of
+    from fieldmon.simulation.design import Design, study_of
     from fieldmon.simulation.experiment import run
     from fieldmon.simulation.results import StudyFolder
+    from fieldmon.simulation.study_plot import StudyPlot
     from fieldmon.simulation.worker import simulate_chunk
 
     (field,) = (f for f in read_plots(ESTATE).value if f.name == "Gate")

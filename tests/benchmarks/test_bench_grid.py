@@ -7,7 +7,8 @@ from shapely import MultiPolygon
 
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import nearest_plants
-from fieldmon.plot.layout import Planting, grid_from_plants, lay, rectangle
+from fieldmon.plot.layout import grid_from_plants, lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 
 

@@ -5,7 +5,8 @@ from shapely import MultiLineString
 
 from fieldmon.infestation.hotspots import hot_spots, record_states
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
-from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.prior import prior_chance, start_infested
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 

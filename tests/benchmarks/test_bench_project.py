@@ -12,7 +12,8 @@ from fieldmon.infestation.prior import start_infested
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 
 BEGINS = date(2026, 4, 6)

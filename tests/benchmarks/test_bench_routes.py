@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from fieldmon.planning.routes.best_route import best
-from fieldmon.planning.routes.ladder import best_walk, full_budget
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.planning.routes.exact_walk import best_walk, full_budget
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 

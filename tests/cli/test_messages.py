@@ -6,7 +6,7 @@ import pytest
 from fieldmon.cli.messages import Terminal, tell_unusable
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.import_report import Remedy, guessed
 from fieldmon.io.prepare import Laid, SourceMessage
 from fieldmon.plot.assumed import Assumed

@@ -11,7 +11,7 @@ from shapely import MultiPolygon
 from fieldmon.cli.outputs import check_outputs, day_in_words, write_chance_map, write_routes
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.observations import Observations
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot

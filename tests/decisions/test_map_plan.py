@@ -6,7 +6,8 @@ import pytest
 from fieldmon.decisions.map_plan import MapPlan, overstep
 from fieldmon.decisions.sequential import WaldPlan, decided
 from fieldmon.errors import SettingError
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 
 GRID = rectangle(30, 30, Planting(90.0, 4.0, 2.0))
 FLAT = np.full(len(GRID), 0.05)

@@ -6,7 +6,8 @@ from scipy import stats
 
 from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.errors import SettingError
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 
 GRID = rectangle(20, 25, Planting(90.0, 4.0, 2.0))
 ALONE = np.zeros(len(GRID.adjacent.plant))

@@ -19,7 +19,8 @@ from fieldmon.decisions.zones import (
     whole_plot,
 )
 from fieldmon.errors import SettingError
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from tests.bent import bent_grids
 from tests.crooked import crooked_grids
 

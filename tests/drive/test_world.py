@@ -6,7 +6,8 @@ import pytest
 
 from fieldmon.drive.ground import UnevenGround, rough_ground
 from fieldmon.drive.world import lay_ground, world_xml
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 
 
 def test_every_plant_stands_where_it_is_as_wide_as_it_is():

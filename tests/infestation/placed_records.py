@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.layout import rectangle
 
 TODAY = np.datetime64("2026-05-20")

@@ -1,20 +1,10 @@
-"""What every belief promises, and the bounds of chances."""
+"""What every belief promises."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import (
-    LEAST_CHANCE,
-    MOST_CHANCE,
-    Learning,
-    bounded_chance,
-    bounded_pair_chance,
-    greater,
-    lesser,
-)
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
@@ -26,7 +16,6 @@ N = len(GRID)
 BELIEFS = {"independent": IndependentPlants, "pairs": PairApproximation.of, "fields": Ensemble.of}
 PLANTS = np.array([3, 30, 31, 60], np.int32)
 FOUND = np.array([False, True, False, False])
-numbers = st.floats(1e-9, 1.0 - 1e-9)
 
 
 @pytest.fixture(params=BELIEFS)
@@ -85,23 +74,3 @@ def test_impossible_settings_are_refused(bad):
 def test_a_detection_is_that_of_each_inspection():
     assert Learning(0.7).detects(3).tolist() == [0.7] * 3
     assert Learning(np.array([0.5, 0.9])).detects(2).tolist() == [0.5, 0.9]
-
-
-@given(numbers, numbers)
-def test_lesser_and_greater_are_those_of_python(a, b):
-    assert (lesser(a, b), greater(a, b)) == (min(a, b), max(a, b))
-
-
-@given(st.floats(-2.0, 2.0))
-def test_no_chance_is_certain(chance):
-    assert LEAST_CHANCE <= bounded_chance(chance) <= MOST_CHANCE
-    if LEAST_CHANCE < chance < MOST_CHANCE:
-        assert bounded_chance(chance) == chance
-
-
-@given(st.floats(0.0, 1.0), numbers, numbers)
-def test_the_chance_of_both_leaves_room_for_each_alone_and_for_neither(pair_chance, p, q):
-    both = bounded_pair_chance(pair_chance, p, q)
-    assert max(0.0, p + q - 1.0) <= both <= min(p, q) + 1e-15
-    if both < pair_chance:  # only what is more dependent than any pair may be is cut
-        assert pair_chance > p * q

@@ -19,7 +19,8 @@ from fieldmon.infestation.hotspots import (
     states,
 )
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from tests.crooked import crooked_grids
 
 GRID = rectangle(30, 40)

@@ -14,7 +14,8 @@ from fieldmon.infestation.nearby_plants import (
     first_from,
     outside_m,
 )
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from tests.bent import bent_grids
 from tests.crooked import crooked_grids
 

@@ -5,7 +5,7 @@ import pytest
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations, usable
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.record_kernel import record_chance
 from tests.infestation.placed_records import GRID, MIDDLE, TODAY, at_middle, together
 

@@ -5,7 +5,7 @@ from datetime import date
 import numpy as np
 
 from fieldmon.infestation.pest_prior import prior_for
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.pests.weather import DAY_S, weather_of
 

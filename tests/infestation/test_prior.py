@@ -12,13 +12,13 @@ from shapely import MultiLineString, MultiPolygon
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations
 from fieldmon.infestation.prior import (
-    PriorSettings,
     edge_chance,
     path_chance,
     prior_chance,
     scaled,
     start_infested,
 )
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from tests.crooked import crooked_grids
@@ -168,25 +168,6 @@ def test_a_risk_map_raises_chances_where_it_speaks():
 def test_a_risk_map_that_does_not_fit_is_refused(risk, says):
     with pytest.raises(ObservationError, match=says):
         prior_chance(GRID, field_of(GRID), Observations.none(), TODAY, USUAL, risk)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"background_chance": 1.5},
-        {"edge_chance": -0.1},
-        {"edge_depth_m": 0.0},
-        {"reach_m": np.nan},
-        {"half_life_days": np.inf},
-        {"accuracy_m": -1.0},
-        {"undated_days": np.nan},
-        {"detection": 84.0},
-        {"beside_one": 0.5, "beside_many": 0.4},
-    ],
-)
-def test_a_setting_out_of_range_is_refused_by_name(wrong):
-    with pytest.raises(SettingError, match=list(wrong)[-1]):
-        PriorSettings(**wrong)
 
 
 # --- a season's start

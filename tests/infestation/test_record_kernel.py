@@ -10,7 +10,7 @@ from pyproj import Geod
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.record_kernel import record_chance
 from fieldmon.plot.layout import rectangle
 from tests.infestation.placed_records import (

@@ -9,7 +9,8 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 
 
 def key(seed):

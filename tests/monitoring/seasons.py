@@ -13,7 +13,7 @@ from fieldmon.infestation.spread import night
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.monitoring import Season, first_morning
 from fieldmon.monitoring import open_season as in_season
 from tests.monitoring.seasons import BEGINS, a_season

@@ -10,7 +10,8 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles

@@ -16,7 +16,7 @@ from fieldmon.monitoring import tables
 from fieldmon.monitoring.tables import KeptMessage
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from tests.monitoring.seasons import a_plot
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.planning.assumptions import assumed_by

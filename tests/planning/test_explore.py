@@ -21,7 +21,7 @@ def day():
 
 @pytest.fixture(scope="module")
 def layers(day):
-    return {layer.id: layer for layer in deck_of(day).layers}
+    return {layer.id: layer for layer in deck_of(day.route, day.chance).layers}
 
 
 def test_every_plant_is_drawn_at_its_place_and_says_its_chance(day, layers):
@@ -47,7 +47,9 @@ def test_every_chance_has_a_colour(day, chance):
 
 
 def _plants(day):
-    return next(layer for layer in deck_of(day).layers if layer.id == "plants").data
+    return next(
+        layer for layer in deck_of(day.route, day.chance).layers if layer.id == "plants"
+    ).data
 
 
 def test_the_route_is_the_line_that_is_driven_and_its_stops_say_when(day, layers):
@@ -65,7 +67,7 @@ def test_the_route_is_the_line_that_is_driven_and_its_stops_say_when(day, layers
 @pytest.mark.parametrize("grid", [rectangle(1, 1), rectangle(2, 60), rectangle(60, 2)])
 def test_the_view_shows_the_whole_plot_on_a_map_of_600_by_450_pixels(grid):
     day = plan_in(scene_on(grid, hours=1.0), sampler("naive"))
-    view = deck_of(day).initial_view_state
+    view = deck_of(day.route, day.chance).initial_view_state
     world_px = 512 * 2.0**view.zoom
     lon, lat = grid.lonlat().T
     east = (lon - view.longitude) / 360 * world_px
@@ -76,4 +78,6 @@ def test_the_view_shows_the_whole_plot_on_a_map_of_600_by_450_pixels(grid):
 
 
 def test_nothing_is_asked_of_a_map_provider(day):
-    assert deck_of(day).map_provider is None or deck_of(day).map_style in (None, "")
+    assert deck_of(day.route, day.chance).map_provider is None or deck_of(
+        day.route, day.chance
+    ).map_style in (None, "")

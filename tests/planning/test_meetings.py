@@ -7,7 +7,8 @@ import shapely
 from fieldmon.planning.meetings import meetings
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles

@@ -9,8 +9,9 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.planning.plan import plan_day
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles

@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of, with_forecast
 from fieldmon.planning.workday import plan_work
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import crosses_rows
 from fieldmon.samplers import SAMPLERS, sampler
 from tests.crooked import crooked_fields

@@ -12,7 +12,8 @@ from fieldmon.planning.sections import (
     even_sections,
     worth_together,
 )
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.base import NEVER, Scene

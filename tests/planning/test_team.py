@@ -11,7 +11,8 @@ from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.planning.team import _day, _Task, bound_of_days, plan_team, team_bound
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock

@@ -14,7 +14,8 @@ from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import Posted, _Day, _Done, merged, team_day
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s

@@ -6,7 +6,8 @@ import pytest
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
-from fieldmon.plot.layout import Planting
 from fieldmon.plot.missing_plants import without
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.travel import Aisles, crosses_rows
 from tests.bent import FRAME, bent_grids

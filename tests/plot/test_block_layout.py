@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError
-from fieldmon.plot.block import Block, blocks_from_outline, cut_blocks
+from fieldmon.plot.block import Block
+from fieldmon.plot.block_cutting import blocks_from_outline, cut_blocks
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import block_label
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import Aisles, crosses_rows
 from tests.crooked import crooked_fields, plantings

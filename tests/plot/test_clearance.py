@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.clearance import STRAY_M, USUAL_HALF_CANOPY_M, Clearance, lane_room_m
-from fieldmon.plot.layout import Planting, grid_from_plants, rectangle
+from fieldmon.plot.layout import grid_from_plants, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot, rover
 from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler

@@ -7,7 +7,8 @@ from shapely import LineString, MultiPolygon, Point, box
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.frames import plant_frame
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 
 UTM = "EPSG:32636"

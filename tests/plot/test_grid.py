@@ -5,7 +5,8 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.grid import nearest_plants, plant_at, row_label
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from tests.crooked import crooked_fields, crooked_grids, plantings
 

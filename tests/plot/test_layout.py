@@ -10,13 +10,8 @@ from shapely import MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import (
-    Planting,
-    found_planting,
-    grid_from_plants,
-    lay,
-    rectangle,
-)
+from fieldmon.plot.layout import found_planting, grid_from_plants, lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from tests.crooked import crooked_fields, plantings
 
@@ -315,22 +310,6 @@ def test_a_plot_without_room_for_a_plant_is_refused_with_its_sizes(length_m, wid
 def test_a_plot_with_more_plants_than_memory_is_refused_before_it_is_laid():
     with pytest.raises(PlotError, match="Check the spacings"):
         lay(plot_of(9000, 9000), Planting(row_spacing_m=0.5, plant_spacing_m=0.2))
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"row_spacing_m": 0.0},
-        {"plant_spacing_m": float("nan")},
-        {"headland_m": -1.0},
-        {"headland_m": float("inf")},
-        {"row_bearing_deg": float("nan")},
-        {"faces": 3},
-    ],
-)
-def test_impossible_plantings_are_refused(wrong):
-    with pytest.raises(SettingError):
-        Planting(**wrong)
 
 
 # --- the thesis's fields ---------------------------------------------------------------------

@@ -12,9 +12,10 @@ from shapely import MultiPolygon
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import block_label
-from fieldmon.plot.layout import Planting, grid_from_plants
+from fieldmon.plot.layout import grid_from_plants
 from fieldmon.plot.measured_rows import SaidRows, name_numbers
 from fieldmon.plot.plant_names import PlantNames
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import row_ends, rows_from_plants

@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
 from fieldmon.plot.grid import row_label
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
 from fieldmon.plot.missing_plants import without
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles, crosses_rows
 from tests.crooked import crooked_grids
 

@@ -9,8 +9,9 @@ from shapely import MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
 from fieldmon.plot.passing import legs_of
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.travel import GATE, Aisles
 from tests.crooked import crooked_fields

@@ -8,7 +8,8 @@ from shapely import MultiPolygon, box
 import fieldmon as fm
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot, planting_of
 
 AREA = MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)])

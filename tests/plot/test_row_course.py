@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_course import row_courses
 from tests.bent import FRAME, bent_grids

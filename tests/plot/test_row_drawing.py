@@ -9,7 +9,8 @@ from shapely import MultiPolygon
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_drawing import contour_row, rows_from_posts, smooth_row
 

@@ -14,7 +14,8 @@ from scipy.sparse.csgraph import dijkstra
 from shapely import MultiPolygon, Polygon, box
 
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, grid_from_plants, lay, rectangle
+from fieldmon.plot.layout import grid_from_plants, lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.road_network import row_lines
 from fieldmon.plot.robot import Robot

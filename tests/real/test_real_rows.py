@@ -11,7 +11,8 @@ from shapely import MultiPolygon
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import nearest_plants, row_label
-from fieldmon.plot.layout import Planting, found_planting, grid_from_plants, lay
+from fieldmon.plot.layout import found_planting, grid_from_plants, lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.row_detection import distinct, rows_from_plants
 
 GEOD = Geod(ellps="WGS84")

@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.history import BeliefSettings

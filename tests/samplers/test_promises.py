@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
 from fieldmon.planning.workday import plan_work, work_day
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER

@@ -7,7 +7,8 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.planning.workday import plan_work
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.base import NEVER
 from fieldmon.samplers.without_prior import (

@@ -6,9 +6,10 @@ from shapely import MultiPolygon
 
 from fieldmon.infestation.observations import Observations
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
-from fieldmon.simulation.design import Design, StudyPlot
+from fieldmon.simulation.design import Design
+from fieldmon.simulation.study_plot import StudyPlot
 
 FRAME = Frame(5.0, 45.0)
 DAY = np.datetime64("2026-11-02")

@@ -10,9 +10,9 @@ from shapely import MultiPolygon
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting
-from fieldmon.plot.plot import Plot
-from fieldmon.simulation.design import Combination, Design, StudyPlot, study_of
+from fieldmon.plot.planting import Planting
+from fieldmon.simulation.design import Design, study_of
+from fieldmon.simulation.study_plot import Combination, StudyPlot
 from tests.simulation.study_plots import DAY, SMALL, plot
 
 SQUARE = StudyPlot(
@@ -70,12 +70,6 @@ def test_another_plot_setting_or_seed_has_other_keys():
     for other in (plot(41.0), plot(name="other"), heard):
         assert not base & keys(other, SMALL)
     assert not base & keys(plot(), Design(hours=(1.0, 3.0), n_days=5, n_seeds=60))
-
-
-def test_the_guess_of_plants_is_near_what_is_laid():
-    for one in (SQUARE, plot(40.0), plot(120.0)):
-        laid = len(Plot.of(one.field, one.planting).grid)
-        assert 0.7 * one.about_plants < laid < 1.3 * one.about_plants
 
 
 @pytest.mark.parametrize(

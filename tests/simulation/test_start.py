@@ -5,7 +5,8 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.simulation.start import season_start
 
 GRID = rectangle(40, 50)

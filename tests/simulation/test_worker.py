@@ -7,18 +7,19 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.prior import PriorSettings, prior_chance, start_infested
+from fieldmon.infestation.prior import prior_chance, start_infested
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.pests.weather import DAY_S, weather_of
-from fieldmon.plot.layout import Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
-from fieldmon.simulation.design import Combination
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
+from fieldmon.simulation.study_plot import Combination
 from fieldmon.simulation.worker import LaidPlot, RefusedPlot, simulate_chunk, simulated_season
 from tests.simulation.study_plots import DAY, plot
 

@@ -9,7 +9,7 @@ import shapely
 from pydeck import Layer
 
 from fieldmon.infestation.hotspots import outlines_m
-from fieldmon.plot.grid import row_corners
+from fieldmon.plot.row_course import row_corners
 
 from ...words import texts
 from .colours import GATE, HOT, HOT_IN_DARK, TREATED, TREATED_IN_DARK, TRUTH, TRUTH_IN_DARK

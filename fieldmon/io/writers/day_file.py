@@ -13,9 +13,12 @@ import numpy as np
 from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from datetime import datetime
+
     from numpy.typing import NDArray
 
-    from fieldmon.io.writers.geojson import RouteNotes
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.travel import Aisles
 
@@ -145,6 +148,32 @@ class DrivenRoute(Protocol):
     def stops_lonlat(self) -> Floats:
         """Return the plants' own positions in degrees, ``(k, 2)``."""
         ...
+
+
+@dataclass(frozen=True)
+class RouteNotes:
+    """What a route file says beside the route.
+
+    Parameters
+    ----------
+    plot
+        The plot's name.
+    sampler
+        Who chose the plants.
+    start
+        Local date and time of the start, or None: only seconds are given then.
+    who
+        Who of a team drives it; None: it is the only one.
+    ahead
+        Returns how many plants are infested on the next mornings, asked by GeoJSON alone (a second
+        of work on a large plot); None: it is not known.
+    """
+
+    plot: str
+    sampler: str
+    start: datetime | None = None
+    who: str | None = None
+    ahead: Callable[[], Forecast] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,8 @@ from markupsafe import Markup
 from fieldmon.io.html import page
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
-from fieldmon.plot.grid import before_rows, row_corners
+from fieldmon.plot.grid import before_rows
+from fieldmon.plot.row_course import row_corners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -13,42 +12,14 @@ import numpy as np
 from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from fieldmon.infestation.forecast import Forecast
-    from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan
+    from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan, RouteNotes
 
 # RFC 7946 positions are degrees; 8 decimals are about a millimetre
 _DECIMALS = 8
 _AHEAD = ("expected", "low", "high")
-
-
-@dataclass(frozen=True)
-class RouteNotes:
-    """What a route file says beside the route.
-
-    Parameters
-    ----------
-    plot
-        The plot's name.
-    sampler
-        Who chose the plants.
-    start
-        Local date and time of the start, or None: only seconds are given then.
-    who
-        Who of a team drives it; None: it is the only one.
-    ahead
-        Returns how many plants are infested on the next mornings, asked by GeoJSON alone (a second
-        of work on a large plot); None: it is not known.
-    """
-
-    plot: str
-    sampler: str
-    start: datetime | None = None
-    who: str | None = None
-    ahead: Callable[[], Forecast] | None = None
 
 
 def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:

@@ -15,8 +15,8 @@ from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import FINDS, PROVED, share_above, told
 from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.blocks import Blocks, blockings
-from fieldmon.planning.routes.hung import hung
 from fieldmon.planning.routes.improve import Tour, fit, ruin
+from fieldmon.planning.routes.pendant_parts import ladder_with_parts
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.planning.routes.stops import stops_of
@@ -297,7 +297,7 @@ def _relaxations(posed: _Posed) -> Iterator[Callable[[], Priced | Blocks | None]
     yield hanging
     for block in blockings(ladders.rungs):
         yield partial(Blocks, ladders, block, reward, robot)
-        yield partial(hung, ladders, block, reward, robot)
+        yield partial(ladder_with_parts, ladders, block, reward, robot)
 
 
 def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf) -> PriceBound:

@@ -12,7 +12,8 @@ from fieldmon.plot.travel import GATE, travel_s
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.travel import Clock, TravelTable
+    from fieldmon.plot.travel import Clock
+    from fieldmon.plot.travel_table import TravelTable
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

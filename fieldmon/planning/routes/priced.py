@@ -7,7 +7,7 @@ then follows from its plants alone, and the best drive from a sweep up the ladde
 from __future__ import annotations
 
 from time import monotonic
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.planning.routes.hung import HungPart
     from fieldmon.planning.routes.relaxation import Ladder
     from fieldmon.plot.robot import Robot
 
@@ -104,6 +103,14 @@ class Drawn(NamedTuple):
     passes: Int
 
 
+class HangingPart(Protocol):
+    """A part of the plot that hangs on a ladder as one of its elements; see `PendantPart`."""
+
+    def stops(self, price: float, *, ends: bool) -> Int:
+        """Return the plants of the best drive in it at a price, in order."""
+        ...
+
+
 class _Room(NamedTuple):
     """Room for a sweep: worth ``(e, 12)``, cuts, rewards; the best to every state, its reward."""
 
@@ -125,7 +132,7 @@ class Priced:
         self.tables: Tables = tables(returns=robot.returns)
         self.reward = np.ascontiguousarray(reward[ladder.plant])
         self.of_all = reward
-        self.parts: Mapping[int, HungPart] = {}
+        self.parts: Mapping[int, HangingPart] = {}
         self._gate_passes = np.array(GATE_CLOSED if robot.returns else GATE_OPEN)
         e, s = len(ladder.across_m), len(self.tables.passes)
         ways = e, N_WAYS

@@ -20,7 +20,8 @@ from fieldmon.compute.jit import loop
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.travel import Aisles, TravelTable
+    from fieldmon.plot.travel import Aisles
+    from fieldmon.plot.travel_table import TravelTable
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -83,8 +84,8 @@ class Rungs(NamedTuple):
     ``low``, ``high`` ``(k,)``: x of the rung's ends; ``up`` ``(k,)`` its y. ``apart_m``
     ``(2, 2, k + 1, k + 1)``: from the left (0) or right (1) end of an aisle to the left or right
     end of another; the last is the gate, whose two ends are one. ``part`` ``(k,)``: 0 of an aisle;
-    of a part of the plot that is one place of this ladder (`fieldmon.planning.routes.hung`), 1 on
-    its left headland, 2 on its right.
+    of a part of the plot that is one place of this ladder (see `pendant_parts`), 1 on its left
+    headland, 2 on its right.
     """
 
     low: Float

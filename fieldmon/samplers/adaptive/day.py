@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, part
-from fieldmon.infestation.belief import bounded_chance, bounded_pair_chance
 from fieldmon.infestation.calibration_slope import note_inspection, proved_slope
+from fieldmon.infestation.chance_bounds import bounded_chance, bounded_pair_chance
 from fieldmon.infestation.clustering import (
     chance_apart,
     clustering_scale,
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Linked
-    from fieldmon.plot.travel import Clock, TravelTable
+    from fieldmon.plot.travel import Clock
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.adaptive.arrays import (
         BeliefArrays,
         BestTours,

@@ -12,7 +12,8 @@ from fieldmon.samplers.adaptive.rows import most_in, value_row
 from fieldmon.samplers.adaptive.tours import best_from, extend_tours
 
 if TYPE_CHECKING:
-    from fieldmon.plot.travel import Clock, TravelTable
+    from fieldmon.plot.travel import Clock
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.adaptive.arrays import BestTours, OwnRow, RowTours, Workspace
 
 # the price moves in steps of a tenth, and stays while the plan fills this much of the hours left

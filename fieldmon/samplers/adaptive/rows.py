@@ -10,7 +10,8 @@ from fieldmon.compute.jit import inlined, part
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, N_WAYS, NEARLY, NOWHERE
 
 if TYPE_CHECKING:
-    from fieldmon.plot.travel import Clock, TravelTable
+    from fieldmon.plot.travel import Clock
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.adaptive.arrays import BeliefArrays, RowTours
     from fieldmon.samplers.base import InspectionTimes
 

@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.plot.travel import Clock, TravelTable
+    from fieldmon.plot.travel import Clock
+    from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.adaptive.arrays import BestTours, RowTours
 
     Float = NDArray[np.float64]

@@ -8,7 +8,7 @@ import time
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
-from fieldmon.planning.routes.ladder import best_walk
+from fieldmon.planning.routes.exact_walk import best_walk
 from fieldmon.studies.routes import milp, vrp
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.heuristics import HEURISTICS

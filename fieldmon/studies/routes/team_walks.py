@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.planning.routes.ladder import best_walk
+from fieldmon.planning.routes.exact_walk import best_walk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,7 +12,8 @@ from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.prior import PriorSettings, edge_chance, scaled, start_infested
+from fieldmon.infestation.prior import edge_chance, scaled, start_infested
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot

@@ -12,10 +12,12 @@ from fieldmon.compute.digest import digest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles

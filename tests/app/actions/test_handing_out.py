@@ -8,7 +8,7 @@ import pytest
 
 from app.actions.handing_out import made
 from fieldmon.io.writers import FORMATS, HandoffPlan
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from tests.app.chosen import a_plot, chosen
 
 

@@ -8,7 +8,8 @@ from app.words import texts
 from fieldmon.decisions.zones import Sprayer, TreatmentCosts
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.monitoring.advice import AdviceSettings, advice
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 
 GRID = rectangle(12, 30, Planting(90.0, 4.0, 2.0))
 

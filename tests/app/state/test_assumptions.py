@@ -3,7 +3,7 @@
 import pytest
 
 from app.state import assumptions, widget_memory
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from tests.app.chosen import a_plot, chosen
 
 

@@ -5,7 +5,8 @@ import numpy as np
 from app.state import cached
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.prior import PriorSettings, start_infested
+from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.robot import Robot

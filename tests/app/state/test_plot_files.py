@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from app.show.maps import colours
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.options import Upload
 from fieldmon.io.prepare import prepare
 from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource

@@ -6,7 +6,8 @@ from pyproj import Transformer
 
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.rasters.values import Raster, RasterOptions, map_xy, pixel_xy
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 
 UTM = "EPSG:32636"
 TO_UTM = Transformer.from_crs("OGC:CRS84", UTM, always_xy=True)

@@ -23,7 +23,8 @@ from fieldmon.io.readers.inspections import dated, look_up, read_inspections
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import plant_at, row_label
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 
 GRID = rectangle(6, 10)
 

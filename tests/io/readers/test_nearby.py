@@ -11,7 +11,8 @@ from fieldmon.io.readers.nearby import near_plot, on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 
 GRID = rectangle(6, 10, Planting(row_spacing_m=3.0, plant_spacing_m=1.5))
 

@@ -21,7 +21,8 @@ from fieldmon.io.readers.places import (
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import plant_at
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 
 NORTH, SOUTH, EAST = (
     Field(name, MultiPolygon([shapely.box(5.0 + east, 45.0, 5.001 + east, 45.001)]))

@@ -8,11 +8,12 @@ import shapely
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.io.writers import HandoffPlan
-from fieldmon.io.writers.geojson import RouteNotes
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.samplers import sampler
 from tests.scenes import scene_on
 

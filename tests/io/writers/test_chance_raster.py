@@ -13,7 +13,8 @@ from scipy.spatial import cKDTree
 from fieldmon.errors import FileProblem, PlotError
 from fieldmon.io.rasters.read import read_raster
 from fieldmon.io.writers.chance_raster import NODATA, _paint, chance_raster, write_chance_raster
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from tests.crooked import crooked_grids
 from tests.io.rasters.raster_files import PLOT

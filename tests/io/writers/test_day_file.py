@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from fieldmon.io.writers import write_handoff
 from fieldmon.io.writers.day_file import DECIMALS, faces, pieces, plain_text
 from fieldmon.plot.grid import plant_at
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from tests.io.writers.handed import CM, START, apart_m, crooked, day, usual
 
 

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.routes.best_route import best, bounded
 from fieldmon.planning.workday import plan_work
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
 from fieldmon.samplers.adaptive import Adaptive

@@ -12,11 +12,12 @@ from shapely import MultiPolygon, box
 from fieldmon.planning.routes import best, bound
 from fieldmon.planning.routes.best_route import upper_bound
 from fieldmon.planning.routes.blocks import _MOST_BLOCKS, _NEAR_M, Blocks, blockings
-from fieldmon.planning.routes.hung import hung
+from fieldmon.planning.routes.pendant_parts import ladder_with_parts
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
@@ -28,7 +29,9 @@ def below(aisles, reward, robot):
     ladders = Ladders(aisles)
     whole = [ladders.whole(hanging=hanging) for hanging in (False, True)]
     blocks = [Blocks(ladders, block, reward, robot) for block in blockings(ladders.rungs)]
-    hanging = [hung(ladders, block, reward, robot) for block in blockings(ladders.rungs)]
+    hanging = [
+        ladder_with_parts(ladders, block, reward, robot) for block in blockings(ladders.rungs)
+    ]
     return [*(Priced(ladder, reward, robot) for ladder in whole), *blocks, *hanging]
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fieldmon.planning.routes.improve import Tour, fit, ruin
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
 

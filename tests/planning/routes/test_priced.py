@@ -9,7 +9,8 @@ from fieldmon.compute.jit import loop
 from fieldmon.planning.routes import priced as priced_room
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import ladder_below
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 

@@ -19,7 +19,8 @@ from fieldmon.planning.routes.relaxation import (
     ladder_below,
 )
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay, rectangle
+from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import GATE, Aisles
 from tests.planning.routes.test_best_route import crooked_aisles

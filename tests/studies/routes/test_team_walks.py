@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.planning.routes.ladder import best_walk
+from fieldmon.planning.routes.exact_walk import best_walk
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.instances import full_budget, zipf
 from fieldmon.studies.routes.team_walks import meetings, team_walks

@@ -11,7 +11,7 @@ from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.independent import learn, overnight
-from fieldmon.infestation.prior import PriorSettings
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.planning.workday import draw_detections
 from fieldmon.samplers import sampler
 from fieldmon.samplers.base import NEVER, Scene

@@ -13,7 +13,8 @@ from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days

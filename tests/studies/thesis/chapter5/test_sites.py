@@ -7,7 +7,8 @@ from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
-from fieldmon.infestation.prior import PriorSettings, prior_chance
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import Aisles

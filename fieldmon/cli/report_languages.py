@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fieldmon.cli.beside import app_words
+from fieldmon.cli.app_package import app_words
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.compute.units import Units
-    from fieldmon.reports.tongue import Tongue
+    from fieldmon.reports.language import ReportLanguage
 
 Language = Annotated[
     str | None,
@@ -35,13 +35,13 @@ def checked_language(code: str) -> str:
     return low
 
 
-def spoken(asked: str | None, kept: str) -> tuple[Tongue, Units]:
+def spoken(asked: str | None, kept: str) -> tuple[ReportLanguage, Units]:
     """Return the language that is asked for, else the season's, and how it writes figures."""
-    from fieldmon.reports.tongue import ENGLISH  # noqa: PLC0415
+    from fieldmon.reports.language import ENGLISH  # noqa: PLC0415
 
     # a season may keep a language of a later fieldmon
     known = kept if kept in app_words("language").LANGUAGES else ENGLISH.code
     code = known if asked is None else checked_language(asked)
-    tongue: Tongue = app_words("language").tongue(code)
+    language: ReportLanguage = app_words("language").for_reports(code)
     units: Units = app_words("units").usual(code).of_library
-    return tongue, units
+    return language, units

@@ -9,11 +9,12 @@ from shapely import MultiPolygon, box
 from fieldmon.planning.routes import best
 from fieldmon.planning.routes.best_route import upper_bound
 from fieldmon.planning.routes.blocks import Blocks, blockings
-from fieldmon.planning.routes.hung import _tree, hung
+from fieldmon.planning.routes.pendant_parts import _tree, ladder_with_parts
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.plot.field import Field
-from fieldmon.plot.layout import Planting, lay
+from fieldmon.plot.layout import lay
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
@@ -39,7 +40,7 @@ def scattered(seed):
 def taken(aisles, reward, robot):
     """Return the plot with parts hanging on each other, for every way of taking parts together."""
     ladders = Ladders(aisles)
-    return [hung(ladders, block, reward, robot) for block in blockings(ladders.rungs)]
+    return [ladder_with_parts(ladders, block, reward, robot) for block in blockings(ladders.rungs)]
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -84,7 +85,7 @@ def test_along_a_chain_of_parts_side_by_side_every_way_is_paid(returns):
     others = [Priced(ladders.whole(hanging=True), reward, robot)]
     others += [Blocks(ladders, each, reward, robot) for each in blockings(ladders.rungs)]
     least = min(upper_bound(one, robot.day_s).value for one in others)
-    hanging = upper_bound(hung(ladders, block, reward, robot), robot.day_s).value
+    hanging = upper_bound(ladder_with_parts(ladders, block, reward, robot), robot.day_s).value
     route = best(chain, reward, robot)
     assert route.reward <= route.bound <= hanging < least
     assert route.gap < 0.06

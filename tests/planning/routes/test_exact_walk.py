@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.planning.routes.ladder import best_walk, full_budget
+from fieldmon.planning.routes.exact_walk import best_walk, full_budget
 from fieldmon.studies.routes import milp
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.heuristics import HEURISTICS

@@ -1,4 +1,4 @@
-"""A ladder on which other parts of the plot hang, each with a ladder of its own.
+"""Parts of a plot that hang on a ladder as one place of it, each with a ladder of its own.
 
 A part that lies beside another is a place of that one's ladder: driving there, through it and back
 is worth what the best drive in it is. The way to it is paid in full, however long it is, and the
@@ -38,19 +38,19 @@ _TOLD_APART = 2
 _BONUS = 1e4
 
 
-class HungPart(NamedTuple):
+class PendantPart(NamedTuple):
     """A part that hangs on a ladder: best drives in it, back to its place, and ending in it.
 
     It is so many metres away from that place, and known by a number.
     """
 
-    back: HungLadder
-    ends: HungLadder | None
+    back: LadderWithParts
+    ends: LadderWithParts | None
     away_m: float
     number: int
 
     def __repr__(self) -> str:
-        return f"<HungPart of {len(self.back.reward)} plants>"
+        return f"<PendantPart of {len(self.back.reward)} plants>"
 
     def stops(self, price: float, *, ends: bool) -> Int:
         """Return the plants of the best drive in it at a price, in order."""
@@ -60,14 +60,15 @@ class HungPart(NamedTuple):
         return stops_of(priced, drawn, prices, replace(priced.robot, returns=not ends))
 
 
-class HungLadder(Priced):
+class LadderWithParts(Priced):
     """Best drives on a ladder on which parts hang, at any price."""
 
     def __init__(
-        self, ladder: Ladder, reward: Float, robot: Robot, parts: dict[int, HungPart]
+        self, ladder: Ladder, reward: Float, robot: Robot, parts: dict[int, PendantPart]
     ) -> None:
         super().__init__(ladder, reward, robot)
-        self.robot, self.parts = robot, parts
+        self.robot = robot
+        self.parts: dict[int, PendantPart] = parts
         self._bonus = _BONUS * float(reward.sum())
         self._must: dict[int, bool] = {}
 
@@ -77,7 +78,7 @@ class HungLadder(Priced):
         n = sum(1 for _ in self._all_parts())
         return f"price of time on a ladder on which other parts of the plot hang ({n})"
 
-    def _all_parts(self) -> Iterator[HungPart]:
+    def _all_parts(self) -> Iterator[PendantPart]:
         for part in self.parts.values():
             yield part
             yield from part.back._all_parts()  # noqa: SLF001 - of its kind
@@ -117,7 +118,7 @@ class HungLadder(Priced):
                 ends = part.ends.best(price)
                 self._offer((k, END_LEFT if left else END_RIGHT), part, ends, way)
 
-    def _offer(self, at: tuple[int, int], part: HungPart, drawn: Drawn, less: float) -> None:
+    def _offer(self, at: tuple[int, int], part: PendantPart, drawn: Drawn, less: float) -> None:
         """Put in what a part is worth, if it may be visited and that is worth it, or must be."""
         must, worth = self._must.get(part.number), drawn.worth - less
         if must or (must is None and worth > 0.0):
@@ -125,7 +126,7 @@ class HungLadder(Priced):
             self._room.reward[at] = drawn.reward
 
 
-def hung(ladders: Ladders, block: Int, reward: Float, robot: Robot) -> HungLadder:
+def ladder_with_parts(ladders: Ladders, block: Int, reward: Float, robot: Robot) -> LadderWithParts:
     """Return the ladder of the block of aisles ``(k,)`` at the gate; all others hang on it.
 
     Each hangs on the one that it lies nearest to, towards the gate. The farthest is taken first:
@@ -136,7 +137,7 @@ def hung(ladders: Ladders, block: Int, reward: Float, robot: Robot) -> HungLadde
     """
     order, onto = _tree(ladders.rungs, block)
     members = {b: np.flatnonzero(block == b) for b in order}
-    made: dict[int, dict[int, HungPart]] = {b: {} for b in order}
+    made: dict[int, dict[int, PendantPart]] = {b: {} for b in order}
     open_ = np.ones(len(block), np.bool_)
     for b in order[:0:-1]:
         inside = members[b]
@@ -146,15 +147,15 @@ def hung(ladders: Ladders, block: Int, reward: Float, robot: Robot) -> HungLadde
         ladder = ladders.among(inside, (into_m, up), hanging=True)
         place, parts = len(open_), _at(ladder, made[b])
         closed = {k: part._replace(ends=None) for k, part in parts.items()}
-        back = HungLadder(ladder, reward, replace(robot, returns=True), closed)
-        ends = None if robot.returns else HungLadder(ladder, reward, robot, parts)
+        back = LadderWithParts(ladder, reward, replace(robot, returns=True), closed)
+        ends = None if robot.returns else LadderWithParts(ladder, reward, robot, parts)
         open_ = np.append(open_, True)
         members[onto[b]] = np.append(members[onto[b]], place)
-        made[onto[b]][place] = HungPart(back, ends, away_m, place)
+        made[onto[b]][place] = PendantPart(back, ends, away_m, place)
     inside = members[order[0]]
     gate = ladders.rungs.apart_m[:, 0, inside, -1], float(ladders.aisles.gate_m[1])
     ladder = ladders.among(inside, gate, hanging=True)
-    return HungLadder(ladder, reward, robot, _at(ladder, made[order[0]]))
+    return LadderWithParts(ladder, reward, robot, _at(ladder, made[order[0]]))
 
 
 def _tree(rungs: Rungs, block: Int) -> tuple[list[int], dict[int, int]]:
@@ -214,7 +215,7 @@ def _and_place(rungs: Rungs, outside: Int, left_m: Float) -> Rungs:
     )
 
 
-def _at(ladder: Ladder, parts: dict[int, HungPart]) -> dict[int, HungPart]:
+def _at(ladder: Ladder, parts: dict[int, PendantPart]) -> dict[int, PendantPart]:
     """Return parts, known by their rungs, by the elements of a ladder."""
     element = {int(rung): k for k, rung in enumerate(ladder.rung.tolist()) if rung >= 0}
     return {element[rung]: part for rung, part in parts.items()}

@@ -1,4 +1,4 @@
-"""What lies beside the command line: the app, in fieldmon as installed or beside it in its tree."""
+"""Where the app is: in fieldmon as installed, or beside it in its tree."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from fieldmon.cli.beside import app_package, app_words
+from fieldmon.cli.app_package import app_package, app_words
 from tests.paths import ROOT
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.cli.tongues import checked_language, spoken
+from fieldmon.cli.report_languages import checked_language, spoken
 from fieldmon.errors import SettingError
 
 
@@ -17,8 +17,8 @@ from fieldmon.errors import SettingError
     ],
 )
 def test_what_is_asked_for_counts_then_the_season_s_then_english(asked, kept, code):
-    tongue, _ = spoken(asked, kept)
-    assert tongue.code == code
+    language, _ = spoken(asked, kept)
+    assert language.code == code
 
 
 def test_dates_and_areas_are_as_usual_where_a_language_is_spoken():

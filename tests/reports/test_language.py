@@ -1,15 +1,15 @@
-"""A report in another tongue: every text is said in it, and pages turn about."""
+"""A report in another language: every text is said in it, and pages turn about."""
 
 from fieldmon.compute.wording import figure, worded
 from fieldmon.reports import words
 from fieldmon.reports.content import Illustration
 from fieldmon.reports.html import html_text
+from fieldmon.reports.language import ENGLISH, ReportLanguage
 from fieldmon.reports.pdf import pdf_bytes
-from fieldmon.reports.tongue import ENGLISH, Tongue
 from tests.reports.reading import opened
 
-LOUD = Tongue("xx", str.upper, letters="ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789")
-BACK = Tongue("he", str, right_to_left=True, letters=ENGLISH.letters)
+LOUD = ReportLanguage("xx", str.upper, letters="ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789")
+BACK = ReportLanguage("he", str, right_to_left=True, letters=ENGLISH.letters)
 
 
 def test_every_text_is_said_but_the_plot_s_name(of_season):

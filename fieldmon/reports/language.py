@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Tongue:
+class ReportLanguage:
     """A language for paper.
 
     Parameters
@@ -44,4 +44,4 @@ def _letters_of(texts: Iterable[object]) -> str:
     return "".join(sorted(set("".join(said))))
 
 
-ENGLISH = Tongue(letters=_letters_of(words.TEXTS.values()))
+ENGLISH = ReportLanguage(letters=_letters_of(words.TEXTS.values()))

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 from xdist.scheduler import loadscope
 
-from tests.both_ends import BothEnds, workers
+from tests.xdist_order import BothEnds, workers
 
 FILES = {"drawn.py": 3, "one.py": 1, "two.py": 2, "long.py": 4}
 TESTS = [f"{file}::{k}" for file, n in FILES.items() for k in range(n)]

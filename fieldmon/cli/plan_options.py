@@ -1,0 +1,66 @@
+"""What `fieldmon plan` is told: of a plot, of a team, of a season."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.options import (
+    Bounded,
+    Every,
+    Feature,
+    MaybePlotFile,
+    OneSampler,
+    Outputs,
+    Passing,
+    PlotFiles,
+    Records,
+    Robots,
+    StartTime,
+    WorkDate,
+    WorkerOptions,
+)
+from fieldmon.cli.outputs import ChanceMap
+from fieldmon.cli.pest_options import PestOptions
+from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.times import WorkStart, clock, day
+
+Now = Annotated[
+    str | None,
+    typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
+]
+
+
+EveryPlot = Annotated[
+    bool,
+    typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
+]
+
+
+@dataclass(frozen=True)
+class PlanOptions:
+    """What `fieldmon plan` is told."""
+
+    plot: MaybePlotFile = None
+    output: Outputs = None
+    observations: Records = None
+    feature: Feature = None
+    sampler: OneSampler = USUAL_SAMPLER
+    every: Every = None
+    on: WorkDate = None
+    start: StartTime = "06:00"
+    now: Now = None
+    worker: WorkerOptions = field(default_factory=WorkerOptions)
+    living: PestOptions = field(default_factory=PestOptions)
+    files: PlotFiles = field(default_factory=PlotFiles)
+    chance_map: ChanceMap = None
+    every_plot: EveryPlot = False
+    bound: Bounded = True
+    robots: Robots = None
+    passing: Passing = None
+
+    def starts(self) -> WorkStart:
+        """Return when the work starts, as it was told."""
+        return WorkStart(day(self.on), clock(self.start))

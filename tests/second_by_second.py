@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import shapely
 
-from fieldmon.plot.road_network import row_lines
+from fieldmon.plot.obstacles import row_lines
 
 # what sampling and the corners of a line may hide
 CORNER_M = 1.0

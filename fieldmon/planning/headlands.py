@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
-from fieldmon.plot.road_network import row_lines
+from fieldmon.plot.obstacles import row_lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

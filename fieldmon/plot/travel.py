@@ -14,7 +14,8 @@ from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
 from fieldmon.plot.clearance import Clearance, told_shut
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
-from fieldmon.plot.road_network import RoadNetwork, find_roads, row_lines
+from fieldmon.plot.obstacles import row_lines
+from fieldmon.plot.road_network import RoadNetwork, find_roads
 from fieldmon.plot.travel_table import TravelTable
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from shapely import MultiPolygon, Polygon, box
 
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import grid_from_plants, lay, rectangle
+from fieldmon.plot.obstacles import row_lines
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.road_network import row_lines
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles, crosses_rows, drive_m, driven_s, robot_clock
 from fieldmon.plot.trees import trees_grid

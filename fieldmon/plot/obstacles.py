@@ -1,0 +1,218 @@
+"""What a way must keep clear of: rows of plants, holes, what nobody may drive over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+import numba as nb
+import numpy as np
+import shapely
+from shapely import Polygon
+
+from fieldmon.compute.jit import kept, routine
+from fieldmon.compute.wording import counted
+from fieldmon.plot.bent_ways import off_steps, row_steps
+from fieldmon.plot.row_course import row_courses
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.plot.clearance import Clearance
+    from fieldmon.plot.grid import PlantGrid
+
+    Float = NDArray[np.float64]
+    Index = NDArray[np.intp]
+    Mask = NDArray[np.bool_]
+
+#: places so near each other are one
+SAME_M = 1e-6
+#: of so many corners at most ways go round
+MOST_CORNERS = 100
+# a lane may lie exactly on the boundary
+_EDGE_M = 0.01
+_CLEARANCE_M = 0.3
+
+
+class Where(Enum):
+    """Where a way may run, from preferred to last resort; never across a row."""
+
+    INSIDE = "in the drivable area"
+    OUTSIDE = "outside the boundary too, but not over holes"
+    ANYWHERE = "over holes too, but not over no-go areas"
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacles:
+    """What a straight way must not touch.
+
+    Parameters
+    ----------
+    row_box_m
+        ``(b, 4)`` low x, low y, high x, high y: boxes about the rows with a little clearance,
+        sorted by low y. A straight row has one, a row measured plant by plant one a step.
+    row_step_m
+        ``(b, 4)`` the steps of rows that bend, from x, y to x, y, beside their boxes; None where
+        the boxes say it all.
+    clearance_m
+        How far ways keep off such steps.
+    drivable_m
+        Where driving is fine.
+    shut_m
+        Its holes, and where driving is never fine.
+    no_go_m
+        Where driving is never fine.
+    """
+
+    row_box_m: Float
+    row_step_m: Float | None
+    clearance_m: float
+    drivable_m: shapely.Geometry
+    shut_m: shapely.Geometry
+    no_go_m: shapely.Geometry
+
+    def __repr__(self) -> str:
+        return f"<Obstacles: {counted(len(self.row_box_m), 'row piece')}>"
+
+    @classmethod
+    def of(
+        cls, grid: PlantGrid, no_go_m: shapely.Geometry, clearance: Clearance | None = None
+    ) -> Obstacles:
+        """Return the obstacles on a plot, to a robot that needs some clearance."""
+        if clearance is None:
+            ends_x = grid.along_m[end_plants(grid)]
+            clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
+        else:
+            clearance_m = clearance.way_m
+        whole = shapely.union_all(
+            [Polygon(part.exterior) for part in shapely.get_parts(grid.drivable_m)]
+        )
+        holes_m = shapely.difference(whole, grid.drivable_m)
+        areas = (
+            shapely.buffer(grid.drivable_m, _EDGE_M, join_style="mitre"),
+            shapely.buffer(shapely.union(holes_m, no_go_m), -_EDGE_M, join_style="mitre"),
+            shapely.buffer(no_go_m, -_EDGE_M, join_style="mitre"),
+        )
+        for area in areas:
+            shapely.prepare(area)
+        if grid.aisles_m is None:
+            return cls(_row_boxes(grid, clearance_m), None, clearance_m, *areas)
+        return cls(*row_steps(grid, clearance_m), clearance_m, *areas)
+
+    def clear(self, from_m: Float, to_m: Float, where: Where = Where.INSIDE) -> Mask:
+        """Tell of k straight ways, ``(k, 2)`` to ``(k, 2)``, whether they can be driven."""
+        good = np.ones(len(from_m), np.bool_)
+        if self.row_step_m is None:
+            _off_boxes(self.row_box_m, from_m, to_m, good)
+        else:
+            off_steps((self.row_box_m, self.row_step_m), self.clearance_m, from_m, to_m, good)
+        kept = np.flatnonzero(good)
+        lines = shapely.linestrings(np.stack([from_m[kept], to_m[kept]], axis=1))
+        if where is Where.INSIDE:
+            good[kept] = shapely.covers(self.drivable_m, lines)
+        else:
+            good[kept] = ~np.asarray(shapely.intersects(self._shut_to(where), lines))
+        return good
+
+    def corners(self, where: Where) -> Float:
+        """Return corners that ways may have to go round, ``(k, 2)``; of crowded ones a choice."""
+        if where is Where.INSIDE:
+            area, sign = self.drivable_m, -1.0
+        else:  # on the brink of what must not even be touched
+            area, sign = self._shut_to(where), 1.0
+            area = shapely.buffer(area, _EDGE_M, join_style="mitre")
+        coarse_m, corners = _EDGE_M, _bends(area, _EDGE_M, sign)
+        while len(corners) > MOST_CORNERS:
+            coarse_m *= 2
+            corners = _bends(area, coarse_m, sign)
+        return corners
+
+    def _shut_to(self, where: Where) -> shapely.Geometry:
+        return self.shut_m if where is Where.OUTSIDE else self.no_go_m
+
+
+def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
+    """Return corners at which an area bulges (sign 1) or something bulges into it (sign -1)."""
+    rings = shapely.get_rings(
+        shapely.get_parts(shapely.orient_polygons(shapely.simplify(area, coarse_m)))
+    )
+    found = [np.empty((0, 2))]
+    for ring in rings:
+        corner = shapely.get_coordinates(ring)[:-1]
+        ahead = np.roll(corner, -1, axis=0) - corner
+        behind = np.roll(ahead, 1, axis=0)
+        turn = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+        found.append(corner[sign * turn > 0])
+    return np.concatenate(found)
+
+
+@routine
+def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
+    """Set `off` to False for the straight lines that touch a box; boxes are sorted by low y."""
+    low_y = box_m[:, 1]
+    tallest = (box_m[:, 3] - low_y).max()
+    for k in range(off.size):
+        x, y = from_m[k]
+        way_x, way_y = to_m[k, 0] - x, to_m[k, 1] - y
+        b = np.searchsorted(low_y, min(y, y + way_y) - tallest)
+        while off[k] and b < low_y.size and low_y[b] <= max(y, y + way_y):
+            # the part of the line within the box's x, then of that within its y
+            first, last = _within(x, way_x, box_m[b, 0], box_m[b, 2], (0.0, 1.0))
+            first, last = _within(y, way_y, box_m[b, 1], box_m[b, 3], (first, last))
+            off[k] = first > last
+            b += 1
+
+
+@kept
+@nb.njit(inline="always")
+def _within(
+    at: float, way: float, low: float, high: float, part: tuple[float, float]
+) -> tuple[float, float]:
+    """Return the part of a line, as fractions, at which one coordinate is from low to high."""
+    if way == 0.0:
+        return part if low <= at <= high else (1.0, 0.0)
+    enters, leaves = (low - at) / way, (high - at) / way
+    return max(part[0], min(enters, leaves)), min(part[1], max(enters, leaves))
+
+
+def _row_boxes(grid: PlantGrid, clearance_m: float) -> Float:
+    ends = end_plants(grid)
+    corner = _corner_plants(grid)
+    step = np.flatnonzero(grid.row[corner[1:]] == grid.row[corner[:-1]])
+    alone = ends[ends[:, 0] == ends[:, 1], 0]
+    start = grid.xy_m[np.append(corner[step], alone)]
+    end = grid.xy_m[np.append(corner[step + 1], alone)]
+    box_m = np.concatenate(
+        [np.minimum(start, end) - clearance_m, np.maximum(start, end) + clearance_m], axis=1
+    )
+    return box_m[np.argsort(box_m[:, 1])]
+
+
+def row_lines(grid: PlantGrid) -> NDArray[np.object_]:
+    """Return each row as a line through its plants, first to last, ``(r,)``.
+
+    Plants in the middle of a row along x are left out. A row of one plant is a line of no length.
+    Where rows bend they bend on between plants that are far apart.
+    """
+    if grid.aisles_m is not None:
+        return row_courses(grid)
+    ends = end_plants(grid)
+    plant = np.sort(np.append(_corner_plants(grid), ends[ends[:, 0] == ends[:, 1], 0]))
+    lines: NDArray[np.object_] = shapely.linestrings(grid.xy_m[plant], indices=grid.row[plant])
+    return lines
+
+
+def _corner_plants(grid: PlantGrid) -> Index:
+    """Return the plants at which rows start, end or leave the direction of x, ascending."""
+    y = grid.xy_m[:, 1]
+    level = np.abs(np.diff(y)) < SAME_M
+    inner = np.zeros(len(grid), np.bool_)
+    inner[1:-1] = level[1:] & level[:-1]
+    inner[end_plants(grid)] = False
+    return np.flatnonzero(~inner)
+
+
+def end_plants(grid: PlantGrid) -> Index:
+    """Return the first and the last plant of each row, ``(r, 2)``."""
+    return np.stack([grid.row_start[:-1], grid.row_start[1:] - 1], axis=1)

@@ -20,8 +20,8 @@ from fieldmon.plot.bent_layout import (
     row_aisles,
     shut_stretches,
 )
+from fieldmon.plot.line_sorting import sorted_rows
 from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.row_tracing import sorted_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

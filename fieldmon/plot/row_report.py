@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
-from fieldmon.plot.row_tracing import beside_their_rows
+from fieldmon.plot.strands import beside_their_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,18 +1,11 @@
-"""Plants traced into rows: bent, in blocks, with gaps, by their names, and lines put in order."""
+"""Plants traced into rows: bent, in blocks, with gaps, and by their names."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.row_tracing import (
-    _curve,
-    beside_their_rows,
-    row_lines_of,
-    sorted_rows,
-    trace,
-)
+from fieldmon.plot.row_tracing import trace
 from tests.bent import right_share, turned
 
 
@@ -98,55 +91,3 @@ def test_names_decide_where_a_row_is_even_against_what_is_seen():
 
 def test_two_plants_are_too_few_to_tell():
     assert trace(np.array([[0.0, 0.0], [1.0, 0.0]])) is None
-
-
-def test_lines_drawn_in_any_order_and_either_way_are_put_in_order():
-    x = np.linspace(0, 50, 20)
-    drawn = [np.stack([x, 3.0 * k + 2 * np.sin(x / 15)], axis=1) for k in range(6)]
-    mixed = [drawn[k][:: -1 if k % 2 else 1] for k in (3, 0, 5, 1, 4, 2)]
-    rows = sorted_rows(Polylines.each(mixed), 8.0)
-    assert rows.block.tolist() == [0] * 6
-    assert rows.spacing_m == pytest.approx(3.0, rel=0.05)
-    for k in range(6):
-        assert rows.lines.line(k) == pytest.approx(drawn[k])
-
-
-def test_pieces_of_one_drawn_row_are_one_row():
-    whole = [np.array([[0.0, 3.0 * k], [60.0, 3.0 * k]]) for k in (0, 2)]
-    pieces = [np.array([[0.0, 3.0], [20.0, 3.0]]), np.array([[60.0, 3.0], [40.0, 3.0]])]
-    rows = sorted_rows(Polylines.each([whole[0], *pieces, whole[1]]), 8.0)
-    assert len(rows.block) == 3
-    assert rows.lines.line(1)[:, 0].tolist() == [0.0, 20.0, 40.0, 60.0]
-
-
-def test_how_far_plants_stand_beside_a_bent_row_is_what_they_were_moved_by():
-    rng = np.random.default_rng(4)
-    xy_m, row = arcs(6, 60, (2.5, 1.4), 80.0)
-    moved = xy_m + rng.normal(0, 0.2, xy_m.shape)
-    left_m, alone_m, free = beside_their_rows(moved, row)
-    assert np.sqrt((left_m**2).sum() / free) == pytest.approx(0.2, rel=0.1)
-    assert np.abs(beside_their_rows(xy_m, row).left_m).max() < 0.01
-    # to the line of the others, which is itself not sure, it is a little more
-    assert np.sqrt((alone_m**2).mean()) == pytest.approx(0.23, rel=0.12)
-
-
-@pytest.mark.parametrize("noise_m", [0.0, 0.05])
-def test_over_a_gap_of_many_plants_a_row_bends_on(noise_m):
-    xy_m, row = arcs(6, 40, (2.5, 1.4), 60.0)
-    number = np.arange(len(row)) % 40
-    there = (row != 2) | (number < 10) | (number > 29)
-    moved = xy_m[there] + np.random.default_rng(3).normal(0, noise_m, (there.sum(), 2))
-    lines = row_lines_of(trace(moved))
-    assert len(lines) == 6
-    away_m = np.hypot(*(lines.xy_m + np.array([0.0, 60.0])).T)
-    radius_m = 60.0 + 2.5 * np.repeat(np.arange(6), np.diff(lines.start))
-    # rows are numbered from the right of their direction, here from without or from within
-    off_m = min(np.abs(away_m - r).max() for r in (radius_m, 132.5 - radius_m))
-    assert off_m < (0.15 if noise_m == 0.0 else 0.5)
-
-
-def test_over_a_gap_between_lines_that_do_not_lead_to_each_other_a_row_is_straight():
-    x = np.arange(10.0)
-    one, other = np.stack([x, 0 * x], axis=1), np.stack([0 * x + 20.0, x], axis=1)
-    assert len(_curve(one, other[::-1], 5)) == 0
-    assert len(_curve(one, one + np.array([20.0, 0.0]), 5)) == 5

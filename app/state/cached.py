@@ -19,7 +19,7 @@ from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.io import prepare, read
+from fieldmon.io import plot_records, prepare, read
 from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
 from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.monitoring import worked_route
@@ -111,7 +111,7 @@ def records(
 
     They may name one of `_fields`, or rows and plants, the measured ones by their own labels.
     """
-    return prepare.records_on(_plot, _source, lambda: _fields, _measured)
+    return plot_records.records_on(_plot, _source, lambda: _fields, _measured)
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=_WORKING)

@@ -15,7 +15,8 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import parted
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
-from fieldmon.io.prepare import Laid, with_plants
+from fieldmon.io.prepare import with_plants
+from fieldmon.io.prepared import Laid
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
 
 from . import brought_files, cached, rasters, sample_estate

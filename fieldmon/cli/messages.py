@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
-    from fieldmon.io.prepare import Laid, SourceMessage
+    from fieldmon.io.prepared import Laid, SourceMessage
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot

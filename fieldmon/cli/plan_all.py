@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from fieldmon.io.prepare import Estate, EstateRecords
+    from fieldmon.io.prepared import Estate, EstateRecords
     from fieldmon.planning.batch import Orders, Task
 
 SUMMARY = "summary.csv"

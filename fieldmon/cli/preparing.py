@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fieldmon.cli.messages import Terminal
 
 if TYPE_CHECKING:
-    from fieldmon.io.prepare import Estate, Prepared
+    from fieldmon.io.prepared import Estate, Prepared
     from fieldmon.io.sources import PlotRequest
 
 

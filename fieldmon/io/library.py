@@ -13,7 +13,8 @@ from fieldmon.compute.arguments import must_be
 from fieldmon.errors import ImportDoubt
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
-from fieldmon.io.prepare import prepare, records_on
+from fieldmon.io.plot_records import records_on
+from fieldmon.io.prepare import prepare
 from fieldmon.io.read import read_plots as read_fields
 from fieldmon.io.read import read_weather as read_weather_file
 from fieldmon.io.readers.inspection_options import InspectionOptions

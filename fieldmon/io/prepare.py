@@ -2,56 +2,51 @@
 
 `prepare` makes one plot, `prepare_estate` reads every plot of a file with its records. Whoever
 keeps what was read, and draws on plots in between, goes the same way step by step: `lay` or
-`lay_around`, `records_on`, `without_missing`, `risk_on`.
+`lay_around`, `records_on` (in `plot_records`), `without_missing`, `risk_on`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TypeVar
-
-import shapely
+from typing import TYPE_CHECKING, TypeVar
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded, FieldmonError, ObservationError, PlotError, SettingError
+from fieldmon.errors import ChoiceNeeded, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
-from fieldmon.io.import_report import ImportMessage, doubtful, gathered, guessed
+from fieldmon.io.import_report import ImportMessage, gathered, guessed
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import source_name
+from fieldmon.io.plot_records import first_names, records_of, records_on
+from fieldmon.io.prepared import Estate, EstateRecords, Laid, Listener, Prepared, SourceMessage
 from fieldmon.io.read import (
     read_crews,
     read_lines,
     read_plants,
     read_plots,
-    read_records,
-    read_records_by_plot,
     read_rows,
 )
-from fieldmon.io.readers.crews import Crew
-from fieldmon.io.readers.nearby import on_other_plots, on_plants, records_on_plot
-from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot, planting_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
+    from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
         CanopySource,
         PlotRequest,
         PlotSources,
-        RecordSource,
         RiskSource,
         Role,
     )
@@ -59,146 +54,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_MOST_NAMED = 12
-#: some kilometres: records further from all plots than that belong to none
-_NEARBY_DEG = 0.05
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
-
-
-@dataclass(frozen=True)
-class SourceMessage:
-    """One thing that the import of a file has to say.
-
-    Parameters
-    ----------
-    role
-        What the file is to the plot: whose option or button answers.
-    source
-        The file's name.
-    message
-        What there is to say.
-    """
-
-    role: Role
-    source: str
-    message: ImportMessage
-
-
-@dataclass(frozen=True, eq=False)
-class Laid:
-    """A plot with its plants, what had to be assumed for them, and what is said of its rows."""
-
-    plot: Plot
-
-    @property
-    def assumed(self) -> tuple[Assumed, ...]:
-        """Return what nobody said of its rows."""
-        return self.plot.assumed
-
-    @property
-    def messages(self) -> tuple[ImportMessage, ...]:
-        """Return how measured plants stand in rows, and what is doubtful about it."""
-        from fieldmon.io.import_report import doubtful, seen  # noqa: PLC0415
-
-        if not self.plot.grid.in_rows:
-            said = worded("Plants are taken to stand in no rows, and are visited by nearness.")
-            return (seen(said),)
-        rows, drawn = self.plot.rows, self.plot.field.row_lines
-        if rows is None and self.plot.field.plants is None and len(drawn.geoms) > 1:
-            return (
-                seen(
-                    worded("Plants stand along the {n} rows that were drawn.", n=len(drawn.geoms))
-                ),
-            )
-        if rows is None:
-            return ()
-        found = (seen(worded("Rows were found: {how}.", how=rows.how)),) if rows.in_rows else ()
-        return (*found, *(doubtful(sentence) for sentence in rows.doubts))
-
-
-@dataclass(frozen=True, eq=False)
-class Prepared:
-    """A plot that is ready to be planned, simulated or begun a season on.
-
-    Parameters
-    ----------
-    plot
-        The plot, without the plants that are missing.
-    records
-        The records on it or near it.
-    risk
-        ``(n,)`` risk of its plants from a raster, NaN where that says nothing; None without one.
-    messages
-        What the imports had to say, in order.
-    assumed
-        What nobody said.
-    """
-
-    plot: Plot
-    records: Observations
-    risk: NDArray[np.float64] | None
-    messages: tuple[SourceMessage, ...]
-    assumed: tuple[Assumed, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class EstateRecords:
-    """The records of several plots.
-
-    Parameters
-    ----------
-    anywhere
-        Those that belong to a plot by their position.
-    named
-        Those that name a plot's rows and plants, by the plot's name; empty where records do not.
-    """
-
-    anywhere: Observations = field(default_factory=Observations.none)
-    named: Mapping[str, Observations] = field(default_factory=dict)
-
-    def candidates(self, name: str) -> Observations:
-        """Return the records among which those of a plot are."""
-        return self.named.get(name, self.anywhere)
-
-    def on(self, plot: Field) -> Observations:
-        """Return the records on a plot or near it; there may be none."""
-        return records_on_plot(self.candidates(plot.name), plot)
-
-
-@dataclass(frozen=True, eq=False)
-class Estate:
-    """Every plot of a file.
-
-    Parameters
-    ----------
-    fields
-        The plots, with their paths.
-    crews
-        Who works on each, by name, as the file says.
-    records
-        The records of all of them.
-    messages
-        What the imports had to say, in order.
-    """
-
-    fields: tuple[Field, ...]
-    crews: Mapping[str, Crew]
-    records: EstateRecords
-    messages: tuple[SourceMessage, ...]
-
-    def crew(self, field: Field) -> Crew:
-        """Return who works on a plot."""
-        return self.crews.get(field.name, Crew())
-
-
-class Listener(Protocol):
-    """Hears what there is to say while files are read, be a later one of no use or not."""
-
-    def message(self, said: SourceMessage, /) -> None:
-        """Hear what an import has to say."""
-
-    def laid(self, laid: Laid, /) -> None:
-        """Hear of the plot, before its records are read."""
 
 
 def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
@@ -294,7 +150,7 @@ def one_of(fields: tuple[Field, ...]) -> Field:
             "One plot must be chosen, but the file holds {n}: {some}. Choose "
             "one by name or number.",
             n=len(names),
-            some=_some(names),
+            some=first_names(names),
         ),
         "feature",
         names,
@@ -352,89 +208,6 @@ def _along_rows(request: PlotRequest, hearing: _Hearing) -> Laid:
     if "plant_spacing_m" in request.planting.given():
         return Laid(plot)
     return Laid(replace(plot, assumed=(Assumed("plant_spacing_m", planting.plant_spacing_m),)))
-
-
-def records_on(
-    plot: Plot,
-    source: RecordSource,
-    fields: Callable[[], tuple[Field, ...]] | None = None,
-    measured: Plants | None = None,
-) -> Imported[Observations]:
-    """Return the records on a plot or near it.
-
-    They give positions, or name rows and plants, or plots.
-
-    Parameters
-    ----------
-    plot
-        The plot with all of its plants, also those that a raster shows to be missing.
-    source
-        The records.
-    fields
-        Returns every plot of the plot's file, for records that name plots, and to say on which of
-        them records lie of which none is near; called only then.
-    measured
-        The plot's measured plants, whose labels records may name.
-    """
-    try:
-        read = read_records(source.file, source.options, near=plot.field)
-    except ChoiceNeeded as question:
-        if question.option not in {"plants", "plots"}:
-            raise
-        known = (plot.field,) if fields is None else fields()
-        places = NamedPlaces.of(known, plot.grid, measured, plot.field.name)
-        read = read_records(source.file, source.options, plot.field, places)
-    except ObservationError:
-        if fields is not None and (elsewhere := _elsewhere(plot.field, source, fields)):
-            raise elsewhere from None
-        raise
-    return read.having(read.value, on_plants(read.value, plot.grid))
-
-
-def _elsewhere(
-    field: Field, source: RecordSource, fields: Callable[[], tuple[Field, ...]]
-) -> ObservationError | None:
-    """Return what to say where records that can be read lie on other plots of the plot's file."""
-    try:
-        every = read_records(source.file, source.options).value
-    except FieldmonError:  # they were refused for what they are, not for where they lie
-        return None
-    return on_other_plots(every, field, fields())
-
-
-def records_of(
-    fields: tuple[Field, ...], source: RecordSource, lay: Callable[[Field], Laid]
-) -> Imported[EstateRecords]:
-    """Return the records of several plots; `lay` makes the plants that records name."""
-    try:
-        read = read_records(source.file, source.options)
-    except ChoiceNeeded as question:
-        if question.option == "plots":
-            read = read_records(source.file, source.options, places=NamedPlaces(fields))
-            return read.having(EstateRecords(read.value))
-        if question.option != "plants":
-            raise
-        return _by_plant(fields, source, lay, question.choices)
-    return read.having(EstateRecords(read.value), _far_from_all(fields, source, read.value))
-
-
-def _far_from_all(
-    fields: tuple[Field, ...], source: RecordSource, records: Observations
-) -> list[ImportMessage]:
-    """Return a doubt where no record lies near any plot; ask where all are on another continent."""
-    west, south, east, north = shapely.total_bounds([field.boundary for field in fields])
-    lon, lat = records.lonlat.T
-    margin = _NEARBY_DEG
-    near = (lon > west - margin) & (lon < east + margin)
-    near &= (lat > south - margin) & (lat < north + margin)
-    if near.any():
-        return []
-    middle = ((west + east) / 2, (south + north) / 2)
-    if source.options.near is None:
-        read_records(source.file, replace(source.options, near=middle))
-    return [
-        doubtful(worded("Not one record lies near any of the plots; they say nothing about them."))
-    ]
 
 
 def without_missing(plot: Plot, source: CanopySource) -> Imported[Plot]:
@@ -512,63 +285,3 @@ def _with_paths(
     read = partial(read_lines, file, sources.paths_options, fields[0])
     lines = hearing.read("paths", file, read)
     return tuple(replace(field, paths=lines) for field in fields)
-
-
-def _by_plant(
-    fields: tuple[Field, ...],
-    source: RecordSource,
-    lay: Callable[[Field], Laid],
-    plots: tuple[str, ...],
-) -> Imported[EstateRecords]:
-    """Return records that name rows and plants, each on its own plot; `plots` are those named."""
-    if len(fields) == 1:
-        (only,) = fields
-        places = NamedPlaces.of(fields, lay(only).plot.grid, None, only.name)
-        read = read_records(source.file, source.options, places=places)
-        return read.having(EstateRecords(named={only.name: read.value}))
-    named_plots = plots_called(plots, fields) if plots else (_plot_by_hand(fields, source),)
-    places = NamedPlaces(fields, plants_of=_plants_of(named_plots, lay))
-    by_plot = read_records_by_plot(source.file, source.options, places)
-    none = Observations.none()
-    named = {field.name: by_plot.value.get(field.name, none) for field in fields}
-    return by_plot.having(EstateRecords(named=named))
-
-
-def _plot_by_hand(fields: tuple[Field, ...], source: RecordSource) -> Field:
-    """Return the plot whose rows and plants records name without naming it; ask for it."""
-    by_hand = source.options.plot
-    if by_hand is not None and (called := plots_called((by_hand,), fields)):
-        return called[0]
-    names = tuple(field.name for field in fields)
-    wrong = "" if by_hand is None else f" (it is not {by_hand!r})"
-    raise ChoiceNeeded(
-        worded(
-            "Records that name rows and plants must be of a known plot, but "
-            "{source_name} does not say of which{wrong}. Choose one of {n}: "
-            "{some}.",
-            source_name=source_name(source.file),
-            wrong=wrong,
-            n=len(names),
-            some=_some(names),
-        ),
-        "plot",
-        names,
-    )
-
-
-def _plants_of(fields: tuple[Field, ...], lay: Callable[[Field], Laid]) -> dict[str, Plants]:
-    """Return the plants of plots by name, but of those that cannot carry any."""
-    plants: dict[str, Plants] = {}
-    problem = None
-    for each in fields:
-        try:
-            plants[each.name] = labelled(lay(each).plot.grid, None, each.blocks)
-        except PlotError as error:
-            problem = error
-    if problem is not None and not plants:
-        raise problem
-    return plants
-
-
-def _some(names: tuple[str, ...]) -> str:
-    return ", ".join(names[:_MOST_NAMED]) + (", ..." if len(names) > _MOST_NAMED else "")

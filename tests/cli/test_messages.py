@@ -8,7 +8,7 @@ from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.import_report import Remedy, guessed
-from fieldmon.io.prepare import Laid, SourceMessage
+from fieldmon.io.prepared import Laid, SourceMessage
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle

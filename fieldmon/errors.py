@@ -8,11 +8,31 @@ from __future__ import annotations
 
 
 class FieldmonError(Exception):
-    """Any problem that a person can put right; its text is meant for that person."""
+    """Any problem that a person can put right; its text is meant for that person.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> try:
+    ...     fm.Robot(hours=-1)
+    ... except fm.FieldmonError as problem:
+    ...     print(problem)
+    The robot's hours must be above 0, but it is -1.
+    """
 
 
 class FileProblem(FieldmonError):  # noqa: N818 - reads as what it is
-    """A file cannot be used as it is: choose or mend another file."""
+    """A file cannot be used as it is: choose or mend another file.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> try:
+    ...     fm.read_plot("nowhere.zip")
+    ... except fm.FileProblem:
+    ...     print("Which file, then?")
+    Which file, then?
+    """
 
 
 class ChoiceNeeded(FieldmonError):  # noqa: N818
@@ -28,6 +48,15 @@ class ChoiceNeeded(FieldmonError):  # noqa: N818
         The possible answers, best first, as they can be handed back.
     role
         Which file asks, where a plot is prepared from several (`fieldmon.io.sources.Role`).
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> try:
+    ...     fm.read_plot("sample_data/paran_estate.zip")
+    ... except fm.ChoiceNeeded as question:
+    ...     print(question.option, question.choices[:2])
+    feature ('Gate', 'Pond')
     """
 
     def __init__(
@@ -43,19 +72,58 @@ class ChoiceNeeded(FieldmonError):  # noqa: N818
 
 
 class SettingError(FieldmonError):
-    """A setting is outside what it may be: change the number."""
+    """A setting is outside what it may be: change the number.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> try:
+    ...     fm.Spread(rate_per_day=30)
+    ... except fm.SettingError as problem:
+    ...     print(problem)
+    The spread's rate_per_day must be a chance in 0..1, but it is 30.
+    """
 
 
 class ImportDoubt(UserWarning):
-    """An import guessed, dropped or doubts something: look before you use it."""
+    """An import guessed, dropped or doubts something: look before you use it.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import fieldmon as fm
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", fm.ImportDoubt)  # refuse what is doubted
+    ...     plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    """
 
 
 class PlotError(FieldmonError):
-    """The plot cannot carry what was asked (no room for a plant, no way between rows)."""
+    """The plot cannot carry what was asked (no room for a plant, no way between rows).
+
+    Examples
+    --------
+    >>> import fieldmon as fm, shapely
+    >>> try:
+    ...     fm.Field("nothing", shapely.MultiPolygon())
+    ... except fm.PlotError as problem:
+    ...     print(str(problem).partition(", but")[0])
+    The boundary of plot 'nothing' must be a valid, non-empty area
+    """
 
 
 class ObservationError(FieldmonError):
-    """The observations do not fit the plot or their own columns."""
+    """The observations do not fit the plot or their own columns.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> try:
+    ...     fm.Observations.of([[35.15, 30.36]], [1, 1])
+    ... except fm.ObservationError as problem:
+    ...     print(problem)
+    All columns of the observations must have 1 entries, but present has 2.
+    """
 
 
 class ContradictionError(ObservationError):

@@ -1,6 +1,7 @@
 """The public library: every name is there, documented, and its examples run as they stand."""
 
 import ast
+import dataclasses
 import doctest
 import importlib
 import inspect
@@ -36,6 +37,9 @@ FUNCTIONS = {
     "routes.best": fm.routes.best,
     "routes.bound": fm.routes.bound,
 }
+#: whose contradiction takes a season that was recorded, see tests/monitoring
+CLASSES = [name for name in fm.__all__ if inspect.isclass(getattr(fm, name))
+           and name != "ContradictionError"]  # fmt: skip
 
 
 @pytest.fixture
@@ -75,6 +79,20 @@ def test_a_public_function_says_what_it_takes_raises_and_shows_an_example(name):
         assert "Parameters\n" in text
         assert "Raises\n" in text
         assert all(parameter.name in text for parameter in takes)
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_a_public_class_names_its_fields_and_shows_an_example(name):
+    public = getattr(fm, name)
+    text = inspect.getdoc(public)
+    assert ">>>" in text
+    fields = dataclasses.fields(public) if dataclasses.is_dataclass(public) else ()
+    assert [field.name for field in fields if field.name not in text] == []
+
+
+def test_samplers_say_in_a_line_who_they_are():
+    assert repr(fm.SAMPLERS["naive"]) == "<Naive: every plant, row by row>"
+    assert all(len(repr(kind)) < 100 for kind in fm.SAMPLERS.values())
 
 
 def test_every_name_is_given_and_typed():

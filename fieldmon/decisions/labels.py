@@ -39,6 +39,13 @@ class ProductLabel:
         Uses in a season.
     source
         Who says so.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> label = fm.ProductLabel("Some oil", crop="grapes", waiting_days=7)
+    >>> label.fits("some oil", "grapes", "spider-mite")
+    True
     """
 
     product: str

@@ -101,6 +101,16 @@ class HotSpots:
         ``(h, 2)`` mean position of its finds, metres of the grid's frame.
     radius_m
         Radius of the windows.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> seen = np.zeros(plot.n_plants, np.int8)
+    >>> seen[:40] = 1
+    >>> spots = fm.hot_spots(plot.grid, seen)
+    >>> spots.found.tolist(), bool(spots.q.max() < 0.05)
+    ([40], True)
     """
 
     of_plant: NDArray[np.int32]

@@ -50,6 +50,13 @@ class Inspections:
         Pests counted; NaN where they were not.
     who, notes
         Text; empty where nothing was noted.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> seen = fm.Inspections.of(np.array([3, 4]), np.array([1, 0]), np.datetime64("2026-11-18"))
+    >>> seen.take(seen.result == 1)
+    <Inspections: 1 inspection, 1 find>
     """
 
     plant: NDArray[np.int32]
@@ -94,7 +101,24 @@ class Inspections:
         on: dt.date | np.datetime64 | NDArray[np.datetime64],
         **columns: NDArray[np.generic],
     ) -> Inspections:
-        """Return inspections of one date, or of a date each; columns not given are unknown."""
+        """Return inspections of one date, or of a date each; columns not given are unknown.
+
+        Parameters
+        ----------
+        plant
+            ``(k,)`` numbers in the grid, from 0.
+        result
+            ``(k,)`` 1 found, 0 clean, 2 skipped.
+        on
+            The local date, or ``(k,)`` dates.
+        columns
+            Others of these columns by name, ``(k,)`` each.
+
+        Raises
+        ------
+        ObservationError
+            If plants or results are no whole numbers of their type.
+        """
         k, dates = len(plant), np.asarray(on, "datetime64[D]")
         known: dict[str, Any] = {
             "plant": plant,

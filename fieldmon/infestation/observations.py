@@ -44,6 +44,14 @@ class Observations:
         ``(m,)`` text; empty where unknown.
     leaves_sampled
         ``(m,)`` leaves looked at; NaN where unknown.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> lonlat = np.array([[35.1501, 30.3601], [35.1504, 30.3602]])
+    >>> day = np.array(["2026-11-16", "NaT"], "datetime64[D]")
+    >>> fm.Observations.of(lonlat, np.array([1, 0]), day, count=np.array([12.0, np.nan]))
+    <Observations: 2 records>
     """
 
     lonlat: NDArray[np.float64]
@@ -87,7 +95,24 @@ class Observations:
         day: NDArray[np.datetime64] | None = None,
         **columns: NDArray[np.generic],
     ) -> Observations:
-        """Return observations with every column that is not given unknown."""
+        """Return observations with every column that is not given unknown.
+
+        Parameters
+        ----------
+        lonlat
+            ``(m, 2)`` degrees, longitude first.
+        present
+            ``(m,)`` 1 infested, 0 clean, -1 not said.
+        day
+            ``(m,)`` datetime64[D]; None: of no date.
+        columns
+            Others of these columns by name, ``(m,)`` each.
+
+        Raises
+        ------
+        ObservationError
+            If columns have different lengths.
+        """
         m = len(lonlat)
         unknown: dict[str, NDArray[np.generic]] = {
             "count": np.full(m, np.nan),

@@ -37,6 +37,12 @@ class Spread:
         neighbour, drawn evenly. ``"all"``: with that chance it infects all its neighbours.
     arrivals_per_day
         Chance per night that a clean plant is infested from outside the plot.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.Spread(rate_per_day=0.3, arrivals_per_day=0.0002)
+    Spread(rate_per_day=0.3, to='each', arrivals_per_day=0.0002)
     """
 
     rate_per_day: float = 0.5

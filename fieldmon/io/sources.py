@@ -65,7 +65,27 @@ class PlotSources:
 class PlantingChoices:
     """What is said of a plot's rows by hand, as `Planting` has it; None: found, stated or usual.
 
-    ``in_rows`` is False for measured plants that stand in no rows, and are visited by nearness.
+    Parameters
+    ----------
+    row_bearing_deg
+        Direction of the rows, degrees clockwise from true north.
+    row_spacing_m, plant_spacing_m
+        From row to row, and from plant to plant in a row.
+    headland_m
+        Free of plants at both ends of each row.
+    faces
+        How many faces of a row are inspected, 1 or 2.
+    half_canopy_m
+        How far plants reach to each side of their middle.
+    in_rows
+        False for measured plants that stand in no rows, and are visited by nearness.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> choices = fm.PlantingChoices(row_spacing_m=5.0)
+    >>> fm.read_plot("sample_data/paran_estate.zip", feature="Gate", planting=choices)
+    <Plot Gate: 3060 plants in 36 rows>
     """
 
     row_bearing_deg: float | None = None

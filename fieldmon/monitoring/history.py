@@ -60,6 +60,13 @@ class BeliefSettings:
         Whether finds are traced beyond the plants next to them, and the season's own inspections
         tell how far insects jump, how many arrive and how many are overlooked. Seasons begun
         before that was known go on without.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> flagged = fm.BeliefSettings(treated=False)
+    >>> flagged.spread.rate_per_day
+    0.02
     """
 
     spread: Spread = field(

@@ -57,6 +57,14 @@ class PlantToInspect(NamedTuple):
         Seconds to spend there.
     detects
         Chance that so long an inspection finds what is there.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> stop = fm.Monitor(plot, sampler="naive").day().ask()
+    >>> stop.plant, stop.row, stop.number, stop.inspect_s
+    (0, 1, 1, 41.13)
     """
 
     plant: int
@@ -225,7 +233,18 @@ class Monitor:
 
 
 class MonitorDay:
-    """A day that is asked for the next plant and told what was seen there; see `Monitor`."""
+    """A day that is asked for the next plant and told what was seen there; see `Monitor`.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> day = fm.Monitor(plot, sampler="naive").day()
+    >>> first = day.ask()
+    >>> day.tell(found=True)
+    >>> day.ask().plant != first.plant, day.found.tolist()
+    (True, [True])
+    """
 
     def __init__(self, monitor: Monitor, scene: Scene, sampler: Sampler) -> None:
         self.ended = False

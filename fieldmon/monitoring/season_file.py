@@ -81,6 +81,19 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     ------
     FileProblem
         If the file is missing, damaged, of a newer version, or held by another program.
+
+    Examples
+    --------
+    >>> from datetime import date
+    >>> import fieldmon as fm, numpy as np
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> season = fm.Season.create("season.gpkg", plot, begins=date(2026, 11, 18))
+    >>> today = season.plan(date(2026, 11, 18))
+    >>> found = np.zeros(2, np.int8)
+    >>> seen = fm.Inspections.of(today.route.plant[:2], found, np.datetime64("2026-11-18"))
+    >>> _ = season.record(seen)
+    >>> len(fm.Season("season.gpkg").history.inspections)
+    2
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -103,14 +116,33 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         risk: Floats | None = None,
         **chosen: Any,  # noqa: ANN401 - fields of the settings
     ) -> Season:
-        """Begin a season in a new file, whole or not at all; raise `FileProblem` if it exists.
+        """Begin a season in a new file, whole or not at all.
 
-        Settings may be given one by one instead, as ``begins=date(2026, 11, 18)`` or
-        ``robot=Robot(hours=4)``; a season begins today (in the plot's time zone) unless told
-        otherwise.
+        Parameters
+        ----------
+        path
+            The file, a GeoPackage; it must not exist.
+        plot
+            Plants and the ways between them.
+        observations
+            Records from before; None: none.
+        settings
+            What is chosen; None: the defaults, from today on in the plot's time zone.
+        messages
+            What imports had to say, to be kept.
+        risk
+            ``(n,)`` one more chance of being infested at the start, from a raster for instance,
+            see `fieldmon.infestation.prior.prior_chance`; None: none.
+        chosen
+            Settings one by one instead, as ``begins=date(2026, 11, 18)`` or
+            ``robot=Robot(hours=4)``.
 
-        `risk` ``(n,)`` is one more chance of being infested at the start, from a raster for
-        instance, see `fieldmon.infestation.prior.prior_chance`.
+        Raises
+        ------
+        FileProblem
+            If the file exists, or cannot be written.
+        SettingError
+            If what is handed over is something else.
         """
         must_be_plot(plot)
         must_be_records(observations)

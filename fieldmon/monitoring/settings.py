@@ -66,6 +66,14 @@ class MonitoringSettings:
         The first day of harvest, which treatments have to wait for; None: not known.
     language
         Code of the language of its reports, as ``"he"``; empty: English.
+
+    Examples
+    --------
+    >>> from datetime import date
+    >>> import fieldmon as fm
+    >>> settings = fm.MonitoringSettings(begins=date(2026, 11, 18), robot=fm.Robot(hours=4))
+    >>> settings.day(date(2026, 11, 20)), settings.sampler
+    (2, 'adaptive')
     """
 
     begins: date

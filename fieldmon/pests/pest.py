@@ -267,6 +267,13 @@ class Pest:
         What was looked for and not found, in words.
     citations
         Where each part comes from.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> pest = fm.read_pest("spider-mite")
+    >>> pest.species, pest.seen_by(fm.Robot()).detects
+    ('Tetranychus urticae', 0.84)
     """
 
     name: str

@@ -57,6 +57,17 @@ class Weather:
         ``(n,)`` whether it was forecast rather than measured.
     zone
         Name of the place's time zone, by which days begin; empty: UTC.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> with open("station.csv", "w") as file:
+    ...     print("Date,Tmin (C),Tmax (C)", file=file)
+    ...     print("2025-11-18,10,20", file=file)
+    >>> weather = fm.read_weather("station.csv", plot)
+    >>> weather.low_c.tolist(), weather.high_c.tolist(), weather.hourly
+    ([10.0], [20.0], False)
     """
 
     at: Times

@@ -58,7 +58,25 @@ class PlanSettings:
 
 @dataclass(frozen=True, eq=False)
 class DayPlan:
-    """A planned day: what is believed, where to go, and the scene it was planned in."""
+    """A planned day: what is believed, where to go, and the scene it was planned in.
+
+    Parameters
+    ----------
+    scene
+        All that was known when it was planned.
+    work
+        Which plants are inspected when, ``(k,)`` each, if nothing is found.
+    route
+        The same as it is driven, for files and maps.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1))
+    >>> day.chance.shape, len(day.route) == len(day.work.plant)
+    ((3825,), True)
+    """
 
     scene: Scene
     work: Workday

@@ -55,6 +55,14 @@ class Route:
     found_bound
         What no route of these hours can expect to find, see `fieldmon.planning.day_bound`; None:
         it is not known.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> route = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1)).route
+    >>> route.end_s <= 3600.0, route.line_m.shape[1], len(route.plant) == len(route)
+    (True, 2, True)
     """
 
     aisles: Aisles

@@ -28,6 +28,13 @@ class Block:
     row_bearing_deg, row_spacing_m, plant_spacing_m
         As stated for this block, or None: its rows run along its own longest side, as far apart
         as on the rest of the plot.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, shapely
+    >>> area = shapely.MultiPolygon([shapely.box(35.150, 30.360, 35.151, 30.361)])
+    >>> fm.Block("north", area, row_bearing_deg=20.0)
+    <Block north>
     """
 
     name: str

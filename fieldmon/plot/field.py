@@ -52,6 +52,14 @@ class Field:
         Parts of the plot with rows of their own; empty: the plot is one.
     in_rows
         Whether plants stand in rows. If not, measured ones are visited by nearness.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, shapely
+    >>> area = shapely.MultiPolygon([shapely.box(35.150, 30.360, 35.151, 30.361)])
+    >>> field = fm.Field("home", area, row_bearing_deg=90.0)
+    >>> fm.Plot.of(field)
+    <Plot home: 810 plants in 27 rows>
     """
 
     name: str

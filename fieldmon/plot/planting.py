@@ -33,6 +33,12 @@ class Planting:
     outer_faces
         With two faces: whether faces that look at no other row are inspected too (the thesis
         leaves them out).
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.Planting(row_spacing_m=2.5, plant_spacing_m=1.0, faces=2).headland_m
+    4.0
     """
 
     row_bearing_deg: float | None = None

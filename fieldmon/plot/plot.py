@@ -84,6 +84,13 @@ class Plot:
         What was taken for its rows because nobody said it.
     rows
         How well its measured plants stand in rows; None where plants were laid, or read back.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> plot.n_plants, plot.grid.n_rows, plot.grid.xy_m.shape
+    (3825, 45, (3825, 2))
     """
 
     field: Field
@@ -101,7 +108,20 @@ class Plot:
 
     @classmethod
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:
-        """Take a field's measured plants, or lay some, and find the ways between them."""
+        """Take a field's measured plants, or lay some, and find the ways between them.
+
+        Parameters
+        ----------
+        field
+            The plot as it is known; its plants stand where they were measured, if they were.
+        planting
+            Bearing, spacings and headland; None: what the field states, else the defaults.
+
+        Raises
+        ------
+        PlotError
+            If there is no room for a plant, or no way to a row.
+        """
         if not field.in_rows:
             return cls.of_trees(field)
         if field.plants is not None:
@@ -119,9 +139,25 @@ class Plot:
         gate: tuple[float, float] | None = None,
         names: PlantNames | None = None,
     ) -> Plot:
-        """Return the plot of measured plants ``(n, 2)`` lon/lat whose boundary nobody drew.
+        """Return the plot of measured plants whose boundary nobody drew.
 
-        `names` are those of the row and the block of each, where these are known.
+        Parameters
+        ----------
+        name
+            What to call it.
+        plants
+            ``(n, 2)`` degrees, longitude first.
+        planting
+            Bearing and spacings; None: found from the plants.
+        gate
+            ``(lon, lat)`` where days start and end; None: the nearest row end.
+        names
+            Of the row and the block of each plant, where these are known.
+
+        Raises
+        ------
+        PlotError
+            If two plants are in one place, or no rows can be found.
         """
         names = names or PlantNames()
         grid, rows = _in_rows(plants, names, None, planting)
@@ -151,7 +187,11 @@ class Plot:
     def among(
         cls, name: str, plants: NDArray[np.float64], gate: tuple[float, float] | None = None
     ) -> Plot:
-        """Return the plot of measured plants in no rows whose boundary nobody drew."""
+        """Return the plot of measured plants in no rows whose boundary nobody drew.
+
+        `plants` are ``(n, 2)`` degrees, `gate` is ``(lon, lat)``. Raise `PlotError` where two
+        plants are in one place.
+        """
         check_apart(plants)
         grid = trees_grid(plants)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
@@ -251,7 +291,7 @@ class Plot:
         return len(self.grid)
 
     def without(self, missing: NDArray[np.bool_]) -> Plot:
-        """Return the plot without the plants marked ``(n,)``, which are not there."""
+        """Return the plot without the plants marked `missing` ``(n,)``, which are not there."""
         if not missing.any():
             return self
         return replace(
@@ -261,7 +301,7 @@ class Plot:
         )
 
     def with_gate(self, gate: tuple[float, float]) -> Plot:
-        """Return the same plot with days that start and end elsewhere, ``(lon, lat)``."""
+        """Return the same plot with days that start and end at another `gate`, ``(lon, lat)``."""
         return self._with(replace(self.field, gate=gate), self.grid)
 
     @classmethod

@@ -29,6 +29,13 @@ class Viewpoints:
         ``(seconds, chance)`` pairs, rising in both: from so many seconds on, that chance.
     longer
         Chance for any time longer than the last step.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> quick = fm.Viewpoints(steps=((10.0, 0.4), (20.0, 0.7)), longer=0.8)
+    >>> quick.detection(15.0), quick.detection(60.0)
+    (0.4, 0.8)
     """
 
     steps: tuple[tuple[float, float], ...] = THESIS_VIEWPOINTS
@@ -116,6 +123,13 @@ class Robot:
         aisles and row ends that are too narrow are not driven; see `Aisles.for_robot`. Without
         one, as in the thesis, ways keep 0.3 m off the middle of plants. A length of None is as
         long as wide.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> robot = fm.Robot(hours=4, look_s=30)
+    >>> robot.detects, robot.visit_s
+    (0.69, 31.13)
     """
 
     speed_m_s: float = 2.5 / 3.6

@@ -51,6 +51,9 @@ class SamplerKind:
     chooses_time: bool = False
     s_per_plant_day: float = 2e-8
 
+    def __repr__(self) -> str:
+        return f"<{self.title}: {self.does}>"
+
     def load(self) -> Callable[..., Sampler]:
         """Return the class."""
         module, name = self.where.split(":")

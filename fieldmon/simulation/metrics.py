@@ -41,6 +41,15 @@ class SeasonMetrics:
         Hours worked on each day, of all who work.
     sprayed_m2, spent
         Area sprayed on each evening, and what that cost.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
+    >>> season = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))
+    >>> bool(season.infested_plant_days == season.left.sum())
+    True
     """
 
     detection_pct: NDArray[np.float64]

@@ -68,6 +68,12 @@ class SeasonSettings:
         The pest and the weather that the chance map knows of; None: the same.
     treating
         By what rule it is treated in the evening, see `TreatmentRule`; None: never.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.SeasonSettings(n_days=10, spread=fm.Spread(rate_per_day=0.05)).n_days
+    10
     """
 
     n_days: int = 25

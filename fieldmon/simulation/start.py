@@ -27,6 +27,12 @@ class Start:
         ``(n,)`` the truth, which no sampler sees.
     chance
         ``(n,)`` chance of infestation as believed.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> fm.Start(infested=np.array([True, False]), chance=np.array([0.2, 0.1]))
+    <Start: 1 of 2 plants infested>
     """
 
     infested: NDArray[np.bool_]

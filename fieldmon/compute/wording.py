@@ -6,7 +6,7 @@ from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
 
 class Worded(str):  # noqa: SLOT000 - it holds what it was made of
@@ -95,6 +95,17 @@ def joined(between: str, parts: Iterable[str]) -> Worded:
     made = Worded(between.join(kept))
     made.parts, made.between = kept, between
     return made
+
+
+def first_few(names: Sequence[str], most: int) -> str:
+    """Return the names that a sentence has room for, and a sign where there are more.
+
+    Examples
+    --------
+    >>> first_few(["north", "south", "hill"], 2)
+    'north, south, ...'
+    """
+    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
 
 
 def counted(number: int, thing: str) -> Worded:

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from shapely import LineString, MultiLineString, MultiPolygon
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import FileProblem, PlotError, SettingError
 from fieldmon.io.import_report import Imported, doubtful, dropped, guessed, seen
 from fieldmon.io.read import read_blocks, read_rows
@@ -281,9 +281,8 @@ def blocks_on(
     messages: list[ImportMessage] = []
     if not blocks:
         return (), messages
-    names = ", ".join(block.name for block in blocks[:_NAMED])
-    more = ", ..." if len(blocks) > _NAMED else ""
-    said = worded("Rows run in {n} block(s) as drawn: {names}.", n=len(blocks), names=names + more)
+    names = first_few([block.name for block in blocks], _NAMED)
+    said = worded("Rows run in {n} block(s) as drawn: {names}.", n=len(blocks), names=names)
     messages.append(seen(said))
     if doubled:
         over = ", ".join(doubled[:_NAMED])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import shapely
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FieldmonError, ObservationError, PlotError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import ImportMessage, doubtful
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
 
-_MOST_NAMED = 12
+#: names of plots in a sentence
+MOST_NAMED = 12
 #: some kilometres: records further from all plots than that belong to none
 _NEARBY_DEG = 0.05
 
@@ -154,7 +155,7 @@ def _plot_by_hand(fields: tuple[Field, ...], source: RecordSource) -> Field:
             source_name=source_name(source.file),
             wrong=wrong,
             n=len(names),
-            some=first_names(names),
+            some=first_few(names, MOST_NAMED),
         ),
         "plot",
         names,
@@ -173,8 +174,3 @@ def _plants_of(fields: tuple[Field, ...], lay: Callable[[Field], Laid]) -> dict[
     if problem is not None and not plants:
         raise problem
     return plants
-
-
-def first_names(names: tuple[str, ...]) -> str:
-    """Return the names of plots, the first ones where they are many."""
-    return ", ".join(names[:_MOST_NAMED]) + (", ..." if len(names) > _MOST_NAMED else "")

@@ -12,14 +12,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
 from fieldmon.io.import_report import ImportMessage, gathered, guessed
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import source_name
-from fieldmon.io.plot_records import first_names, records_of, records_on
+from fieldmon.io.plot_records import MOST_NAMED, records_of, records_on
 from fieldmon.io.prepared import Estate, EstateRecords, Laid, Listener, Prepared, SourceMessage
 from fieldmon.io.read import (
     read_crews,
@@ -150,7 +150,7 @@ def one_of(fields: tuple[Field, ...]) -> Field:
             "One plot must be chosen, but the file holds {n}: {some}. Choose "
             "one by name or number.",
             n=len(names),
-            some=first_names(names),
+            some=first_few(names, MOST_NAMED),
         ),
         "feature",
         names,

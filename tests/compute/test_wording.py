@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from fieldmon.compute.wording import Worded, counted, worded
+from fieldmon.compute.wording import Worded, counted, first_few, worded
 
 
 @pytest.mark.parametrize(
@@ -32,3 +32,9 @@ def test_worded_sentences_survive_the_way_from_another_process():
         "in row {row}",
         "{n} plant",
     )
+
+
+def test_of_many_names_the_first_are_said_and_that_there_are_more():
+    assert first_few(["a", "b"], 2) == "a, b"
+    assert first_few(("a", "b", "c"), 2) == "a, b, ..."
+    assert first_few([], 2) == ""

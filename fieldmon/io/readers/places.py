@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 import shapely
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
@@ -206,7 +206,7 @@ def _which_block(plants: Plants) -> str:
         "Records must name the block of their plants, since each of {n} blocks ({names}) has rows "
         "of the same names. Give them a column of blocks, or positions.",
         n=len(names),
-        names=_some(names),
+        names=first_few(names, _MOST_NAMED),
     )
 
 
@@ -273,7 +273,7 @@ def _elsewhere(plot: NDArray[np.str_], places: NamedPlaces) -> list[ImportMessag
                 "{n} record(s) are of {plots} other plot(s): {names}.",
                 n=len(others),
                 plots=len(named),
-                names=_some(named),
+                names=first_few(named, _MOST_NAMED),
             )
         )
     ]
@@ -353,7 +353,7 @@ def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[I
                     n=n,
                     total=len(named),
                     what=what,
-                    some=_some(named),
+                    some=first_few(named, _MOST_NAMED),
                 )
             )
         )
@@ -361,7 +361,3 @@ def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[I
         n = sum(not name for name in missing)
         messages.append(dropped(worded("{n} record(s) name no {what} at all.", n=n, what=what)))
     return messages
-
-
-def _some(names: list[str]) -> str:
-    return ", ".join(names[:_MOST_NAMED]) + (", ..." if len(names) > _MOST_NAMED else "")

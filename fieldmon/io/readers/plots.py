@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
@@ -303,6 +303,8 @@ def _fields(
     return tuple(fields), [*messages, *_parts(fields), *_duplicates(fields)]
 
 
+# names of plots in a sentence
+_MOST_NAMED = 5
 _NO_AREA, _NO_LINES, _UNKNOWN_ROWS = MultiPolygon(), MultiLineString(), KnownRows()
 
 
@@ -320,7 +322,7 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
                 worded(
                     "{n} plot(s) have several parts, which were kept: {names}.",
                     n=len(several),
-                    names=_some(several),
+                    names=first_few(several, _MOST_NAMED),
                 )
             )
         )
@@ -330,15 +332,11 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
                 worded(
                     "{n} plot(s) have holes, kept as places without plants: {names}.",
                     n=len(holed),
-                    names=_some(holed),
+                    names=first_few(holed, _MOST_NAMED),
                 )
             )
         )
     return messages
-
-
-def _some(names: list[str]) -> str:
-    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
 
 
 def _duplicates(fields: list[Field]) -> list[ImportMessage]:

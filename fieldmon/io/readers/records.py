@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import PRESENT, UNKNOWN, Observations
 from fieldmon.io.formats.layer import Layer, text
@@ -413,7 +413,7 @@ def _species(table: _Table) -> list[ImportMessage]:
     kinds = sorted(cell for cell in set(table.cells(name)) if not is_missing(cell))
     if len(kinds) < 2:
         return []
-    shown = ", ".join(kinds[:5]) + (", ..." if len(kinds) > 5 else "")
+    shown = first_few(kinds, 5)
     only = tuple(f"{name}={kind}" for kind in kinds)
     remedy = Remedy("where", only[0], worded("Only {species}", species=kinds[0]), only[1:])
     return [

@@ -14,9 +14,30 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
 from fieldmon.errors import SettingError
 from fieldmon.planning.routes.passes import Passes
+from fieldmon.planning.routes.walk_sweep import (
+    BEST,
+    CLOSING,
+    IN_ROW,
+    LEFT,
+    NEVER,
+    ON,
+    ON_HALF,
+    ONCE,
+    PASSES,
+    ROUND,
+    STATES,
+    TABLES,
+    KeptStates,
+    StateWorth,
+    SweepRoom,
+    WalkEnd,
+    depths,
+    fill_tables,
+    narrow,
+    sweep,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -24,56 +45,7 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
 
-#: how the part so far goes on: by the left headland, by the right, by both with one pass each,
-#: by both with two passes each and joined already, or in two pieces that are yet to be joined
-LEFT, RIGHT, ROUND, JOINED, APART = range(5)
-_STATES = 5
-# what a row yields for so many half steps: in and out from the left, from the right, from both,
-# from both with the right or the left one; through, its steps counted once the round is closed;
-# and through that closes it, or for both ways at once
-_FROM_LEFT, _FROM_RIGHT, _FROM_BOTH, _SOME_RIGHT, _SOME_LEFT, _ONCE, _CLOSING = range(7)
-_TABLES = 7
-#: in a row: state before, state after, and what is driven
-_IN_ROW = np.array(
-    [
-        (LEFT, LEFT, _FROM_LEFT),
-        (RIGHT, RIGHT, _FROM_RIGHT),
-        (ROUND, ROUND, _FROM_BOTH),
-        (JOINED, JOINED, _FROM_BOTH),
-        (LEFT, APART, _SOME_RIGHT),
-        (RIGHT, APART, _SOME_LEFT),
-        (APART, APART, _FROM_BOTH),
-        (LEFT, ROUND, _ONCE),
-        (RIGHT, ROUND, _ONCE),
-        (JOINED, ROUND, _ONCE),
-        (APART, ROUND, _ONCE),
-        (ROUND, JOINED, _CLOSING),
-        (LEFT, JOINED, _CLOSING),
-        (RIGHT, JOINED, _CLOSING),
-        (APART, JOINED, _CLOSING),
-    ]
-)
-#: in the headlands: state after a row, state before the next one
-_ON = np.array(
-    [
-        (LEFT, LEFT),
-        (JOINED, LEFT),
-        (RIGHT, RIGHT),
-        (JOINED, RIGHT),
-        (ROUND, ROUND),
-        (JOINED, JOINED),
-        (APART, APART),
-    ]
-)
-#: passes of the left and the right headland
-_PASSES = np.array([(2, 0), (0, 2), (1, 1), (2, 2), (2, 2)])
-_ON_HALF = _PASSES.sum(axis=1) // 2
-_NEVER = -1e300
-_MET = -1e299
-_BLOCK = 512
-_LANES = 4
 # bounds are taken at the best price, at some so far from it, and at some of what all plants hold
-_BEST = 0
 _AROUND = (1.0, 0.0, 0.2, 0.5, 0.7, 0.85, 0.95, 0.98, 1.02, 1.05, 1.15, 1.3, 1.6, 2.5, 5.0)
 _OF_ALL = (1e-7, 1e-6, 1e-5, 1e-4, 1.0)
 _LEAST_PRICE, _MOST_PRICES = 1e-13, 200
@@ -154,58 +126,13 @@ def best_walk(reward: ArrayLike, budget: int) -> Walk:
     return _Search(values).best(min(budget, full_budget(*values.shape)) // 2)
 
 
-class _Worth(NamedTuple):
-    """What the best way to each state, and on from it, comes to at each of p prices.
-
-    ``(p, m, 5)`` each: on from before and from after a row, and up to there. ``half`` are the half
-    steps of the best way on from before a row.
-    """
-
-    price: Float
-    before: Float
-    after: Float
-    arrived: Float
-    done: Float
-    half: Int
-
-    @classmethod
-    def at(cls, price: Float, tables: Float) -> _Worth:
-        """Work them out at some prices of a half step."""
-        shape = len(price), len(tables), _STATES
-        before, after, arrived, done = np.full((4, *shape), _NEVER)
-        worth = cls(price, before, after, arrived, done, np.zeros(shape, np.int64))
-        _fill_worth(tables, worth, (np.empty(_TABLES), np.zeros(_TABLES, np.int64)))
-        return worth
-
-
-class _Kept(NamedTuple):
-    """The most reward by state and half steps, for those from `low` to `high` ``(m, 5)``.
-
-    ``start`` ``(m, 5)`` is where they begin in `most`.
-    """
-
-    low: Int
-    high: Int
-    start: Int
-    most: Float
-
-
-class _End(NamedTuple):
-    """A best walk's reward, and after which row, in which state and with which steps it ends."""
-
-    reward: float
-    row: int
-    state: int
-    half: int
-
-
 class _Search:
     """Looks for the best walk on a matrix of rewards."""
 
     def __init__(self, reward: Float) -> None:
         self.reward, self.total = reward, float(reward.sum())
-        self.tables = np.full((len(reward), _TABLES, reward.shape[1] + 2), _NEVER)
-        _fill_tables(reward, self.tables)
+        self.tables = np.full((len(reward), TABLES, reward.shape[1] + 2), NEVER)
+        fill_tables(reward, self.tables)
 
     def best(self, half: int) -> Walk:
         """Return the best walk of so many half steps.
@@ -218,7 +145,7 @@ class _Search:
             return Walk(np.zeros((1, 2), np.int64), 0.0)
         price, bound, known, half = self._price(half)
         prices = np.concatenate([price * np.array(_AROUND), self.total * np.array(_OF_ALL)])
-        worth = _Worth.at(prices, self.tables)
+        worth = StateWorth.at(prices, self.tables)
         lacking = min(_LACKING * bound, bound - known)
         while True:
             least = bound - lacking - _ROUNDED * self.total
@@ -252,30 +179,30 @@ class _Search:
 
     def _walk_at(self, price: float) -> tuple[float, int]:
         """Return reward and half steps of the best walk at a price."""
-        worth = _Worth.at(np.array([price]), self.tables)
+        worth = StateWorth.at(np.array([price]), self.tables)
         half = int(worth.half[0, 0, LEFT])
         return float(worth.before[0, 0, LEFT]) + price * half, half
 
-    def _swept(self, worth: _Worth, half: int, least: float) -> tuple[_Kept, _End]:
+    def _swept(self, worth: StateWorth, half: int, least: float) -> tuple[KeptStates, WalkEnd]:
         """Return what is kept of all walks that may hold so much, and the best one's end."""
         m, width = len(self.reward), self.tables.shape[2]
-        spans = np.zeros((2, 2, m, _STATES), np.int64)
-        _narrow(worth, (half, least), spans)
+        spans = np.zeros((2, 2, m, STATES), np.int64)
+        narrow(worth, (half, least), spans)
         size = np.maximum(spans[:, 1] - spans[:, 0] + 1, 0)
-        start = np.cumsum(size[0]).reshape(m, _STATES) - size[0]
-        most = np.full(int(size[0].sum()), _NEVER)
-        kept = _Kept(spans[0, 0], spans[0, 1], start, most)
+        start = np.cumsum(size[0]).reshape(m, STATES) - size[0]
+        most = np.full(int(size[0].sum()), NEVER)
+        kept = KeptStates(spans[0, 0], spans[0, 1], start, most)
         widest = int(size.max())
-        room = _Room(
-            np.empty((_STATES, widest)), np.empty(widest + width), np.zeros(width, np.int64),
+        room = SweepRoom(
+            np.empty((STATES, widest)), np.empty(widest + width), np.zeros(width, np.int64),
             np.empty(width),
         )  # fmt: skip
-        end = np.full(1, _NEVER), np.zeros(3, np.int64)
-        least_there = least - float(worth.price[_BEST]) * half
-        _sweep(self.tables, (worth, least_there), kept, spans[1], room, end)
-        return kept, _End(float(end[0][0]), *(int(k) for k in end[1]))
+        end = np.full(1, NEVER), np.zeros(3, np.int64)
+        least_there = least - float(worth.price[BEST]) * half
+        sweep(self.tables, (worth, least_there), kept, spans[1], room, end)
+        return kept, WalkEnd(float(end[0][0]), *(int(k) for k in end[1]))
 
-    def _drives(self, kept: _Kept, end: _End) -> list[Drive]:
+    def _drives(self, kept: KeptStates, end: WalkEnd) -> list[Drive]:
         """Trace back what is driven in each row."""
         value, row, half = end.reward, end.row, end.half
         ends: tuple[int, ...] = (end.state,)
@@ -287,16 +214,16 @@ class _Search:
                 return drives[::-1]
             half -= k
             value = float(kept.most[kept.start[row, before] + half - kept.low[row, before]])
-            passes = int(_PASSES[before, 0]), int(_PASSES[before, 1])
-            row, half = row - 1, half - int(_ON_HALF[before])
-            ends = tuple(int(state) for state, on in _ON if on == before)
+            passes = int(PASSES[before, 0]), int(PASSES[before, 1])
+            row, half = row - 1, half - int(ON_HALF[before])
+            ends = tuple(int(state) for state, on in ON if on == before)
 
     def _source(
-        self, kept: _Kept, at: tuple[int, int], ends: tuple[int, ...], value: float
+        self, kept: KeptStates, at: tuple[int, int], ends: tuple[int, ...], value: float
     ) -> tuple[int, int, int]:
         """Return state before a row, table and half steps in it that lead to a value after it."""
         row, half = at
-        for before, after, table in _IN_ROW.tolist():
+        for before, after, table in IN_ROW.tolist():
             low, high = int(kept.low[row, before]), int(kept.high[row, before])
             first, last = max(low, half - self.tables.shape[2] + 1), min(high, half)
             if after not in ends or first > last:
@@ -311,266 +238,11 @@ class _Search:
 
     def _driven(self, row: int, before: int, table: int, k: int) -> tuple[int, int, int]:
         """Return how often a row is driven through, or how deep from the left and the right."""
-        if table == _ONCE or (table == _CLOSING and before == ROUND):
+        if table == ONCE or (table == CLOSING and before == ROUND):
             return 1, 0, 0
-        if table == _CLOSING:
+        if table == CLOSING:
             return 2, 0, 0
-        return 0, *_depths(self.tables[row], table, k)
-
-
-class _Room(NamedTuple):
-    """Room for a sweep.
-
-    The most reward after a row ``(5, h)``; that before it, moved ``(h + n + 2,)``; and half steps
-    in a row that bring more than fewer, with what they bring ``(n + 2,)``.
-    """
-
-    done: Float
-    source: Float
-    deep: Int
-    value: Float
-
-
-@loop
-def _fill_tables(reward: Float, tables: Float) -> None:
-    """Fill in what each row yields for so many half steps, ``(m, 7, n + 2)``."""
-    m, n = reward.shape
-    for row in range(m):
-        of = tables[row]
-        left, right = of[_FROM_LEFT], of[_FROM_RIGHT]
-        left[0] = right[0] = 0.0
-        for k in range(n):
-            left[k + 1] = left[k] + reward[row, k]
-            right[k + 1] = right[k] + reward[row, n - 1 - k]
-        # the same to the last bit, so that a row that is done counts as done
-        right[n] = left[n]
-        of[_ONCE, 0] = of[_CLOSING, n + 1] = left[n]
-        for k in range(n + 1):
-            both, some_right, some_left = _NEVER, _NEVER, _NEVER
-            for deep in range(k + 1):
-                value = left[k - deep] + right[deep] if k < n else left[n]
-                both = max(both, value)
-                if deep > 0:
-                    some_right = max(some_right, value)
-                if deep < k:
-                    some_left = max(some_left, value)
-            of[_FROM_BOTH, k], of[_SOME_RIGHT, k], of[_SOME_LEFT, k] = both, some_right, some_left
-
-
-def _depths(tables: Float, table: int, deep: int) -> tuple[int, int]:
-    """Return how deep from the left and from the right a table's entry is."""
-    n = tables.shape[1] - 2
-    if table == _FROM_LEFT:
-        return deep, 0
-    if table == _FROM_RIGHT:
-        return 0, deep
-    for right in range(1 if table == _SOME_RIGHT else 0, deep + (table != _SOME_LEFT)):
-        value = tables[_FROM_LEFT, deep - right] + tables[_FROM_RIGHT, right]
-        if deep == n or value == tables[table, deep]:
-            return deep - right, right
-    raise AssertionError("a value must have come from somewhere")
-
-
-@loop
-def _fill_worth(tables: Float, worth: _Worth, room: tuple[Float, Int]) -> None:
-    """Work out the best way to every state and on from it at some prices."""
-    for p in range(worth.price.size):
-        _fill_onward(tables, worth, p, room)
-        _fill_up_to(tables, worth, p, room)
-
-
-@part
-def _price_row(tables: Float, price: float, room: tuple[Float, Int]) -> None:
-    """Find the best half steps of each way of driving a row at a price."""
-    best, half = room
-    for table in range(_TABLES):
-        best[table] = _NEVER
-        for k in range(tables.shape[1]):
-            worth = tables[table, k] - price * k
-            if worth > best[table]:
-                best[table], half[table] = worth, k
-
-
-@part
-def _fill_onward(tables: Float, worth: _Worth, p: int, room: tuple[Float, Int]) -> None:
-    best, half = room
-    price, m = worth.price[p], tables.shape[0]
-    for row in range(m - 1, -1, -1):
-        _price_row(tables[row], price, room)
-        after, before = worth.after[p, row], worth.before[p, row]
-        # a walk may be complete after any row; of its half steps: those of the rows beyond
-        after[LEFT] = after[RIGHT] = after[JOINED] = 0.0
-        onward = worth.half[p, (row + 1) % m]
-        steps = worth.half[p, row]
-        for move in range(_IN_ROW.shape[0]):
-            source, target, table = _IN_ROW[move, 0], _IN_ROW[move, 1], _IN_ROW[move, 2]
-            most, taken = after[target], 0
-            if row + 1 < m:
-                for way in range(_ON.shape[0]):
-                    to = _ON[way, 1]
-                    there = worth.before[p, row + 1, to] - price * _ON_HALF[to]
-                    if _ON[way, 0] == target and there > most:
-                        most, taken = there, onward[to] + _ON_HALF[to]
-            value = most + best[table]
-            if value > before[source]:
-                before[source], steps[source] = value, taken + half[table]
-        if row + 1 < m:
-            for way in range(_ON.shape[0]):
-                to = _ON[way, 1]
-                there = worth.before[p, row + 1, to] - price * _ON_HALF[to]
-                after[_ON[way, 0]] = max(after[_ON[way, 0]], there)
-
-
-@part
-def _fill_up_to(tables: Float, worth: _Worth, p: int, room: tuple[Float, Int]) -> None:
-    best, _ = room
-    price, m = worth.price[p], tables.shape[0]
-    worth.arrived[p, 0, LEFT] = 0.0
-    for row in range(m):
-        _price_row(tables[row], price, room)
-        arrived, done = worth.arrived[p, row], worth.done[p, row]
-        for move in range(_IN_ROW.shape[0]):
-            source, target, table = _IN_ROW[move, 0], _IN_ROW[move, 1], _IN_ROW[move, 2]
-            done[target] = max(done[target], arrived[source] + best[table])
-        if row + 1 < m:
-            onward = worth.arrived[p, row + 1]
-            for way in range(_ON.shape[0]):
-                to = _ON[way, 1]
-                onward[to] = max(onward[to], done[_ON[way, 0]] - price * _ON_HALF[to])
-
-
-@loop
-def _narrow(worth: _Worth, limits: tuple[int, float], spans: Int) -> None:
-    """Find the half steps ``(2, 2, m, 5)`` with which a walk may still hold as much as it must.
-
-    Up to a state it holds no more than at any price, and on from it likewise: the sum of two
-    straight lines in its half steps, for every pair of prices.
-    """
-    half, least = limits
-    up_to, onward = (worth.arrived, worth.done), (worth.before, worth.after)
-    for row in range(spans.shape[2]):
-        for state in range(_STATES):
-            for which in range(2):
-                low, high = 0.0, float(half)
-                for p in range(worth.price.size):
-                    to = up_to[which][p, row, state]
-                    for q in range(worth.price.size):
-                        on = onward[which][q, row, state]
-                        if to < _MET or on < _MET:
-                            high = -1.0
-                            continue
-                        spare = to + on + worth.price[q] * half - least
-                        slope = worth.price[p] - worth.price[q]
-                        if slope > 0.0:
-                            low = max(low, -spare / slope)
-                        elif slope < 0.0:
-                            high = min(high, -spare / slope)
-                        elif spare < 0.0:
-                            high = -1.0
-                spans[which, 0, row, state] = int(np.ceil(min(low, half + 1.0)))
-                spans[which, 1, row, state] = int(np.floor(max(high, -1.0)))
-
-
-@loop
-def _sweep(
-    tables: Float,
-    limits: tuple[_Worth, float],
-    kept: _Kept,
-    spans: Int,
-    room: _Room,
-    end: tuple[Float, Int],
-) -> None:
-    """Find the most reward for every state and number of half steps that are kept."""
-    worth, least = limits
-    m = tables.shape[0]
-    kept.most[kept.start[0, LEFT]] = 0.0
-    for row in range(m):
-        room.done[:] = _NEVER
-        for move in range(_IN_ROW.shape[0]):
-            before, after, table = _IN_ROW[move, 0], _IN_ROW[move, 1], _IN_ROW[move, 2]
-            low, high = kept.low[row, before], kept.high[row, before]
-            first, last = spans[0, row, after], spans[1, row, after]
-            if low > high or first > last:
-                continue
-            # what is left of the row must be worth so much at the best price
-            least_here = least - worth.arrived[_BEST, row, before] - worth.after[_BEST, row, after]
-            n = _worth_it(tables[row, table], (worth.price[_BEST], least_here), room)
-            if n:
-                start = kept.start[row, before]
-                source = kept.most[start : start + high - low + 1]
-                target = room.done[after, : last - first + 1]
-                _spread(source, target, (low - first, n), room)
-        for state in (LEFT, RIGHT, JOINED):
-            first, last = spans[0, row, state], spans[1, row, state]
-            for h in range(last - first + 1):
-                if room.done[state, h] > end[0][0]:
-                    end[0][0] = room.done[state, h]
-                    end[1][0], end[1][1], end[1][2] = row, state, first + h
-        if row + 1 < m:
-            _go_on(kept, spans, row, room)
-
-
-@part
-def _worth_it(table: Float, limits: tuple[float, float], room: _Room) -> int:
-    """List the half steps of a row that bring more than fewer do, and enough; return how many."""
-    price, least = limits
-    most, n = _NEVER, 0
-    for k in range(table.size):
-        if table[k] > most:
-            most = table[k]
-            if most - price * k >= least:
-                room.deep[n], room.value[n] = k, most
-                n += 1
-    return n
-
-
-@part
-def _spread(source: Float, target: Float, at: tuple[int, int], room: _Room) -> None:
-    """Raise target[h] to the most of source[h - by - k] + value of k, for the n listed k.
-
-    It is done in blocks that stay in the nearest cache, four k at a time.
-    """
-    by, n = at
-    deep, value, moved = room.deep, room.value, room.source
-    deepest = deep[n - 1]
-    first_h, end_h = max(by + deep[0], 0), min(by + deepest + source.size, target.size)
-    # moved[h + deepest - k] is the source k half steps before h
-    for h in range(first_h, end_h + deepest):
-        j = h - deepest - by
-        moved[h] = source[j] if 0 <= j < source.size else _NEVER
-    for first in range(first_h, end_h, _BLOCK):
-        stop = min(first + _BLOCK, end_h)
-        to = target[first:stop]
-        k = 0
-        while k + _LANES <= n:
-            a = moved[first + deepest - deep[k] : stop + deepest - deep[k]]
-            b = moved[first + deepest - deep[k + 1] : stop + deepest - deep[k + 1]]
-            c = moved[first + deepest - deep[k + 2] : stop + deepest - deep[k + 2]]
-            d = moved[first + deepest - deep[k + 3] : stop + deepest - deep[k + 3]]
-            for h in range(to.size):
-                low = max(a[h] + value[k], b[h] + value[k + 1])
-                high = max(c[h] + value[k + 2], d[h] + value[k + 3])
-                to[h] = max(to[h], low, high)
-            k += _LANES
-        while k < n:
-            a = moved[first + deepest - deep[k] : stop + deepest - deep[k]]
-            for h in range(to.size):
-                to[h] = max(to[h], a[h] + value[k])
-            k += 1
-
-
-@part
-def _go_on(kept: _Kept, spans: Int, row: int, room: _Room) -> None:
-    """Take what is known after a row to before the next one."""
-    for way in range(_ON.shape[0]):
-        state, to = _ON[way, 0], _ON[way, 1]
-        low, high = kept.low[row + 1, to], kept.high[row + 1, to]
-        first, last = spans[0, row, state], spans[1, row, state]
-        by = _ON_HALF[to]
-        start = kept.start[row + 1, to] - low
-        for h in range(max(low, first + by), min(high, last + by) + 1):
-            value = room.done[state, h - by - first]
-            kept.most[start + h] = max(kept.most[start + h], value)
+        return 0, *depths(self.tables[row], table, k)
 
 
 def _euler(drives: list[Drive], n: int) -> Int:

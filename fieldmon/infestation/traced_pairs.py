@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
-from fieldmon.infestation.calibration_slope import no_inspections, note_inspection
-from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE, lesser
+from fieldmon.infestation.calibration_slope import no_inspections
+from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
     CLUSTERING,
     ClusterEstimate,
@@ -36,15 +35,15 @@ from fieldmon.infestation.origins import (
     BY_EDGE,
     JUMPED,
     N_ORIGINS,
-    OVERLOOKED,
     OriginCounts,
 )
 from fieldmon.infestation.pair_changes import pairs_after_arrivals, pairs_scaled
 from fieldmon.infestation.pair_nights import night_of_pairs
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
+from fieldmon.infestation.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.reach import pest_reach_of, reach_of
-from fieldmon.infestation.tracing import Raised, Traces, rescale_traced, trace
+from fieldmon.infestation.traced_day import KNOWN, KernelRoom, TracedDay, learn_day
+from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +52,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.reach import Reach
     from fieldmon.infestation.spread import Spread
     from fieldmon.pests.pest import Pest
-    from fieldmon.plot.grid import Linked, PlantGrid
+    from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
 
@@ -63,8 +62,8 @@ _SENT, _MOST_SENT = 3.5, 7.0
 #: share of the plants infested from outside in a night, at least, anywhere and by the edge, before
 #: anything was found (our choice)
 ARRIVE, ARRIVE_BY_EDGE = 0.0002, 0.0001
-# a plant found and left where it is; only another inspection can say otherwise
-_KNOWN, _UNKNOWN = 0.99, 0.95
+# only another inspection can say that a plant found and left where it is may be clean
+_UNKNOWN = 0.95
 # what was inspected around a plant never lowers it by more in a day (as an exponent)
 _MOST_LOWERED = 3.0
 # the wind by which finds are traced: so much of it is that of the nights before the last, told
@@ -224,15 +223,15 @@ class TracedPairs:
         jumps = self._jumps(evidence)
         # before any find of the day is traced: that is done with what is known of jumps by now
         shares = self._jumping(believed, jumps / self.jumps)
-        day = _Day(shares, believed[0].copy(), *none, *nothing)
+        day = TracedDay(shares, believed[0].copy(), *none, *nothing)
         traces = self.traces.own()
         each = self.reach.kernels * self.beyond[:, None, None]
-        room = _Room(each, Neighbourhood.of(n, believed[0]), Raised.of(n))
+        room = KernelRoom(each, Neighbourhood.of(n, believed[0]), Raised.of(n))
         rule = learning.treated, jumps
         # of what a clean inspection leaves, so much was hidden, and the rest overlooked
         hidden = (told - shown) / np.maximum(told * (1.0 - shown), LEAST_CHANCE)
         inspections_of = *inspections, hidden.clip(0.0, 1.0)
-        _learn(believed, self.grid.linked, inspections_of, rule, (day, traces), room)
+        learn_day(believed, self.grid.linked, inspections_of, rule, (day, traces), room)
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
@@ -267,7 +266,7 @@ class TracedPairs:
             )
         return None
 
-    def _lowered(self, after: TracedPairs, day: _Day, beyond: Floats) -> Floats:
+    def _lowered(self, after: TracedPairs, day: TracedDay, beyond: Floats) -> Floats:
         """Return how much less likely plants are as no relatives were found about them, ``(n,)``.
 
         What clean inspections took from the chances about a plant, it would have infested, or
@@ -277,7 +276,7 @@ class TracedPairs:
         sent += self.reach.brought(day.cleared * self.unseen, beyond, back=True)
         return np.exp(-np.minimum(sent, _MOST_LOWERED))
 
-    def counting(self, before: TracedPairs, day: _Day) -> TracedPairs:
+    def counting(self, before: TracedPairs, day: TracedDay) -> TracedPairs:
         """Return the same with each origin believed as it now counts."""
         expected = day.expected / before.counts.scale
         expected[JUMPED:] /= max(self.jumps, _LEAST_JUMPS)
@@ -290,7 +289,7 @@ class TracedPairs:
 
     def times(self, scale: Floats) -> TracedPairs:
         """Return the same with all chances ``(n,)`` times a scale, but those of known finds."""
-        scale = np.where(self.chance > _KNOWN, 1.0, scale)
+        scale = np.where(self.chance > KNOWN, 1.0, scale)
         chance = np.clip(self.chance * scale, LEAST_CHANCE, np.maximum(self.chance, _UNKNOWN))
         both = pairs_scaled(self.pair_chance, self.grid.adjacent, scale, chance)
         return replace(self, chance=chance, pair_chance=both)
@@ -427,124 +426,3 @@ def _of_late(before: tuple[float, float], now: tuple[float, float]) -> tuple[flo
         for a, b in zip(before, now, strict=True)
     )
     return x, y
-
-
-class _Day(NamedTuple):
-    """What a day's inspections say beside the chances.
-
-    Parameters
-    ----------
-    shares
-        ``(n, o)`` how much of each chance each origin brought.
-    before
-        ``(n,)`` each plant's chance before the inspection under way.
-    dropped, cleared
-        ``(n,)`` what clean inspections took from each plant's chance, and as a share of it.
-    found, expected
-        ``(o,)`` finds of each origin.
-    """
-
-    shares: NDArray[np.float32]
-    before: Floats
-    dropped: Floats
-    cleared: Floats
-    found: Floats
-    expected: Floats
-
-
-class _Room(NamedTuple):
-    """The kernels by which insects jump ``(6, d, d)``, and room for the plants reached."""
-
-    each: Floats
-    near: Neighbourhood
-    raised: Raised
-
-
-@loop
-def _learn(
-    believed: tuple[Floats, Floats],
-    linked: Linked,
-    inspections: tuple[NDArray[np.int32], NDArray[np.bool_], Floats, Floats],
-    rule: tuple[bool, float],
-    work: tuple[_Day, Traces],
-    room: _Room,
-) -> None:
-    """Learn from a day's inspections, one after the other, in place.
-
-    `inspections` end with the share of what each leaves that was hidden, not overlooked; `rule` is
-    whether finds are treated, and the chance that insects jump.
-    """
-    plants, found, detects, hidden = inspections
-    treated, jumps = rule
-    day, traces = work
-    chance = believed[0]
-    for k in range(plants.size):
-        i = 0 + plants[k]
-        p, unseen = chance[i], traces.unseen[i]
-        note_inspection(traces.slope_sums, p, found[k])
-        _count(day, i, found[k], detects[k] * p)
-        n = update_neighbourhood(believed, linked, (i, found[k]), (detects[k], treated), room.near)
-        for t in range(n):
-            _share(day, chance, room.near.plant[t])
-        for o in range(N_ORIGINS):
-            day.shares[i, o] *= 0.0 if found[k] else hidden[k]
-        day.shares[i, OVERLOOKED] += 1.0 if found[k] else 1.0 - hidden[k]
-        if found[k]:
-            n = trace(believed, linked, traces, (i, p, jumps), room.raised)
-            for t in range(n):
-                _share_traced(day, traces, room, (i, p, unseen), t)
-                day.before[room.raised.plant[t]] = chance[room.raised.plant[t]]
-            traces.unseen[i] = 0.0
-        else:
-            day.dropped[i] += p - chance[i]
-            day.cleared[i] = 1.0 - chance[i] / p
-            traces.unseen[i] *= 1.0 - detects[k]
-
-
-@part
-def _count(day: _Day, i: int, found: bool, expected: float) -> None:  # noqa: FBT001 - a result
-    """Count what an inspection found and was expected to find, origin by origin.
-
-    A plant known to be infested tells how much is overlooked.
-    """
-    if day.before[i] > _KNOWN:
-        day.found[OVERLOOKED] += 1.0 - found
-        day.expected[OVERLOOKED] += 1.0 - expected
-        return
-    for o in range(N_ORIGINS):
-        day.found[o] += found * day.shares[i, o]
-        day.expected[o] += expected * day.shares[i, o]
-
-
-@part
-def _share(day: _Day, chance: Floats, j: int) -> None:
-    """Ascribe what a plant's chance has risen by to the plant beside it."""
-    more = chance[j] - day.before[j]
-    if more > 0.0:
-        for o in range(N_ORIGINS):
-            day.shares[j, o] *= day.before[j] / chance[j]
-        day.shares[j, BESIDE_IT] += more / chance[j]
-    day.before[j] = chance[j]
-
-
-@part
-def _share_traced(
-    day: _Day, traces: Traces, room: _Room, find: tuple[int, float, float], t: int
-) -> None:
-    """Ascribe what a find has raised a plant by to the kernels that reach it."""
-    i, p, unseen = find
-    cells, each = traces.cells, room.each
-    j, more = room.raised.plant[t], room.raised.by[t]
-    along, h = cells.shape[1], each.shape[1] // 2
-    y = cells.of_plant[j] // along - cells.of_plant[i] // along
-    x = cells.of_plant[j] % along - cells.of_plant[i] % along
-    q = day.before[j]
-    parent = lesser(q / p, 1.0) * unseen
-    total = 0.0
-    for k in range(each.shape[0]):
-        total += traces.unseen[j] * each[k, h + y, h + x] + parent * each[k, h - y, h - x]
-    for o in range(N_ORIGINS):
-        day.shares[j, o] *= q / (q + more)
-    for k in range(each.shape[0]):
-        own = traces.unseen[j] * each[k, h + y, h + x] + parent * each[k, h - y, h - x]
-        day.shares[j, JUMPED + k] += more / (q + more) * own / total

@@ -1,0 +1,40 @@
+"""What a day says of each origin: what is overlooked, and what a clean look leaves."""
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.origins import OVERLOOKED
+from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.plot.layout import rectangle
+from tests.infestation.test_traced_pairs import EVERY, FLAT, GRID, LEARNING
+
+
+def test_known_finds_looked_at_again_tell_the_detection():
+    flagged, rng = Learning(detection=0.84, treated=False), np.random.default_rng(2)
+    plants = EVERY[:80]
+    belief = TracedPairs.of(GRID, FLAT).learn(plants, np.ones(80, np.bool_), flagged)
+    for _ in range(3):
+        belief = belief.learn(plants, rng.random(80) < 0.5, flagged)
+    assert belief.counts.detection(0.84).value == pytest.approx(0.5, abs=0.08)
+    assert belief.counts.scale[OVERLOOKED] > 2.0
+
+
+@pytest.mark.parametrize("nights", [0, 3])
+def test_a_clean_look_leaves_what_was_overlooked_and_all_that_hides(nights):
+    """Bayes' rule for one plant alone: nothing beside it tells anything."""
+    told = TracedPairs.of(rectangle(1, 1), np.array([0.2]))
+    for _ in range(nights):
+        told = told.overnight(Spread(0.0, arrivals_per_day=0.1))
+    after = told.learn(np.array([0], np.int32), np.array([False]), LEARNING)
+    hidden = told.chance[0] - told.in_sight.chance[0]
+    assert (hidden > 0.005) == (nights > 0)
+    overlooked = (told.chance[0] - hidden) * (1.0 - 0.84)
+    clean = 1.0 - told.chance[0] + hidden + overlooked
+    parts = hidden * told.shares[0] / clean
+    parts[OVERLOOKED] += overlooked / clean
+    # what each origin counts for has changed by this look as well
+    parts *= after.counts.scale / told.counts.scale
+    assert after.chance[0] == pytest.approx(parts.sum(), rel=1e-5)
+    assert after.shares[0] == pytest.approx(parts / parts.sum(), abs=1e-5)

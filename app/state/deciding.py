@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.thresholds import published
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts
 from fieldmon.monitoring.advice import AdviceSettings
 
 from . import cached, widget_memory

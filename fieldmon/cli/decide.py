@@ -95,8 +95,8 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
     from fieldmon.decisions.leaves import of_leaves  # noqa: PLC0415
+    from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts  # noqa: PLC0415
     from fieldmon.decisions.thresholds import threshold_of  # noqa: PLC0415
-    from fieldmon.decisions.zones import Sprayer, TreatmentCosts  # noqa: PLC0415
     from fieldmon.monitoring import Season  # noqa: PLC0415
     from fieldmon.monitoring.advice import AdviceSettings  # noqa: PLC0415
 

@@ -27,7 +27,8 @@ from fieldmon.cli.times import day, day_on
 from fieldmon.samplers import kind_of, sampler
 
 if TYPE_CHECKING:
-    from fieldmon.decisions.zones import TreatmentCosts, Zones
+    from fieldmon.decisions.sprayer import TreatmentCosts
+    from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot

@@ -19,10 +19,10 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.jit import routine
 from fieldmon.compute.wording import counted, worded
 from fieldmon.decisions.rings import best_rings, rings_bound
-from fieldmon.errors import SettingError
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
+from fieldmon.decisions.switching import strips_of, switch
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,136 +36,6 @@ if TYPE_CHECKING:
 
 # the price at which zones keep within the ground allowed is halved so often
 _STEPS = 50
-
-
-@dataclass(frozen=True)
-class Sprayer:
-    """What can be switched.
-
-    Parameters
-    ----------
-    rows
-        Rows that one section covers; 0: plants are sprayed one by one, with a knapsack.
-    least_on_m, least_off_m
-        Least length along the rows of a stretch that is sprayed, and of a gap between two.
-    ring
-        With a knapsack: how many plants around each chosen one are sprayed with it.
-
-    Raises
-    ------
-    SettingError
-        If a number is below 0.
-    """
-
-    rows: int = 2
-    least_on_m: float = 6.0
-    least_off_m: float = 6.0
-    ring: int = 0
-
-    def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            if not 0 <= value < np.inf:
-                raise SettingError(
-                    worded(
-                        "A sprayer's {name} must be 0 or more, but it is {value:g}.",
-                        name=name.replace("_", " "),
-                        value=value,
-                    )
-                )
-
-    @classmethod
-    def of_boom(
-        cls, boom_m: float, sections: int, row_spacing_m: float, least_on_m: float = 6.0
-    ) -> Sprayer:
-        """Return the sprayer of a boom: as many rows a section as stand under one, at least one.
-
-        Raises
-        ------
-        SettingError
-            If the boom has no width or no section.
-
-        Examples
-        --------
-        >>> Sprayer.of_boom(12.0, 4, row_spacing_m=1.5).rows
-        2
-        """
-        if not (boom_m > 0.0 and sections >= 1):
-            raise SettingError(
-                worded(
-                    "A boom must have a width above 0 and a section or more, but it has {boom_m:g} "
-                    "m and {sections}.",
-                    boom_m=boom_m,
-                    sections=sections,
-                )
-            )
-        rows = max(1, int(boom_m / sections / row_spacing_m + 1e-9))
-        return cls(rows, least_on_m, least_on_m)
-
-
-@dataclass(frozen=True)
-class TreatmentCosts:
-    """What treating costs, and what not treating does; in one currency.
-
-    Parameters
-    ----------
-    per_ha
-        Product, water and work for a hectare sprayed.
-    per_zone
-        Each zone: switching on and off, slowing down, overlap.
-    infested_plant_day
-        Loss by a plant that is infested for a day.
-    days
-        How long an infested plant stays so if it is not treated.
-    works
-        Chance that an infested plant is clean after the treatment.
-    reserve
-        Share of the plot that is never sprayed, from which predators and mites that no product
-        was tried on come back (resistance).
-
-    Raises
-    ------
-    SettingError
-        If a number cannot be.
-    """
-
-    per_ha: float = 100.0
-    per_zone: float = 0.5
-    infested_plant_day: float = 0.1
-    days: float = 14.0
-    works: float = 0.9
-    reserve: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.reserve < 1.0:
-            raise SettingError(
-                worded(
-                    "The share that is never sprayed must be 0 or more and below 1, but it is "
-                    "{reserve:g}.",
-                    reserve=self.reserve,
-                )
-            )
-        for name, value in vars(self).items():
-            if not 0.0 <= value < np.inf:
-                raise SettingError(
-                    worded(
-                        "The cost {name!r} must be 0 or more, but it is {value:g}.",
-                        name=name.replace("_", " "),
-                        value=value,
-                    )
-                )
-        if not 0.0 < self.works <= 1.0:
-            raise SettingError(
-                worded(
-                    "The chance that a treatment works must be above 0 and at most 1, but it is "
-                    "{works:g}.",
-                    works=self.works,
-                )
-            )
-
-    @property
-    def per_infested_plant(self) -> float:
-        """Return what treating an infested plant saves."""
-        return self.infested_plant_day * self.days * self.works
 
 
 @dataclass(frozen=True, eq=False)
@@ -347,10 +217,10 @@ def _within(choose: Callable[[_Plants], Ints], plants: _Plants, most_m2: float) 
 
 def _switched(grid: PlantGrid, plants: _Plants, sprayer: Sprayer, costs: TreatmentCosts) -> Ints:
     """Return the zone of each plant ``(n,)``, -1: none, as sections are switched."""
-    strips = _strips(grid, sprayer.rows)
+    strips = strips_of(grid, sprayer.rows)
     on = np.zeros(len(strips.start_m), bool)
     per_step = np.bincount(strips.step, plants.gain, len(on)).astype(np.float64)
-    _switch(
+    switch(
         (strips.first, strips.start_m, per_step),
         (sprayer.least_on_m, sprayer.least_off_m, costs.per_zone),
         strips.step_m,
@@ -455,93 +325,3 @@ def outline_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolyg
         shapely.MultiPolygon(list(shapely.get_parts(whole)))
     )
     return outline
-
-
-class _Strips(NamedTuple):
-    """Steps along the sections of a sprayer, section after section.
-
-    `first` ``(s + 1,)`` says where each section's steps begin, `start_m` ``(k,)`` where along the
-    rows each step is, `step` ``(n,)`` in which step a plant stands, and `begins` ``(k,)`` whether
-    a step is the first of its section.
-    """
-
-    first: Ints
-    start_m: Floats
-    step: Ints
-    begins: NDArray[np.bool_]
-    step_m: float
-
-
-def _strips(grid: PlantGrid, rows: int) -> _Strips:
-    """Cut the plot into sections of so many lines, and those into steps of a plant's spacing."""
-    step_m = grid.plant_spacing_m
-    line = grid.row_line[grid.row].astype(np.int64)
-    block = np.zeros(len(grid), np.int64) if grid.block is None else grid.block[grid.row]
-    section = line // rows * (int(block.max()) + 1) + block
-    at = np.floor((grid.along_m - grid.along_m.min()) / step_m).astype(np.int64)
-    wide = int(at.max()) + 1
-    cells, step = np.unique(section * wide + at, return_inverse=True)
-    begins = np.diff(cells // wide, prepend=-1) != 0
-    first = np.append(np.flatnonzero(begins), len(cells)).astype(np.int64)
-    return _Strips(first, (cells % wide) * step_m, step.astype(np.int64), begins, step_m)
-
-
-@routine
-def _switch(
-    strips: tuple[Ints, Floats, Floats],
-    limits: tuple[float, float, float],
-    step_m: float,
-    on: NDArray[np.bool_],
-) -> None:
-    """Switch each section for the greatest gain, in place.
-
-    The best with a stretch that ends behind step i begins it at the best j that is far enough
-    back; the best before j ends its last stretch at the best e that is far enough before j. Both
-    are running maxima, for what is far enough once stays so: a section takes one pass.
-    """
-    first, start_m, gain = strips
-    for s in range(first.size - 1):
-        a, b = first[s], first[s + 1]
-        ends, began, before = _ends((start_m[a:b], gain[a:b]), limits, step_m)
-        at = int(np.argmax(ends))
-        while at > 0 and ends[at] > 0.0:
-            on[a + began[at] : a + at] = True
-            at = before[at]
-
-
-@routine
-def _ends(
-    section: tuple[Floats, Floats], limits: tuple[float, float, float], step_m: float
-) -> tuple[Floats, Ints, Ints]:
-    """Return the best of the first i steps, the last of them on, ``(n + 1,)``.
-
-    And at which step that stretch began, and where the one before it ended.
-    """
-    start_m, gain = section
-    least_on_m, least_off_m, per_zone = limits
-    n = gain.size
-    ends = np.full(n + 1, -np.inf)
-    began, before = np.zeros(n + 1, np.int64), np.zeros(n + 1, np.int64)
-    ready, of_ready = np.zeros(n), np.zeros(n, np.int64)
-    ahead = np.zeros(n + 1)  # of all gains up to a step
-    e = j = prior_at = from_at = 0
-    prior, from_j = 0.0, -np.inf
-    for i in range(1, n + 1):
-        ahead[i] = ahead[i - 1] + gain[i - 1]
-        here_m, end_m = start_m[i - 1], start_m[i - 1] + step_m
-        while e < i - 1 and here_m - start_m[e] - step_m >= least_off_m - 1e-9:
-            e += 1
-            if ends[e] > prior:
-                prior, prior_at = ends[e], e
-        ready[i - 1], of_ready[i - 1] = prior, prior_at
-        while j < i and end_m - start_m[j] >= least_on_m - 1e-9:
-            if ready[j] - ahead[j] > from_j:
-                from_j, from_at = ready[j] - ahead[j], j
-            j += 1
-        if j > 0:
-            ends[i] = ahead[i] + from_j - per_zone
-            began[i], before[i] = from_at, of_ready[from_at]
-    if j == 0:
-        # a section shorter than the least stretch is sprayed whole, or not at all
-        ends[n] = ahead[n] - per_zone
-    return ends, began, before

@@ -12,7 +12,8 @@ from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, figure, worded
 from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts, best_zones, outlines
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
+from fieldmon.decisions.zones import best_zones, outlines
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.io.writers.treatment_map import TreatmentMap

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts, Zones, best_zones, whole_plot
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
+from fieldmon.decisions.zones import Zones, best_zones, whole_plot
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:

@@ -1,6 +1,4 @@
-"""Zones: of all switchings of a section none is better, and every stretch can be switched."""
-
-from itertools import product
+"""Zones: their areas add up, their outlines hold their plants, and what need not be is left out."""
 
 import numpy as np
 import pytest
@@ -8,17 +6,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.decisions.zones import (
-    Sprayer,
-    TreatmentCosts,
-    Zones,
-    best_zones,
-    outline_of,
-    outlines,
-    ring_bound,
-    whole_plot,
-)
-from fieldmon.errors import SettingError
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
+from fieldmon.decisions.zones import Zones, best_zones, outline_of, outlines, ring_bound, whole_plot
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from tests.bent import bent_grids
@@ -26,39 +15,6 @@ from tests.crooked import crooked_grids
 
 ROW = rectangle(1, 9, Planting(90.0, 4.0, 2.0))
 CHEAP = TreatmentCosts(per_ha=500.0, per_zone=0.3, infested_plant_day=0.2, days=10.0, works=1.0)
-
-
-def value(on, gain, sprayer, per_zone, step_m=2.0):
-    """Return what a switching of one row is worth, or None if it cannot be switched."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], on, [0]])))
-    starts, ends = edges[::2], edges[1::2]
-    whole = len(on) * step_m
-    if any(
-        (b - a) * step_m < min(sprayer.least_on_m, whole) for a, b in zip(starts, ends, strict=True)
-    ):
-        return None
-    if any(
-        (b - a) * step_m < sprayer.least_off_m for a, b in zip(ends[:-1], starts[1:], strict=True)
-    ):
-        return None
-    return gain[on.astype(bool)].sum() - per_zone * len(starts)
-
-
-@given(
-    st.lists(st.floats(0.0, 0.9), min_size=9, max_size=9),
-    st.sampled_from([0.0, 2.0, 5.0, 8.0, 40.0]),
-    st.sampled_from([0.0, 2.0, 6.0]),
-)
-def test_no_other_switching_of_a_row_is_worth_more(chance, least_on_m, least_off_m):
-    sprayer, chance = Sprayer(1, least_on_m, least_off_m), np.array(chance)
-    zones = best_zones(ROW, chance, sprayer, CHEAP)
-    gain = chance * CHEAP.per_infested_plant - CHEAP.per_ha * 8.0 / 10_000
-    every = (np.array(on) for on in product([0, 1], repeat=9))
-    best = max(v for on in every if (v := value(on, gain, sprayer, CHEAP.per_zone)) is not None)
-    mine = value(zones.treated.astype(int), gain, sprayer, CHEAP.per_zone)
-    assert mine is not None, "it cannot be switched so"
-    assert mine == pytest.approx(best)
-    assert zones.saved - zones.cost == pytest.approx(mine)
 
 
 @given(crooked_grids(60), st.integers(0, 4), st.integers(0, 1000))
@@ -72,24 +28,6 @@ def test_areas_and_plants_add_up_on_any_plot(grid, rows, seed):
     assert (zones.treated == zones.treated[grid.vine]).all()
     numbers = np.unique(zones.zone[zones.treated])
     assert numbers.tolist() == list(range(len(zones)))
-
-
-@given(crooked_grids(60), st.integers(0, 1000))
-def test_a_stretch_is_one_section_and_long_enough_or_the_whole_plot(grid, seed):
-    chance = np.random.default_rng(seed).random(len(grid)) ** 6
-    sprayer = Sprayer(2, least_on_m=7.0, least_off_m=5.0)
-    zones = best_zones(grid, chance, sprayer, TreatmentCosts(per_ha=200.0))
-    if len(zones) == 1 and zones.treated.all():
-        return  # nothing is switched
-    line = grid.row_line[grid.row]
-    for k in range(len(zones)):
-        mine = zones.zone == k
-        assert np.ptp(line[mine] // 2) == 0
-        section = line // 2 == line[mine][0] // 2
-        long_m = np.ptp(grid.along_m[mine]) + grid.plant_spacing_m
-        whole_m = np.ptp(grid.along_m[section]) + grid.plant_spacing_m
-        # steps are a plant's spacing: ends may lie a step apart from the plants'
-        assert long_m > min(sprayer.least_on_m, whole_m) - 2 * grid.plant_spacing_m
 
 
 def clustered(grid, seed=3):
@@ -145,13 +83,6 @@ def test_a_knapsack_sprays_the_ring_around_a_plant_and_rings_that_touch_are_one_
     assert apart.treated[30]
     chance[20] = 0.9
     assert len(best_zones(grid, chance, Sprayer(0, ring=1), cheaper)) == 1
-
-
-def test_a_booms_section_covers_whole_rows():
-    assert Sprayer.of_boom(12.0, 4, 1.5).rows == 2
-    assert Sprayer.of_boom(3.0, 4, 4.0).rows == 1
-    with pytest.raises(SettingError, match="A boom must have"):
-        Sprayer.of_boom(0.0, 4, 4.0)
 
 
 def test_the_whole_plot_is_one_zone_and_some_zones_may_be_left_out():
@@ -211,20 +142,6 @@ def test_outlines_hold_their_plants_and_no_other():
     inside = shapely.contains_xy(area, *grid.lonlat().T)
     assert (inside == zones.treated).all()
     assert shapely.area(grid.frame.geometry_m(area)) == pytest.approx(zones.m2, rel=0.01)
-
-
-@pytest.mark.parametrize(
-    "made",
-    [
-        lambda: Sprayer(-1),
-        lambda: TreatmentCosts(per_ha=-2.0),
-        lambda: TreatmentCosts(works=0.0),
-        lambda: TreatmentCosts(reserve=1.0),
-    ],
-)
-def test_what_cannot_be_is_refused(made):
-    with pytest.raises(SettingError, match="must be"):
-        made()
 
 
 def test_it_says_itself_in_a_line():

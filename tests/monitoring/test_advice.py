@@ -6,7 +6,7 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.advice import AdviceSettings

@@ -1,7 +1,7 @@
 """The advice on paper."""
 
 from fieldmon.compute.units import Units
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.monitoring.advice import AdviceSettings
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.content import Table

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.decisions.zones import TreatmentCosts
+from fieldmon.decisions.sprayer import TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle

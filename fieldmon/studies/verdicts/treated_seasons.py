@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts, best_zones, whole_plot
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
+from fieldmon.decisions.zones import best_zones, whole_plot
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.traced_pairs import TracedPairs

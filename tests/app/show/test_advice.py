@@ -5,7 +5,7 @@ import pytest
 
 from app.show import advice as shown
 from app.words import texts
-from fieldmon.decisions.zones import Sprayer, TreatmentCosts
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.plot.layout import rectangle

@@ -1,0 +1,27 @@
+"""A sprayer and what treating costs: only what can be is taken."""
+
+import pytest
+
+from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
+from fieldmon.errors import SettingError
+
+
+def test_a_booms_section_covers_whole_rows():
+    assert Sprayer.of_boom(12.0, 4, 1.5).rows == 2
+    assert Sprayer.of_boom(3.0, 4, 4.0).rows == 1
+    with pytest.raises(SettingError, match="A boom must have"):
+        Sprayer.of_boom(0.0, 4, 4.0)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda: Sprayer(-1),
+        lambda: TreatmentCosts(per_ha=-2.0),
+        lambda: TreatmentCosts(works=0.0),
+        lambda: TreatmentCosts(reserve=1.0),
+    ],
+)
+def test_what_cannot_be_is_refused(made):
+    with pytest.raises(SettingError, match="must be"):
+        made()

@@ -58,16 +58,16 @@ RobotModel = Annotated[
 SteeringName = Annotated[
     str,
     typer.Option(
-        help="Of mujoco's own robot. differential: two driven wheels. ackermann: a steered axle, "
+        help="For mujoco's own robot. differential: two driven wheels. ackermann: a steered axle, "
         "which turns at corners by arcs and shunts."
     ),
 ]
 Rough = Annotated[
     float,
-    typer.Option(help="Of mujoco: bumps of the ground, metres (standard deviation of heights)."),
+    typer.Option(help="With mujoco: height of bumps in metres (standard deviation)."),
 ]
 GroundHeights = Annotated[
-    Path | None, typer.Option("--ground", help="Of mujoco: raster of heights (GeoTIFF), metres.")
+    Path | None, typer.Option("--ground", help="With mujoco: raster of heights (GeoTIFF), metres.")
 ]
 Version = Annotated[str, typer.Option("--vda", help="Version of VDA 5050: 2.1 or 3.0.")]
 Maker = Annotated[str, typer.Option("--manufacturer", help="Manufacturer, as in its topics.")]
@@ -106,9 +106,9 @@ class DriveOptions:
     every: Every = None
     on: WorkDate = None
     infested: Annotated[
-        float, typer.Option(help="Share of plants infested, of a simulated robot's finds.")
+        float, typer.Option(help="Share of plants that a simulated robot finds infested.")
     ] = 0.02
-    seed: Annotated[int, typer.Option(help="Of simulated insects and noise.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed of simulated insects and noise.")] = 1
     gnss: Annotated[
         float, typer.Option(help="Noise of simulated positions, metres (standard deviation).")
     ] = 0.0

@@ -110,7 +110,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     yield f"  found of all           {now.detection_pct:6.1f} %, as believed"
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
     for number, learnt in enumerate(now.learnt):
-        yield f"  {'' if number else 'learnt by inspections':22} {learnt.sentence()}"
+        yield f"  {'' if number else 'learnt so far':22} {learnt.sentence()}"
     if not now.learnt:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
     if (pest := season.settings.pest) is not None:

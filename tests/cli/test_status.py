@@ -21,7 +21,7 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     assert out.splitlines() == [*lines(kept, now), ahead]
     assert f"{now.plants} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
-    assert "learnt by inspections  detection 84 %" in out
+    assert "learnt so far          detection 84 %" in out
     assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
 
 

@@ -14,7 +14,7 @@ def backup(
     season: SeasonFile,
     output: Annotated[Path, typer.Option("--output", "-o", help="New file for the copy.")],
 ) -> None:
-    """Copy a season as it is at this moment, while others may work on it.
+    """Copy a season, even while others work on it.
 
     The copy is whole and is one file. A file that exists is never overwritten.
 

@@ -35,18 +35,21 @@ class ChangeOptions:
     """What `fieldmon change` is told."""
 
     season: SeasonFile
-    sampler: Annotated[str | None, typer.Option(help="Who chooses.")] = None
+    sampler: Annotated[str | None, typer.Option(help="What chooses the plants.")] = None
     every: Annotated[
-        int | None, typer.Option(max=MOST_EVERY, help="Its every N-th, as in plan.")
+        int | None, typer.Option(max=MOST_EVERY, help="Every N-th plant or stop, as in plan.")
     ] = None
     hours: Hours = None
     look: Look = None
     speed: Speed = None
     robot_times: RobotTimesName = None
     robots: Robots = None
-    start: Annotated[str | None, typer.Option(help="Local time the work starts, HH:MM.")] = None
+    start: Annotated[str | None, typer.Option(help="Local time at which work starts, HH:MM.")] = (
+        None
+    )
     spread: Annotated[
-        float | None, typer.Option(help="Chance a night to infest a neighbour, as believed.")
+        float | None,
+        typer.Option(help="Believed chance per night that a plant infests its neighbour."),
     ] = None
     trace: Annotated[
         bool | None,
@@ -57,10 +60,12 @@ class ChangeOptions:
     ] = None
     harvest: Annotated[
         str | None,
-        typer.Option(help="First day of harvest, YYYY-MM-DD, which treatments wait for; or none."),
+        typer.Option(
+            help="First day of harvest, YYYY-MM-DD, against which treatments are checked; or none."
+        ),
     ] = None
     language: Language = None
-    who: Annotated[str, typer.Option(help="Who chooses so.")] = ""
+    who: Annotated[str, typer.Option(help="Who makes the change.")] = ""
     living: PestOptions = field(default_factory=PestOptions)
 
     def changed(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
@@ -136,10 +141,9 @@ class ChangeOptions:
 
 @with_options
 def change(options: ChangeOptions) -> None:
-    """Choose otherwise for a season; what was chosen before stays in its file.
+    """Change a season's settings; earlier ones stay in its file.
 
-    A pest is taken out again with --pest none; a newer weather file takes the place of the one
-    before.
+    --pest none removes a pest; a newer weather file replaces the one before.
 
     Example: fieldmon change season.gpkg --hours 6 --sampler naive
     Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv

@@ -53,16 +53,17 @@ class CompareOptions:
     robots: Annotated[str, typer.Option(help="How many robots: 1-5, or 1,2,4.")] = "1-3"
     hectares: Annotated[
         list[float] | None,
-        typer.Option(help="A square plot of so many hectares instead of a file; repeat for more."),
+        typer.Option(help="Size in hectares of a square plot, instead of a file; repeat for more."),
     ] = None
     sampler: Annotated[
         list[SamplerName] | None,
-        typer.Option(help="Who chooses for each robot; repeat to compare. Adaptive if none."),
+        typer.Option(help="What chooses the plants; repeat to compare. Default: adaptive."),
     ] = None
     sections: Annotated[
         bool,
         typer.Option(
-            "--sections", help="Teams with even sections of rows, too, who hear of nothing."
+            "--sections",
+            help="Also simulate teams with fixed, even sections of rows and no contact.",
         ),
     ] = False
     contact: Contact = 30.0
@@ -74,13 +75,13 @@ class CompareOptions:
     spread: Annotated[
         list[float] | None,
         typer.Option(
-            help="Chance a night; repeat for more. 0.1 if neither it nor --pest is given."
+            help="Chance per night; repeat for more. 0.1 if neither it nor --pest is given."
         ),
     ] = None
     to: Annotated[
         str | None,
         typer.Option(
-            help="Whom an infested plant infests: each neighbour, one, or all. Each if not given."
+            help="What an infested plant infests: each neighbour, one, or all. Default: each."
         ),
     ] = None
     on: WorkDate = None
@@ -91,12 +92,12 @@ class CompareOptions:
 
 @with_options
 def compare(options: CompareOptions) -> None:
-    """Simulate seasons of one, two and more robots, and say what each further one saves.
+    """Simulate seasons of one, two and more robots, and show what each further one saves.
 
-    All of them meet the same insects. On a plot of your own, or on square ones of several sizes.
-    A comparison that was stopped goes on where its table ends.
+    All of them meet the same insects, on a plot of your own or on square plots of several sizes.
+    A comparison that was stopped continues where its table ends.
 
-    With --pest the insects are that pest's, in the weather of --weather, and the chance map knows.
+    With --pest and --weather the insects are that pest in that weather, and the chance map knows.
 
     Example: fieldmon compare vines.zip --feature 3 --pest spider-mite --weather station.csv
     Example: fieldmon compare vines.zip --feature 3 --observations mites.csv --robots 1-3

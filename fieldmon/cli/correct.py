@@ -14,7 +14,7 @@ def correct(
     season: SeasonFile,
     who: Annotated[str, typer.Option(help="Whose corrections these are.", show_default=False)],
 ) -> None:
-    """Take inspections that QGIS or another program changed as corrections, with their author.
+    """Accept inspections that QGIS or another program changed, as somebody's corrections.
 
     Until then the season refuses to go on, and names the rows. fieldmon undo takes the corrected
     rows out again.

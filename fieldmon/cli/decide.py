@@ -20,17 +20,18 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.advice import Advice
 
 Level = Annotated[
-    str, typer.Option(help="Treat from here on: a share of the plants, 5%, or a published name.")
+    str, typer.Option(help="Threshold: a share of the plants (5%), or the name of a published one.")
 ]
 Own = Annotated[
     Path | None, typer.Option(help="CSV of thresholds of your own: name,measure,level,source.")
 ]
 Sure = Annotated[float, typer.Option(help="How sure a verdict must be, 0.5 to 1.")]
-Leaves = Annotated[int, typer.Option(help="Leaves looked at, for a threshold of leaves.", min=0)]
+Leaves = Annotated[int, typer.Option(help="Leaves inspected, for a threshold of leaves.", min=0)]
 Counted = Annotated[
-    float, typer.Option(help="Of these: leaves infested, or animals counted on them.", min=0)
+    float,
+    typer.Option(help="Of these leaves: how many are infested, or animals counted on them.", min=0),
 ]
-Rate = Annotated[float, typer.Option(help="Litres a hectare in the zones, for the files.")]
+Rate = Annotated[float, typer.Option(help="Litres per hectare in the zones, for the files.")]
 Product = Annotated[str, typer.Option(help="What is sprayed, for the files.")]
 Outputs = Annotated[
     list[Path] | None,
@@ -41,18 +42,24 @@ Outputs = Annotated[
     ),
 ]  # fmt: skip
 Presence = Annotated[
-    bool, typer.Option("--presence", help="Of a mean: what was counted are leaves infested.")
+    bool, typer.Option("--presence", help="For a mean: --counted is the number of infested leaves.")
 ]
 Boom = Annotated[float, typer.Option(help="Width of the boom, metres; with --sections.", min=0)]
 Sections = Annotated[int, typer.Option(help="Sections of the boom.", min=1)]
-Ring = Annotated[int, typer.Option(help="Knapsack: plants around each that go with it.", min=0)]
-Reserve = Annotated[float, typer.Option(help="Share never sprayed, for predators, 0 to 1.")]
-Rows = Annotated[int, typer.Option(help="Rows that a section covers; 0: a knapsack.", min=0)]
+Ring = Annotated[
+    int, typer.Option(help="Knapsack: how many plants around each are sprayed with it.", min=0)
+]
+Reserve = Annotated[
+    float, typer.Option(help="Share of the plot that is never sprayed, for predators, 0 to 1.")
+]
+Rows = Annotated[
+    int, typer.Option(help="Rows that a section covers; 0: a knapsack sprayer.", min=0)
+]
 LeastOn = Annotated[float, typer.Option(help="Least length of a zone along the rows, metres.")]
-LeastOff = Annotated[float, typer.Option(help="Least gap between two, metres.")]
-PerHa = Annotated[float, typer.Option(help="Product, water and work for a hectare.")]
-PerZone = Annotated[float, typer.Option(help="What switching on and off costs.")]
-Loss = Annotated[float, typer.Option(help="Loss by a plant that is infested for a day.")]
+LeastOff = Annotated[float, typer.Option(help="Least gap between two zones, metres.")]
+PerHa = Annotated[float, typer.Option(help="Cost of product, water and work per hectare.")]
+PerZone = Annotated[float, typer.Option(help="Cost of switching on and off, per zone.")]
+Loss = Annotated[float, typer.Option(help="Loss per plant that is infested for a day.")]
 Days = Annotated[float, typer.Option(help="Days that an untreated plant stays infested.")]
 Works = Annotated[float, typer.Option(help="Chance that treating cleans a plant, 0 to 1.")]
 

@@ -52,22 +52,22 @@ RobotModel = Annotated[
     Path | None,
     typer.Option(
         "--robot-model",
-        help="Model of a robot to drive with mujoco, URDF or MJCF (docs: drive say which joints).",
+        help="Model of a robot for mujoco, URDF or MJCF (docs: drive names its joints).",
     ),
 ]
 SteeringName = Annotated[
     str,
     typer.Option(
-        help="Of mujoco's own robot. differential: two driven wheels. ackermann: a steered axle, "
+        help="For mujoco's own robot. differential: two driven wheels. ackermann: a steered axle, "
         "which turns at corners by arcs and shunts."
     ),
 ]
 Rough = Annotated[
     float,
-    typer.Option(help="Of mujoco: bumps of the ground, metres (standard deviation of heights)."),
+    typer.Option(help="With mujoco: height of bumps in metres (standard deviation)."),
 ]
 GroundHeights = Annotated[
-    Path | None, typer.Option("--ground", help="Of mujoco: raster of heights (GeoTIFF), metres.")
+    Path | None, typer.Option("--ground", help="With mujoco: raster of heights (GeoTIFF), metres.")
 ]
 Version = Annotated[str, typer.Option("--vda", help="Version of VDA 5050: 2.1 or 3.0.")]
 Maker = Annotated[str, typer.Option("--manufacturer", help="Manufacturer, as in its topics.")]
@@ -95,7 +95,11 @@ class DriveOptions:
     ] = Drives.CHARGED
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Table of the day (CSV); its stops go beside it."),
+        typer.Option(
+            "--output",
+            "-o",
+            help="Table of the day (CSV); a table of its stops is written beside it.",
+        ),
     ] = None
     bag: Annotated[
         Path | None, typer.Option(help="Bag of ROS 2 (.mcap), for RViz and Foxglove.")
@@ -106,9 +110,9 @@ class DriveOptions:
     every: Every = None
     on: WorkDate = None
     infested: Annotated[
-        float, typer.Option(help="Share of plants infested, of a simulated robot's finds.")
+        float, typer.Option(help="Share of plants that a simulated robot finds infested.")
     ] = 0.02
-    seed: Annotated[int, typer.Option(help="Of simulated insects and noise.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed of simulated insects and noise.")] = 1
     gnss: Annotated[
         float, typer.Option(help="Noise of simulated positions, metres (standard deviation).")
     ] = 0.0
@@ -139,11 +143,12 @@ _OF_A_SEASON = {
 def drive(context: typer.Context, options: DriveOptions) -> None:
     """Drive a day on a plot or in a season: plant by plant, learning from each find.
 
-    On a plot the finds are simulated, and nothing is kept but what -o and --bag write. In a
-    season every plant told is in its file before the next one is asked for: a day is one batch,
-    and after a crash the same command goes on from the plant told last. A simulated robot makes
-    its finds up, so that a season takes them only with --made-up. Of a season with a team all
-    drive by VDA 5050 at once, each under its name as serial number.
+    On a plot finds are simulated, and only -o and --bag write files.
+
+    In a season every result is in the file before the next plant is asked for. A day is one batch,
+    and after a crash the same command continues from the last plant. A simulated robot makes up
+    its finds, so a season accepts them only with --made-up. A team's robots drive at once by VDA
+    5050, each with its name as serial number.
 
     Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o day.csv
     Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann

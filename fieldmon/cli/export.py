@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class RecordTable(StrEnum):
-    """What can be handed out."""
+    """What can be exported."""
 
     treatments = "treatments"
     inspections = "inspections"
@@ -23,7 +23,7 @@ class RecordTable(StrEnum):
 
 
 SeasonFiles = Annotated[
-    list[Path], typer.Argument(help="Seasons' files, made by fieldmon init; all into one.")
+    list[Path], typer.Argument(help="Season files, made by fieldmon init; all go into one table.")
 ]
 Of = Annotated[RecordTable, typer.Option("--of", help="What the table holds.")]
 To = Annotated[

@@ -54,7 +54,7 @@ class InitOptions:
     sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     begins: Annotated[
-        str | None, typer.Option(help="First day of the season, YYYY-MM-DD; today.")
+        str | None, typer.Option(help="First day of the season, YYYY-MM-DD; default: today.")
     ] = None
     start: StartTime = "06:00"
     flag_only: Annotated[
@@ -66,11 +66,11 @@ class InitOptions:
     spread: Annotated[
         float | None,
         typer.Option(
-            help="Chance a night that a plant infests its neighbour, as believed: 0.02 if neither "
+            help="Believed chance per night that a plant infests its neighbour: 0.02 if neither "
             "it nor --pest is given."
         ),
     ] = None
-    seed: Annotated[int, typer.Option(help="For samplers that draw.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed for samplers that draw at random.")] = 1
     robots: Robots = None
     contact: Contact = 0.0
     least_gain: LeastGain = 0.5
@@ -131,13 +131,13 @@ def _spreading(belief: BeliefSettings, rate: float) -> BeliefSettings:
 def init(options: InitOptions) -> None:
     """Begin a season on a plot: one GeoPackage that grows with every day's findings.
 
-    QGIS and QField open it as it is. Then, every day: fieldmon plan, the work, fieldmon record.
+    QGIS and QField can open it. Then, every day: fieldmon plan, the work, fieldmon record.
 
-    With --robots each of a team has a route file of its own every day.
+    With --robots each member of the team gets a route file of its own every day.
+
+    With --pest the chance map follows that pest's spread, and with --weather the warmth of nights.
 
     Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
-    With --pest the chance map follows that pest's nights, with --weather as warm as they were.
-
     Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     Example: fieldmon init season.gpkg estate.zip --feature Gate --pest spider-mite
     """

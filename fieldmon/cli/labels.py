@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 Table = Annotated[
     Path | None,
     typer.Argument(
-        help="CSV to take in: product, crop, pest, max dose, unit, waiting days, re-entry hours, "
+        help="CSV to read: product, crop, pest, max dose, unit, waiting days, re-entry hours, "
         "IRAC group, max uses, source. None: what the season has is listed."
     ),
 ]
-Who = Annotated[str, typer.Option(help="Who says so.")]
+Who = Annotated[str, typer.Option(help="Who provides it.")]
 
 
 def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
-    """Let a table say what the labels of products allow; treatments are held to it.
+    """Read a table of what product labels allow; treatments are checked against it.
 
-    The table is yours: fieldmon knows no label and no law. It takes the place of the one before.
+    The table is yours: fieldmon knows no label and no law. It replaces the one before.
 
     Example: fieldmon labels season.gpkg labels.csv
     """

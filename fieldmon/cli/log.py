@@ -9,10 +9,10 @@ from fieldmon.errors import FileProblem
 
 
 def log(season: SeasonFile) -> None:
-    """Show the log of a season, and hold it to its digests and the file to it.
+    """Show the log of a season, and check it and the file for changes to the past.
 
-    A changed past is refused, with the entry it was changed in. Give the last digest to somebody
-    else: with it nobody can write the whole log anew unnoticed.
+    A changed past is refused, with the entry that was changed. Give the last digest to somebody
+    else: then nobody can rewrite the whole log unnoticed.
 
     Example: fieldmon log season.gpkg
     """

@@ -11,11 +11,11 @@ import typer
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 
-OtherCopy = Annotated[Path, typer.Argument(help="The other copy of the season; it stays as it is.")]
+OtherCopy = Annotated[Path, typer.Argument(help="The other copy of the season; it is not changed.")]
 
 
 def merge(season: SeasonFile, other: OtherCopy) -> None:
-    """Take in what another copy of the season holds: all that is in either, once each.
+    """Add what another copy of the season holds; everything in either copy is kept once.
 
     For a folder that is synchronised, or two people who worked apart. What was taken back in one
     copy is taken back. Results that contradict one another are listed; both are kept, and fieldmon

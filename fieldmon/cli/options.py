@@ -35,13 +35,13 @@ MaybePlotFile = Annotated[
 SeasonFile = Annotated[Path, typer.Argument(help="The season's file, made by fieldmon init.")]
 Feature = Annotated[
     str | None,
-    typer.Option(help="Name or number (from 1) of the plot, where a file holds several."),
+    typer.Option(help="Name or number (from 1) of the plot, if the file holds several."),
 ]
 PlotChoices = Annotated[
     list[str] | None,
     typer.Option(
         "--plot-option",
-        help="What else the plot file leaves open, as NAME=VALUE; messages say which. "
+        help="What else the plot file does not say, as NAME=VALUE; messages ask for it. "
         "E.g. crs=EPSG:2039, layer=parcels, member=plots.shp, swap_axes=yes.",
     ),
 ]
@@ -57,7 +57,7 @@ RecordChoices = Annotated[
     list[str] | None,
     typer.Option(
         "--record-option",
-        help="What the records leave open, as NAME=VALUE: crs=EPSG:2039, date_order=dmy, "
+        help="What the records do not say, as NAME=VALUE: crs=EPSG:2039, date_order=dmy, "
         "columns=date=Datum, columns=count=Milben, found=WORD,WORD, clean=WORD, degrees=dms.",
     ),
 ]
@@ -70,35 +70,33 @@ Paths = Annotated[
 PlantsChoices = Annotated[
     list[str] | None,
     typer.Option(
-        "--plants-option", help="What the file of plants leaves open, as NAME=VALUE: doubles=one."
+        "--plants-option", help="What the file of plants does not say, as NAME=VALUE: doubles=one."
     ),
 ]
 PathsChoices = Annotated[
     list[str] | None,
-    typer.Option("--paths-option", help="What the file of paths leaves open, as NAME=VALUE."),
+    typer.Option("--paths-option", help="What the file of paths does not say, as NAME=VALUE."),
 ]
 Rows = Annotated[
     Path | None,
-    typer.Option(help="Rows of plants as lines, or their end posts as points, two a row."),
+    typer.Option(help="Rows of plants as lines, or their end posts as points, two per row."),
 ]
 RowsChoices = Annotated[
     list[str] | None,
-    typer.Option("--rows-option", help="What the file of rows leaves open, as NAME=VALUE."),
+    typer.Option("--rows-option", help="What the file of rows does not say, as NAME=VALUE."),
 ]
 Blocks = Annotated[
     Path | None,
-    typer.Option(
-        help="Blocks with rows of their own: areas, or lines that part the plot into blocks."
-    ),
+    typer.Option(help="Blocks with rows of their own: areas, or lines that divide the plot."),
 ]
 BlocksChoices = Annotated[
     list[str] | None,
-    typer.Option("--blocks-option", help="What the file of blocks leaves open, as NAME=VALUE."),
+    typer.Option("--blocks-option", help="What the file of blocks does not say, as NAME=VALUE."),
 ]
 GuessBlocks = Annotated[
     bool,
     typer.Option(
-        "--guess-blocks", help="Blocks where the outline asks for rows in several directions."
+        "--guess-blocks", help="Guess blocks if the outline suggests rows in several directions."
     ),
 ]
 Contours = Annotated[
@@ -117,7 +115,7 @@ Bearing = Annotated[
 ]
 RowSpacing = Annotated[float | None, typer.Option(help="Metres from row to row.")]
 PlantSpacing = Annotated[float | None, typer.Option(help="Metres from plant to plant in a row.")]
-Headland = Annotated[float | None, typer.Option(help="Metres free of plants at both row ends.")]
+Headland = Annotated[float | None, typer.Option(help="Metres without plants at both row ends.")]
 HalfCanopy = Annotated[
     float | None,
     typer.Option(help="Metres that plants reach to each side of their middle; for --width."),
@@ -127,12 +125,12 @@ BothFaces = Annotated[
 ]
 NoRows = Annotated[
     bool,
-    typer.Option("--no-rows", help="Measured plants stand in no rows: visit them by nearness."),
+    typer.Option("--no-rows", help="Measured plants do not stand in rows: visit them by distance."),
 ]
 Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
 Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
-Hours = Annotated[float | None, typer.Option(help="Working hours a day.")]
-Look = Annotated[float | None, typer.Option("--look", help="Seconds spent looking at a plant.")]
+Hours = Annotated[float | None, typer.Option(help="Working hours per day.")]
+Look = Annotated[float | None, typer.Option("--look", help="Seconds to inspect a plant.")]
 Speed = Annotated[float | None, typer.Option(help="Driving speed, km/h.")]
 RowChange = Annotated[float | None, typer.Option(help="Seconds added for changing rows.")]
 Turn = Annotated[
@@ -146,45 +144,47 @@ Robots = Annotated[
     ),
 ]
 Contact = Annotated[
-    float, typer.Option(min=0.0, help="Minutes between contacts; 0: finds are heard of at once.")
+    float,
+    typer.Option(min=0.0, help="Minutes between contacts; 0: the team learns of finds at once."),
 ]
 LeastGain = Annotated[
     float,
-    typer.Option(min=0.0, help="Finds that must be gained for anyone to be sent elsewhere."),
+    typer.Option(min=0.0, help="Least gain, in finds, for which somebody is sent elsewhere."),
 ]
 Passing = Annotated[
     float | None,
     typer.Option(
         min=0.0,
-        help="With --robots: metres of headland that two need to pass each other; where it is "
-        "narrower nobody meets another head-on. They pass each other anywhere if not given.",
+        help="With --robots: metres of headland that two need to pass each other; nobody meets "
+        "head-on where it is narrower. Without it they may pass each other anywhere.",
     ),
 ]
 Width = Annotated[
     float | None,
     typer.Option(
-        help="Width of the robot, metres: ways keep off canopies, narrow aisles are shut."
+        help="Width of the robot, metres: it stays off canopies and out of narrow aisles."
     ),
 ]
 Length = Annotated[
-    float | None, typer.Option(help="Length of the robot, metres, for its turns; as its width.")
+    float | None,
+    typer.Option(help="Length of the robot, metres, for its turns; default: its width."),
 ]
 RobotTimesName = Annotated[
     str | None,
     typer.Option(
         "--robot-times",
-        help="Seconds charged beside driving and looking. measured: 9 s a row change, 1.13 s a "
-        "stop, of simulated drives. thesis: 25 s a row change, 23 s a turn. measured if not said.",
+        help="Times charged besides driving and inspecting. measured (default): 9 s a row change, "
+        "1.13 s a stop, from simulated drives. thesis: 25 s a row change, 23 s a turn.",
     ),
 ]
 Rover = Annotated[
     bool,
     typer.Option(
         "--rover",
-        help="A robot 0.58 m wide, 0.8 m long: that of simulated drives (docs: drive).",
+        help="A robot 0.58 m wide and 0.8 m long, as in simulated drives (docs: drive).",
     ),
 ]
-OneSampler = Annotated[SamplerName, typer.Option(help="Who chooses.")]
+OneSampler = Annotated[SamplerName, typer.Option(help="What chooses the plants.")]
 Every = Annotated[
     int | None,
     typer.Option(
@@ -197,24 +197,26 @@ Outputs = Annotated[
     typer.Option(
         "--output",
         "-o",
-        help="Route file to write, its format by its ending; repeat for several. "
-        "route.geojson if none.",
+        help="Route file to write; its ending selects the format. Repeat for several. "
+        "Default: route.geojson.",
     ),
 ]
 Bounded = Annotated[
     bool,
     typer.Option(
         "--bound/--no-bound",
-        help="Say what no other route of these hours can expect to find (10 s at most).",
+        help="State what no other route of these hours can expect to find (takes 10 s at most).",
     ),
 ]
-WorkDate = Annotated[str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; today.")]
-TheDate = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; today.")]
+WorkDate = Annotated[
+    str | None, typer.Option("--date", help="Day of the work, YYYY-MM-DD; default: today.")
+]
+TheDate = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; default: today.")]
 LastDate = Annotated[
     str | None,
-    typer.Option("--date", help="The day, YYYY-MM-DD; the last that was planned or recorded."),
+    typer.Option("--date", help="The day, YYYY-MM-DD; default: the last one planned or recorded."),
 ]
-StartTime = Annotated[str, typer.Option(help="Local time the work starts, HH:MM.")]
+StartTime = Annotated[str, typer.Option(help="Local time at which work starts, HH:MM.")]
 
 
 @dataclass(frozen=True)

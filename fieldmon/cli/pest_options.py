@@ -26,7 +26,7 @@ PestName = Annotated[
     str | None,
     typer.Option(
         "--pest",
-        help="What is looked for: a file (TOML), or thesis, spider-mite, green-peach-aphid, "
+        help="The pest: a file (TOML), or thesis, spider-mite, green-peach-aphid, "
         "plum-pox-virus, strawberry-anthracnose, western-flower-thrips, whitefly.",
     ),
 ]
@@ -41,7 +41,7 @@ WeatherChoices = Annotated[
     list[str] | None,
     typer.Option(
         "--weather-option",
-        help="What the weather file leaves open, as NAME=VALUE: zone=Asia/Jerusalem, "
+        help="What the weather file does not say, as NAME=VALUE: zone=Asia/Jerusalem, "
         "wind_unit=km/h, temperature_unit=F, rain_unit=in, date_order=dmy, location=1.",
     ),
 ]

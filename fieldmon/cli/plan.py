@@ -35,30 +35,29 @@ _FAR_BELOW = 0.05
 
 @with_options
 def plan(context: typer.Context, options: PlanOptions) -> None:
-    """Plan today's route on a plot or in a season, and write it for whoever drives.
+    """Plan today's route on a plot or in a season, and write it to files.
 
-    Files hold the line to drive, which crosses no row of plants, and the stops in order with
-    arrival time, row, plant and chance of infestation. Without observations every plant has the
-    same chance but for the plot's edge, from which insects come.
+    A route file holds the line to drive, which crosses no row of plants, and the stops in order,
+    with arrival time, row, plant and chance of infestation. Without observations every plant has
+    the same chance, except at the plot's edge, from which insects come.
 
-    In a season (see fieldmon init) the route follows from everything recorded so far; on a day of
-    which something was recorded already, it is the rest of the day's.
+    In a season (see fieldmon init) the route uses everything recorded so far. If something was
+    already recorded on that day, the rest of the day is planned.
 
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
     Example: fieldmon plan vines.zip --feature 3 --robots 2 --hours 4 -o route.geojson
     Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
 
-    Of a whole day it is said what no other route of these hours can expect to find, whichever
-    plants it visits: how much a better plan could gain at most.
+    For a whole day, it also states how much any other route of the same hours could gain at most.
 
-    With --pest, plants are looked at by that pest's chance of detection, and with --weather records
-    count half once its next generation sits on the plants.
+    With --pest, that pest's detection rate is used. With --weather, a record counts half after one
+    generation of the pest.
 
-    With --robots, no plant is visited twice, and no two are in one aisle at once.
+    With --robots, no plant is visited twice, and no two robots are in one aisle at once.
 
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
-    who works on each plot; options given here go before them.
+    who works on each plot. Options given here override them.
     """
     from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
 
@@ -113,7 +112,9 @@ def _plan_one(options: PlanOptions) -> None:
     typer.echo(f"{day_in_words(today.route)}\nPlanned by {options.sampler.value}.")
     route = today.route
     if route.found_bound and share_above(route.expected_found, route.found_bound) > _FAR_BELOW:
-        typer.echo("If nobody plans again after a find, a fixed route may find more: --robots 1.")
+        typer.echo(
+            "If nobody plans again after a find, a fixed route may find more: add --robots 1."
+        )
     tell_assumed(assumed_by((), settings.prior, robot, known.plot.grid))
     notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
     write_routes(replace(today.route, notes=notes), options.output)

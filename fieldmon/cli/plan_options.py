@@ -29,13 +29,15 @@ from fieldmon.cli.times import WorkStart, clock, day
 
 Now = Annotated[
     str | None,
-    typer.Option(help="Of a season: plan the rest of the day from this local time, HH:MM."),
+    typer.Option(help="In a season: plan the rest of the day from this local time, HH:MM."),
 ]
 
 
 EveryPlot = Annotated[
     bool,
-    typer.Option("--all", help="Every plot of the file; --output is the folder of routes then."),
+    typer.Option(
+        "--all", help="Plan every plot of the file; --output is then the folder of routes."
+    ),
 ]
 
 

@@ -31,7 +31,7 @@ RiskChoices = Annotated[
 ]
 Canopy = Annotated[
     Path | None,
-    typer.Option(help="GeoTIFF of the canopy (height, NDVI): where it is low no plant stands."),
+    typer.Option(help="GeoTIFF of the canopy (height, NDVI): plants are missing where it is low."),
 ]
 CanopyBelow = Annotated[
     float | None, typer.Option(help="A plant is missing where the canopy is below this.")

@@ -33,20 +33,20 @@ FindingFiles = Annotated[
     ),
 ]
 TakeDoubtful = Annotated[
-    bool, typer.Option("--take-doubtful", help="Take doubtful positions at the nearest plant.")
+    bool, typer.Option("--take-doubtful", help="Assign doubtful positions to the nearest plant.")
 ]
 Contradicting = Annotated[
     bool,
     typer.Option(
         "--contradicting",
-        help="Record results too that contradict what is recorded of the same plants and day.",
+        help="Also record results that contradict those of the same plants and day.",
     ),
 ]
 FindingChoices = Annotated[
     list[str] | None,
     typer.Option(
         "--finding-option",
-        help="What the files leave open, as NAME=VALUE: zone=Asia/Jerusalem, accuracy_m=3, "
+        help="What the files do not say, as NAME=VALUE: zone=Asia/Jerusalem, accuracy_m=3, "
         "columns=count=Milben, found=WORD,WORD, clean=WORD.",
     ),
 ]
@@ -58,7 +58,7 @@ class RecordFlags:
 
     on: Annotated[
         str | None,
-        typer.Option("--date", help="Day of findings whose file names none, YYYY-MM-DD."),
+        typer.Option("--date", help="Day of findings whose file names no day, YYYY-MM-DD."),
     ] = None
     who: Annotated[str, typer.Option(help="Who inspected.")] = ""
     take_doubtful: TakeDoubtful = False
@@ -68,7 +68,7 @@ class RecordFlags:
 
 @with_options
 def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
-    """Record what was found; the same findings twice change nothing.
+    """Record what was found; recording the same findings twice changes nothing.
 
     What contradicts results recorded of the same plants and day (clean against found) is listed,
     and nothing is recorded, unless --contradicting is given.

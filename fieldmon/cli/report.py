@@ -26,23 +26,25 @@ class Paper(StrEnum):
 
 
 Output = Annotated[
-    Path, typer.Option("--output", "-o", help="File to write, .pdf or .html by its ending.")
+    Path, typer.Option("--output", "-o", help="File to write, ending in .pdf or .html.")
 ]
 OneDay = Annotated[
-    str | None, typer.Option("--date", help="One page for this day, YYYY-MM-DD; else the season.")
+    str | None,
+    typer.Option("--date", help="Report this day on one page, YYYY-MM-DD; else the season."),
 ]
 Until = Annotated[
-    str | None, typer.Option("--until", help="The season up to this day; else to its last one.")
+    str | None,
+    typer.Option("--until", help="Report the season up to this day; else up to its last one."),
 ]
 Seasons = Annotated[
     list[Path],
-    typer.Argument(help="The season's file, made by fieldmon init; with --certification several."),
+    typer.Argument(help="The season's file, made by fieldmon init; several with --certification."),
 ]
 ForCertifier = Annotated[
     bool,
     typer.Option(
         "--certification",
-        help="The record for a certifier: applications as GLOBALG.A.P. asks, inspections, log.",
+        help="Write the record for a certifier: treatments as GLOBALG.A.P. asks, inspections, log.",
     ),
 ]
 OnPaper = Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")]
@@ -57,7 +59,7 @@ def report(  # noqa: PLR0913, PLR0917 - the command's options
     certification: ForCertifier = False,  # noqa: FBT002 - a flag
     language: Language = None,
 ) -> None:
-    """Write a season on four pages, or one of its days on one; nothing of it is changed.
+    """Write a season on four pages, or one of its days on one; the season is not changed.
 
     With --certification it is the record of one season or several for a certifier. It is written
     in the season's language, or in the one of --language, with dates and areas as usual there.

@@ -51,7 +51,9 @@ class SimulateOptions:
     feature: Feature = None
     sampler: Annotated[
         list[SamplerName] | None,
-        typer.Option(help="Who chooses; repeat to compare. Naive, bouncy and dynamic if none."),
+        typer.Option(
+            help="What chooses the plants; repeat to compare. Default: naive, bouncy and dynamic."
+        ),
     ] = None
     every: Every = None
     days: Annotated[int, typer.Option(help="Working days.")] = 25
@@ -60,11 +62,11 @@ class SimulateOptions:
     spread: Annotated[
         float | None,
         typer.Option(
-            help="Chance a night to infest each neighbour: 0.1 if neither it nor --pest is given."
+            help="Chance per night to infest each neighbour; 0.1 if neither it nor --pest is given."
         ),
     ] = None
     treat_from: Annotated[
-        float | None, typer.Option(help="Treat in the evening from this share infested on.")
+        float | None, typer.Option(help="Treat in the evening from this share of infested plants.")
     ] = None
     treat: Annotated[
         str, typer.Option(help="What is treated then: zones above it, or the whole plot.")
@@ -88,12 +90,12 @@ class SimulateOptions:
 
 @with_options
 def simulate(options: SimulateOptions) -> None:
-    """Simulate a season on a plot: insects spread at night, samplers look for them by day.
+    """Simulate a season on a plot: insects spread at night, samplers inspect by day.
 
     The start is drawn from the chance map of the records; all samplers meet the same insects.
-    Detection is all finds so far in percent of all infestations so far.
+    Detection is all finds so far as a percentage of all infestations so far.
 
-    With --pest the insects are that pest's, in the weather of --weather, and the chance map knows.
+    With --pest and --weather the insects are that pest in that weather, and the chance map knows.
 
     Example: fieldmon simulate vines.zip --feature 3 --pest spider-mite --weather station.csv
     Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10

@@ -26,7 +26,7 @@ class StandInOptions:
     speed: Annotated[float, typer.Option(help="Driving speed, km/h.")] = 2.5
     faster: Annotated[float, typer.Option(help="How many times faster than the clock.")] = 60.0
     infested: Annotated[float, typer.Option(help="Share of plants found infested.")] = 0.02
-    seed: Annotated[int, typer.Option(help="Of what it finds.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed of what it finds.")] = 1
 
     def look(self, plant: int) -> bool:
         """Return what it makes up of a plant: the same each time."""
@@ -37,7 +37,7 @@ class StandInOptions:
 
 @with_options
 def stand_in(options: StandInOptions) -> None:
-    """Be a robot that speaks VDA 5050, for trying fieldmon drive --robot vda5050; Ctrl-C ends it.
+    """Simulate a VDA 5050 robot, to try fieldmon drive --robot vda5050; Ctrl-C ends it.
 
     It drives what it is ordered, looks, and makes up what it finds. --faster hurries its clock;
     while it waits for an order its day stands still.

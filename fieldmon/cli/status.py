@@ -22,7 +22,8 @@ _WHOLE = 2_000_000
 _DETAILED = 100
 
 ListBatches = Annotated[
-    bool, typer.Option("--batches", help="List what was recorded, with numbers to undo.")
+    bool,
+    typer.Option("--batches", help="List what was recorded, with the numbers for fieldmon undo."),
 ]
 ListRows = Annotated[
     bool, typer.Option("--rows", help="List the days since each row was inspected.")
@@ -35,7 +36,7 @@ def status(
     batches: ListBatches = False,  # noqa: FBT002 - a flag
     rows: ListRows = False,  # noqa: FBT002 - a flag
 ) -> None:
-    """Show where a season stands: found, expected still out there, rows not seen for long.
+    """Show where a season stands: what was found, what is still expected, and a forecast.
 
     Example: fieldmon status season.gpkg
     """
@@ -51,7 +52,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
     if (last := kept.last_date()) > kept.settings.begins:
         tell_not_come(last, kept.plot.field, "the last day recorded")
-    typer.echo(f"  in days to come        {kept.forecast(now.on).sentence()}")
+    typer.echo(f"  forecast               {kept.forecast(now.on).sentence()}")
     for line in of_treatments(kept, now):
         typer.echo(line)
     if rows:
@@ -64,7 +65,8 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
         typer.echo(f"doubtful: {sentence}", err=True)
     if not whole:
         typer.echo(
-            "held to their digests: the last mornings; fieldmon log checks the rest", err=True
+            "checked against their digests: the last mornings only; fieldmon log checks the rest",
+            err=True,
         )
 
 
@@ -108,7 +110,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     yield f"  found of all           {now.detection_pct:6.1f} %, as believed"
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
     for number, learnt in enumerate(now.learnt):
-        yield f"  {'' if number else 'as inspections tell':22} {learnt.sentence()}"
+        yield f"  {'' if number else 'learnt so far':22} {learnt.sentence()}"
     if not now.learnt:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
     if (pest := season.settings.pest) is not None:
@@ -133,15 +135,17 @@ def of_treatments(season: Season, now: Status) -> Iterator[str]:
     for number, effect in enumerate(one for one in season.effects(now.on) if one.before.inspected):
         yield f"  {'' if number else 'as treatments worked':22} {effect.sentence()}"
     for caution in dict.fromkeys(one.sentence for one in season.cautions(now.on)):
-        yield f"  beware                 {caution}"
+        yield f"  warning                {caution}"
 
 
 def _show_rows(season: Season, now: Status) -> None:
     import numpy as np  # noqa: PLC0415
 
+    from fieldmon.compute.wording import counted  # noqa: PLC0415
+
     of_plant = season.plot.grid.row_line + 1
     for line in np.unique(of_plant):
         days = now.days_since[of_plant == line]
         known = days[~np.isnan(days)]
-        said = f"{known.min():.0f} days ago" if len(known) else "never"
+        said = f"{counted(round(known.min()), 'day')} ago" if len(known) else "never"
         typer.echo(f"  row {line:4d}  {said}")

@@ -16,7 +16,7 @@ from fieldmon.cli.study_verdicts import verdicts
 from fieldmon.cli.study_weather import weather
 
 app = Commands(
-    no_args_is_help=True, help="Published experiments, made again, and studies of one's own."
+    no_args_is_help=True, help="Repeat published experiments, and run studies of your own."
 )
 app.command("prior")(prior)
 app.command("calibrate")(calibrate)

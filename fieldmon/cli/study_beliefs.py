@@ -13,25 +13,25 @@ from fieldmon.errors import SettingError
 
 
 def beliefs(
-    seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons a belief.")] = 10,
+    seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons per chance map.")] = 10,
     scenario: Annotated[
         str | None,
         typer.Option(
             "--scenario",
             "--cell",
-            help="How the name of the scenario begins (see `study samplers`); clusters on 5 ha if "
+            help="Beginning of the scenario's name (see study samplers); clusters on 5 ha if "
             "left out.",
         ),
     ] = None,
-    sampler: Annotated[str, typer.Option(help="Who inspects meanwhile.")] = "adaptive",
+    sampler: Annotated[str, typer.Option(help="Sampler that inspects.")] = "adaptive",
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the report (HTML).")
     ] = Path(),
     pest: PestName = None,
 ) -> None:
-    """Compare chance maps by what came true: reliability, scores, intervals, cost.
+    """Compare chance maps with what came true: reliability, scores, intervals, cost.
 
-    With --pest, that of traced pairs alone: the others follow no pest.
+    With --pest only the map of traced pairs is run, as the others do not follow pests.
 
     Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
     """

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 class CalibrateOptions:
     """What `fieldmon study calibrate` is told."""
 
-    drawn: Annotated[int, typer.Option(help="Open choices drawn at first.")] = 500
+    drawn: Annotated[int, typer.Option(help="How many open choices are drawn at first.")] = 500
     kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 20
     steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 400
     seeds: Annotated[int, typer.Option(help="Paired seasons in the final comparison.")] = 20
-    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed; the same seed gives the same figures.")] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for tables and report.")
     ] = Path()

@@ -26,8 +26,8 @@ class NoPriorOptions:
             "everywhere, slips, or all."
         ),
     ] = "2-5"
-    replicates: Annotated[int, typer.Option(help="Simulated seasons a row.")] = 400
-    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1
+    replicates: Annotated[int, typer.Option(help="Simulated seasons per row.")] = 400
+    seed: Annotated[int, typer.Option(help="Seed; the same seed gives the same figures.")] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
     ] = Path()
@@ -44,7 +44,7 @@ class NoPriorOptions:
 
 @with_options
 def no_prior(options: NoPriorOptions) -> None:
-    """Run the thesis's samplers without prior information beside its printed tables.
+    """Run the thesis's samplers without prior information; compare with its printed tables.
 
     It takes no --pest: the tables are of the thesis's own rule.
 

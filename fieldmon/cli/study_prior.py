@@ -26,15 +26,13 @@ if TYPE_CHECKING:
 class PriorOptions:
     """What `fieldmon study prior` is told."""
 
-    scenario: Annotated[list[str] | None, typer.Option(help="A, B or C; may be given again.")] = (
-        None
-    )
+    scenario: Annotated[list[str] | None, typer.Option(help="A, B or C; repeat for more.")] = None
     sweep: Annotated[
         list[str] | None,
-        typer.Option(help="size, spread, time or detection; may be given again."),
+        typer.Option(help="size, spread, time or detection; repeat for more."),
     ] = None
     seeds: Annotated[int, typer.Option(help="Paired seasons of each configuration.")] = 100
-    seed: Annotated[int, typer.Option(help="The same seed, the same figures.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed; the same seed gives the same figures.")] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for tables and report.")
     ] = Path()
@@ -47,7 +45,7 @@ class PriorOptions:
     ] = None
     feature: Annotated[str | None, typer.Option(help="Which plot of the file.")] = None
     observations: Annotated[
-        Path | None, typer.Option(help="Pest records of that plot: they seed the start.")
+        Path | None, typer.Option(help="Pest records of that plot, from which seasons start.")
     ] = None
     pest: PestName = None
 
@@ -67,12 +65,12 @@ class PriorOptions:
 
 @with_options
 def prior(options: PriorOptions) -> None:
-    """Run Dynamic, Naive and Bouncy with prior information beside the published figures.
+    """Run Dynamic, Naive and Bouncy with prior information; compare with the published figures.
 
-    Without --scenario and --sweep all of them. Ctrl-C keeps what is done. With --plot or --maps
-    on your own plot, or on mapped plants, with the same rules. With --pest that pest lives there
-    instead of the thesis's rule, at the temperature of its figures, and nothing is compared with
-    the thesis.
+    Without --scenario and --sweep, all of them are run. Ctrl-C keeps what is done. --plot and
+    --maps run them on your own plot, or on mapped plants, with the same rules. With --pest that
+    pest, at the temperature of its figures, replaces the thesis's rule, and nothing is compared
+    with the thesis.
 
     Example: fieldmon study prior --scenario C --seeds 100 -o study
     """

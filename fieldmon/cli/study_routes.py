@@ -19,7 +19,7 @@ _ALWAYS = ("GR", "GPR", "GFR", "OFR", "HPR")
 
 def routes(  # noqa: PLR0913 - one a command-line option
     files: Annotated[
-        list[Path] | None, typer.Argument(help="Reward matrices (CSV, one line a row).")
+        list[Path] | None, typer.Argument(help="Reward matrices (CSV, one line per row).")
     ] = None,
     budget: Annotated[
         list[float] | None, typer.Option(help="Share of the full budget; repeat for more.")
@@ -36,10 +36,13 @@ def routes(  # noqa: PLR0913 - one a command-line option
         bool, typer.Option(help="With the families, maps of 240 x 500 and 274 x 214 plants.")
     ] = True,
     pyvrp: Annotated[
-        bool, typer.Option("--pyvrp", help="PyVRP, too, where few plants have a reward.")
+        bool, typer.Option("--pyvrp", help="Run PyVRP too, on instances with few rewards.")
     ] = False,
     milp: Annotated[
-        bool, typer.Option("--milp", help="A mixed-integer program with its proof, if small.")
+        bool,
+        typer.Option(
+            "--milp", help="Run a mixed-integer program too, with its proof, on small instances."
+        ),
     ] = False,
     solver_seconds: Annotated[
         float, typer.Option(help="Seconds for PyVRP and for the mixed-integer program.")
@@ -48,7 +51,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
         Path, typer.Option("--output", "-o", help="Folder for the tables (routes.csv, routes.md).")
     ] = Path(),
 ) -> None:
-    """Compare walks along rows by the published model: unit steps, back to the corner.
+    """Compare walks along rows in the published model: unit steps, back to the corner.
 
     Example: fieldmon study routes rewards.csv --budget 0.1 --budget 0.5 -o study
     """

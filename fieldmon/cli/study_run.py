@@ -26,30 +26,41 @@ if TYPE_CHECKING:
 class StudyOptions:
     """What `fieldmon study run` is told."""
 
-    plot: Annotated[Path, typer.Argument(help="Plot file; all its plots unless one is chosen.")]
+    plot: Annotated[
+        Path, typer.Argument(help="Plot file; all its plots unless --feature chooses one.")
+    ]
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the Parquet dataset.")
     ] = Path("study")
     feature: Annotated[str | None, typer.Option(help="Only this plot: name or number.")] = None
     observations: Annotated[Path | None, typer.Option(help="Dated pest records.")] = None
     sampler: Annotated[
-        list[str] | None, typer.Option(help="Who chooses; repeat. Naive, bouncy, dynamic if none.")
+        list[str] | None,
+        typer.Option(help="Sampler; repeat for more. Default: naive, bouncy, dynamic."),
     ] = None
     hours: Annotated[list[float] | None, typer.Option(help="Working hours; repeat.")] = None
-    look: Annotated[list[float] | None, typer.Option(help="Seconds a plant; repeat.")] = None
+    look: Annotated[
+        list[float] | None, typer.Option(help="Seconds to inspect a plant; repeat.")
+    ] = None
     infested: Annotated[
         list[float] | None, typer.Option(help="Share infested at the start; repeat.")
     ] = None
     spread: Annotated[
-        list[float] | None, typer.Option(help="Chance a night per neighbour; repeat.")
+        list[float] | None, typer.Option(help="Chance per night and neighbour; repeat.")
     ] = None
     days: Annotated[int, typer.Option(help="Working days of a season.")] = 25
     seeds: Annotated[int, typer.Option(help="Seasons of each combination.")] = 100
-    first_seed: Annotated[int, typer.Option(help="The same seeds, the same seasons.")] = 1
-    on: Annotated[str | None, typer.Option("--date", help="First day, YYYY-MM-DD; today.")] = None
-    workers: Annotated[int | None, typer.Option(help="Processes; one a core.", min=1)] = None
+    first_seed: Annotated[
+        int, typer.Option(help="First seed; the same seeds give the same seasons.")
+    ] = 1
+    on: Annotated[
+        str | None, typer.Option("--date", help="First day, YYYY-MM-DD; default: today.")
+    ] = None
+    workers: Annotated[
+        int | None, typer.Option(help="Processes; default: one per core.", min=1)
+    ] = None
     scheduler: Annotated[
-        str | None, typer.Option(help="A Dask cluster's scheduler: tcp://host:8786.")
+        str | None, typer.Option(help="Scheduler of a Dask cluster: tcp://host:8786.")
     ] = None
     living: PestOptions = field(default_factory=PestOptions)
 
@@ -91,14 +102,14 @@ class StudyOptions:
 
 @with_options
 def study_run(options: StudyOptions) -> None:
-    """Compare samplers on plots of one's own, over many seasons, on as many machines as there are.
+    """Compare samplers on your own plots, over many seasons, on one machine or many.
 
     Every combination of the options' values meets the same insects, seed by seed. Seasons are
-    added to the folder as they come (Parquet, one row a season). Stopped or killed, the same
-    command goes on; the outcome does not depend on the number of workers.
+    added to the folder as they are finished (Parquet, one row per season). A study that was stopped
+    or killed continues with the same command. The outcome does not depend on the number of workers.
 
-    With --pest the insects are that pest's in the weather of --weather, and the table's spread says
-    nothing.
+    With --pest and --weather the insects are that pest in that weather, and the table's column
+    spread does not apply.
 
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """

@@ -26,20 +26,24 @@ if TYPE_CHECKING:
 class SamplersOptions:
     """What `fieldmon study samplers` is told."""
 
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons a scenario.")] = 10
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons per scenario.")] = 10
     full: Annotated[
         bool,
-        typer.Option("--full", help="Every combination of plot, spread, start and prior (hours)."),
+        typer.Option(
+            "--full", help="Run every combination of plot, spread, start and prior (takes hours)."
+        ),
     ] = False
     scenario: Annotated[
         list[str] | None,
         typer.Option(
-            "--scenario", "--cell", help="Only scenarios whose name begins so; repeat for more."
+            "--scenario",
+            "--cell",
+            help="Only scenarios whose name begins like this; repeat for more.",
         ),
     ] = None
     maps: Annotated[
         Path | None,
-        typer.Option(help="Folder with the public plant maps: finds per inspection on these."),
+        typer.Option(help="Folder with the public plant maps: compare finds on these."),
     ] = None
     tune: Annotated[
         bool, typer.Option("--tune", help="Search Dynamic's open choices instead (ten minutes).")
@@ -54,17 +58,17 @@ class SamplersOptions:
 def samplers(options: SamplersOptions) -> None:
     """Compare samplers in scenarios A, B and C: infested plant-days, days to 50 and 80 %.
 
-    A study that was stopped goes on where its table ends. With 10 seeds it takes about five
+    A study that was stopped continues where its table ends. With 10 seeds it takes about five
     minutes.
 
-    Scenarios named "world" are not among the usual ones: there the insects do what no chance map
-    was told. --scenario "world, B, 12 h" --seeds 200 tells most ratios to five
-    hundredths, in a quarter of an hour.
+    Scenarios named "world" run only if chosen. There the insects do what no chance map expects.
+    --scenario "world, B, 12 h" --seeds 200 gives most ratios to five hundredths, in a quarter of
+    an hour.
 
     With --pest that pest lives in all scenarios, at the temperature of its figures, and every
     sampler knows it: "B, whitefly, clusters, prior none" is such a scenario.
 
-    On mapped plots (`--maps`) no plant infects another: the share of inspections with a find.
+    With --maps the plots are maps of real plants, on which nothing spreads.
 
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """

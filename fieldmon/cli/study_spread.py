@@ -11,7 +11,7 @@ import typer
 def spread(
     folder: Annotated[Path, typer.Argument(help="Folder with public maps of several dates.")],
 ) -> None:
-    """Foretell mapped plots from date to date; score it beside no change and the thesis's rule.
+    """Predict mapped plots from date to date; compare with no change and the thesis's rule.
 
     Example: fieldmon study spread maps
     """

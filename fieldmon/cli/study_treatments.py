@@ -21,9 +21,9 @@ _LOOKED_AT = (0.25, 0.5, 1.0)
 
 
 def treatments(
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons a scenario.")] = 10,
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons per scenario.")] = 10,
     sampler: Annotated[
-        list[str] | None, typer.Option(help="Who looks; repeat. Every one if left out.")
+        list[str] | None, typer.Option(help="Sampler; repeat for more. Default: all.")
     ] = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")
@@ -32,9 +32,10 @@ def treatments(
 ) -> None:
     """Compare treating zones above the threshold with treating whole plots, and with nothing.
 
-    By infested plant-days, hectares and money, over seasons of 25 days; and by the area of zones
-    that leave about as many infested plants as treating the whole plot would. A study that was
-    stopped goes on where its table ends. With --pest that pest lives there, and the map knows it.
+    Compared are infested plant-days, hectares and money over seasons of 25 days, and the area of
+    zones that leave about as many infested plants as treating the whole plot does. A study that
+    was stopped continues where its table ends. With --pest the insects are that pest's, and the
+    map knows it.
 
     Example: fieldmon study treatments --seeds 5 --sampler adaptive -o study
     """

@@ -14,9 +14,10 @@ from fieldmon.cli.waiting import counting
 
 
 def verdicts(
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated plots a question.")] = 100,
+    seeds: Annotated[int, typer.Option(min=2, help="Simulated plots per question.")] = 100,
     maps: Annotated[
-        Path | None, typer.Option(help="Folder with the public plant maps, asked about too.")
+        Path | None,
+        typer.Option(help="Folder with the public plant maps, to compare on these too."),
     ] = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")
@@ -25,9 +26,9 @@ def verdicts(
 ) -> None:
     """Compare Decide with a W walk, with Wald's test alone and with Adaptive.
 
-    By looks until a verdict, and by how often it is right. A study that was stopped goes on where
-    its table ends; 100 seeds take some minutes. With --pest plants show as that pest does; a day
-    has no nights, so nothing spreads.
+    Compared are the inspections until a verdict, and how often it is right. A study that was
+    stopped continues where its table ends; 100 seeds take some minutes. With --pest, what can be
+    seen of plants is that pest's; a day has no nights, so nothing spreads.
 
     Example: fieldmon study verdicts --seeds 20 -o study
     """

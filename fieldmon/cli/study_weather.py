@@ -11,14 +11,16 @@ from fieldmon.cli.waiting import counting
 
 
 def weather(
-    seeds: Annotated[int, typer.Option(min=2, help="Seasons of each, on the same insects.")] = 100,
+    seeds: Annotated[
+        int, typer.Option(min=2, help="Seasons of each, with the same insects.")
+    ] = 100,
     shape: Annotated[
-        str, typer.Option(help="One shape of the weather, as 'heat wave'; empty: all of them.")
+        str, typer.Option(help="One shape of the weather, such as 'heat wave'; empty: all of them.")
     ] = "",
     pest: PestName = None,
     days: Annotated[int, typer.Option(min=1, help="Days of a season.")] = 20,
 ) -> None:
-    """Compare Adaptive that knows temperature and wind with one that believes averages.
+    """Compare Adaptive that knows temperature and wind with Adaptive that believes averages.
 
     Without --pest the insects are a mite that the wind carries.
 

@@ -39,9 +39,10 @@ ReEntry = Annotated[
     float | None,
     typer.Option("--reentry-hours", help="Hours until people may enter; else the label's."),
 ]
-Began = Annotated[str | None, typer.Option("--began", help="Local time it began, HH:MM.")]
+Began = Annotated[str | None, typer.Option("--began", help="Local time at which it began, HH:MM.")]
 Ended = Annotated[
-    str | None, typer.Option("--ended", help="Local time it ended; else the end of the day.")
+    str | None,
+    typer.Option("--ended", help="Local time at which it ended; else the end of the day."),
 ]
 
 
@@ -61,9 +62,9 @@ class TreatOptions:
     rows: RowsTreated = None
     on: TheDate = None
     product: Annotated[str, typer.Option(help="What was used.")] = ""
-    active_ingredient: Annotated[str, typer.Option(help="Active ingredient of it.")] = ""
+    active_ingredient: Annotated[str, typer.Option(help="Its active ingredient.")] = ""
     dose: DoseSaid = None
-    water: Annotated[float | None, typer.Option(help="Litres of water a hectare.")] = None
+    water: Annotated[float | None, typer.Option(help="Litres of water per hectare.")] = None
     operator: Annotated[str, typer.Option(help="Who did it.")] = ""
     reason: Annotated[str, typer.Option(help="Why: the pest, and what was seen.")] = ""
     waiting_days: Waiting = None
@@ -104,10 +105,10 @@ class TreatOptions:
 
 @with_options
 def treat(options: TreatOptions) -> None:
-    """Note that the plot or a part of it was sprayed; the chance falls there.
+    """Record that the plot or a part of it was sprayed; the chances fall there.
 
-    Waiting periods, dose and mode-of-action group are held to the season's label table, see
-    fieldmon labels, and what to beware of is said.
+    Waiting periods, dose and mode-of-action group are checked against the label table, see
+    fieldmon labels, and warnings are printed.
 
     Example: fieldmon treat season.gpkg --efficacy 0.8 --area zones.gpkg --product soap
     """
@@ -140,7 +141,7 @@ def treat(options: TreatOptions) -> None:
 
 
 def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
-    """Say what a treatment asks for: waiting, and what to beware of."""
+    """Print what a treatment asks for: waiting periods and warnings."""
     (one,) = (treatment for treatment in kept.treatments() if treatment.batch == batch)
     if learnt:
         typer.echo(
@@ -153,7 +154,7 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
         typer.echo(f"Harvest there from {waits.harvest_from} on.")
     for caution in kept.cautions(one.on):
         if caution.batch == batch:
-            typer.echo(f"beware: {caution.sentence}", err=True)
+            typer.echo(f"warning: {caution.sentence}", err=True)
 
 
 def _dose(text: str) -> Dose:

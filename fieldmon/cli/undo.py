@@ -17,7 +17,7 @@ UndoChange = Annotated[
 def undo(
     season: SeasonFile,
     batch: Annotated[
-        int | None, typer.Option(help="Number of a batch, see fieldmon status --batches.")
+        int | None, typer.Option(help="Number of a batch; see fieldmon status --batches.")
     ] = None,
     inspection: Annotated[
         int | None, typer.Option(help="Number (fid) of one inspection in the season's file.")
@@ -25,7 +25,7 @@ def undo(
     change: UndoChange = False,  # noqa: FBT002 - a flag
     who: Annotated[str, typer.Option(help="Who takes it back.")] = "",
 ) -> None:
-    """Take back what was recorded last, a batch, one inspection, or a change; nothing is deleted.
+    """Take back the last recording, a batch, one inspection or a change; nothing is deleted.
 
     Example: fieldmon undo season.gpkg
     """

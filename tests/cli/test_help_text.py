@@ -1,6 +1,7 @@
 """Help as it stands in a window."""
 
 import re
+import shlex
 
 import pytest
 import typer
@@ -38,3 +39,14 @@ def test_no_command_breaks_its_help_where_its_source_ends_a_line(name, said):
     assert said
     for paragraph in said.split("\n\n"):
         assert not re.search(r"\n(?!Example: )", paragraph), name
+
+
+@pytest.mark.parametrize(("name", "said"), [*every_help()])
+def test_an_example_in_a_help_is_a_whole_command_and_nothing_else(name, said):
+    for example in re.findall(r"^Example: (.*)$", said, re.MULTILINE):
+        program, *words = shlex.split(example)
+        assert program == "fieldmon", name
+        command = typer.main.get_command(app)
+        while hasattr(command, "commands"):
+            command = command.commands[words.pop(0)]
+        command.make_context(name, words)

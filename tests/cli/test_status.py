@@ -17,11 +17,11 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     assert code == 0, err
     kept = Season(season)
     now = kept.status(kept.last_date())
-    ahead = f"  in days to come        {kept.forecast(now.on).sentence()}"
+    ahead = f"  forecast               {kept.forecast(now.on).sentence()}"
     assert out.splitlines() == [*lines(kept, now), ahead]
     assert f"{now.plants} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
-    assert "as inspections tell    detection 84 %" in out
+    assert "learnt so far          detection 84 %" in out
     assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
 
 

@@ -56,8 +56,8 @@ def test_what_was_applied_is_kept_and_what_to_beware_of_is_said(run, season, tmp
     assert code == 0, err
     assert "Enter there from 2026-11-02 21:30 on (Asia/Jerusalem)." in out
     assert "Harvest there from 2026-11-10 on." in out
-    assert "beware: Harvest on 2026-11-05 is too soon after Acarol" in err
-    assert "beware: The dose of Acarol on 2026-11-02, 0.6 l/ha, is more than its label" in err
+    assert "warning: Harvest on 2026-11-05 is too soon after Acarol" in err
+    assert "warning: The dose of Acarol on 2026-11-02, 0.6 l/ha, is more than its label" in err
     (one,) = Season(season).treatments()
     _, listed, _, _ = run("status", season, "--batches")
     assert f"  {int(one.place.plants.sum())} plants, 2026-11-0" in listed
@@ -65,7 +65,7 @@ def test_what_was_applied_is_kept_and_what_to_beware_of_is_said(run, season, tmp
     assert np.array_equal(one.place.plants, np.isin(lines, [1, 2]))
     _, out, _, _ = run("status", season, "--date", BEGINS)
     assert "harvest                from 2026-11-10 on, after the treatment of 2026-11-02" in out
-    assert "beware                 Harvest on 2026-11-05 is too soon" in out
+    assert "warning                Harvest on 2026-11-05 is too soon" in out
 
 
 def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, season):

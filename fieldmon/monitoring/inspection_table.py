@@ -46,6 +46,12 @@ def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Pa
     return copy
 
 
+def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:
+    """Return plant, day and result of all that was ever recorded, also of what was undone."""
+    wanted = "SELECT DISTINCT plant, date, result FROM inspections WHERE batch IS NOT NULL"
+    return {(plant, day, _CODES.get(said, -1)) for plant, day, said in db.execute(wanted)}
+
+
 def rows(
     inspections: Inspections,
     grid: PlantGrid,

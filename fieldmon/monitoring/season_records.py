@@ -46,6 +46,17 @@ class SeasonRecords(OpenSeason):
         """Return those that say otherwise than what is recorded of the same plant and day."""
         return contradictions(inspections, self.history.inspections)
 
+    def unrecorded(self, inspections: Inspections) -> int:
+        """Return how many are of a plant, day and result that were never recorded.
+
+        What was recorded and taken back since was recorded.
+        """
+        with self.store.reading() as db:
+            known = inspection_table.ever_recorded(db)
+        dates = inspections.date.astype(str).tolist()
+        told = zip(inspections.plant.tolist(), dates, inspections.result.tolist(), strict=True)
+        return sum(one not in known for one in told)
+
     def contradicting(self, on: date) -> Inspections:
         """Return a day's inspections of plants that were both clean and found on it."""
         return contradicting(self.history.inspections.on(on))

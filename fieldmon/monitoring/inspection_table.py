@@ -115,7 +115,8 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
         )
     if not np.isin(inspections.result, list(RESULT_NAMES)).all():
         raise ObservationError(worded("A result must be one of {names}.", names=", ".join(_CODES)))
-    bad = np.flatnonzero(~(np.isnan(inspections.count) | (inspections.count >= 0)))
+    count = inspections.count
+    bad = np.flatnonzero(~(np.isnan(count) | ((count >= 0) & np.isfinite(count))))
     if bad.size:
         raise ObservationError(
             worded(
@@ -124,7 +125,8 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
                 found=inspections.count[bad[0]],
             )
         )
-    late = np.flatnonzero(~(np.isnan(inspections.second) | (inspections.second < _DAY_S)))
+    second = inspections.second
+    late = np.flatnonzero(~(np.isnan(second) | ((second >= 0) & (second < _DAY_S))))
     if late.size:
         raise ObservationError(
             worded(
@@ -144,7 +146,8 @@ def _digest(*parts: object) -> str:
 def _clock(second: float) -> str | None:
     if np.isnan(second):
         return None
-    hour, rest = divmod(round(second) % _DAY_S, 3600)
+    # what rounds up to midnight is of its own day's last second
+    hour, rest = divmod(min(round(second), _DAY_S - 1), 3600)
     return f"{hour:02d}:{rest // 60:02d}:{rest % 60:02d}"
 
 

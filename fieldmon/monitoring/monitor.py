@@ -150,7 +150,7 @@ class Monitor:
 
     @property
     def last_inspected(self) -> NDArray[np.int32]:
-        """Day of each plant's last inspection, from 0; -1: never, ``(n,)``; cannot be written to."""
+        """Day of each plant's last inspection, from 0; -1: never, ``(n,)``; read-only."""
         return _read_only(self._last_inspected)
 
     def plan(self) -> DayPlan:

@@ -132,7 +132,7 @@ class ChangeOptions:
         from fieldmon.planning.members import team_of  # noqa: PLC0415
 
         robots = self.robots or ""
-        if robots.isdigit():
+        if robots.isdecimal():
             n = int(robots)
             return replace(settings, team=() if n == 1 else team_of(n, settings.robot))
         team, first = members_of(robots, settings.starts, WorkerOptions())

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from functools import wraps
 from inspect import getdoc
 from typing import TYPE_CHECKING, Any
 
 import typer
+
+from fieldmon.cli.outputs import refuse_what_is_read
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,8 +25,15 @@ class Commands(typer.Typer):
         """Return what makes a command of a function."""
 
         def register(function: Any) -> Any:  # noqa: ANN401 - typer's own
-            told = {"help": flowing(getdoc(function) or "")} | options
-            return typer.Typer.command(self, name, **told)(function)
+
+            @wraps(function)
+            def called(**told: Any) -> Any:  # noqa: ANN401 - what a command is told is of any type
+                refuse_what_is_read(told)
+                return function(**told)
+
+            known = {"help": flowing(getdoc(function) or "")} | options
+            typer.Typer.command(self, name, **known)(called)
+            return function
 
         return register
 

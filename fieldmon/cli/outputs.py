@@ -10,6 +10,8 @@ import typer
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -17,10 +19,32 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
 
 _RASTERS = (".tif", ".tiff")
+# what commands call the files that they write; all other files are read
+_WRITTEN = ("output", "chance_map", "bag")
 
 ChanceMap = Annotated[
     Path | None, typer.Option(help="Cloud Optimised GeoTIFF to write: chance of each plant.")
 ]
+
+
+def refuse_what_is_read(told: Mapping[str, object]) -> None:
+    """Refuse to write over a file that the same command reads, by whichever name."""
+    to = [file for name in _WRITTEN for file in _files(told.get(name))]
+    if not any(one.is_file() for one in to):
+        return
+    read = [file for name in told if name not in _WRITTEN for file in _files(told[name])]
+    for one in to:
+        for other in read:
+            if one.is_file() and other.is_file() and one.samefile(other):
+                raise SettingError(
+                    f"{one} must be another file than those that are read, for it would be "
+                    "written over. Choose another name to write to."
+                )
+
+
+def _files(told: object) -> list[Path]:
+    """Return the files in what an option or argument was told."""
+    return [file for file in (told if isinstance(told, list) else [told]) if isinstance(file, Path)]
 
 
 def check_outputs(outputs: list[Path] | None, chance_map: Path | None) -> None:

@@ -8,7 +8,7 @@ import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_drafts
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
-from fieldmon.cli.season_files import refuse_what_was_chosen
+from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
@@ -37,6 +37,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     if season.settings.team:
         _plan_team(season, options, on)
         return
+    refuse_unrecorded(season, options.output or ())
     today = season.plan(on, None if now is None else clock(now, "--now"))
     if options.bound and len(today.route):
         today = with_bound(today)
@@ -61,6 +62,7 @@ def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
 
     team = season.settings.team
     files = files_of_each(options.output, team)
+    refuse_unrecorded(season, (file for each in files for file in each))
     days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
     if not any(len(today.route) for today in days):
         raise SettingError(

@@ -16,7 +16,7 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
-from fieldmon.errors import ChoiceNeeded
+from fieldmon.errors import ChoiceNeeded, ContradictionError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -113,7 +113,10 @@ def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
 
     held = season.history.inspections
     for inspections in read:
-        contradictions(inspections, held).refuse(season.label)
+        try:
+            contradictions(inspections, held).refuse(season.label)
+        except ContradictionError as error:
+            raise ContradictionError(f"{error} Confirm with: --contradicting") from None
         held = held.and_those(inspections)
 
 

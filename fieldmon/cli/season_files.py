@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import shlex
+import sqlite3
+from contextlib import closing
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from fieldmon.errors import SettingError
+from fieldmon.errors import FieldmonError, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -14,6 +17,7 @@ if TYPE_CHECKING:
 
     import typer
 
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
 
 
@@ -53,3 +57,51 @@ def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> No
             f"A season keeps what was chosen when it began, but {flags} was given too. "
             "Leave it away, or choose otherwise for the days to come with: fieldmon change"
         )
+
+
+def refuse_unrecorded(season: Season, files: Iterable[Path]) -> None:
+    """Raise `SettingError` where a file to be written over was filled in and never recorded."""
+    for file in files:
+        if not (file.is_file() and _is_filled_in(file)):
+            continue
+        n = season.unrecorded(_results_in(file, season))
+        if n:
+            pasted = shlex.join([str(season.path), str(file)])
+            results = "1 result" if n == 1 else f"{n} results"
+            raise SettingError(
+                f"{file} would be written over, but it was filled in and holds {results} that "
+                f"nobody recorded. Record them first: fieldmon record {pasted}; or choose another "
+                "name, or move it away."
+            )
+
+
+def _is_filled_in(file: Path) -> bool:
+    """Return whether a table or GeoPackage given out may hold results: told without reading all.
+
+    Files of other formats come back under other names.
+    """
+    ending = file.suffix.lower()
+    if ending == ".csv":
+        text = file.read_text(encoding="utf-8-sig", errors="replace")
+        mark = max(",;\t", key=text.partition("\n")[0].count)
+        rows = csv.DictReader(text.splitlines(), delimiter=mark)
+        return any((row.get("found") or "").strip() or (row.get("count") or "") for row in rows)
+    if ending != ".gpkg":
+        return False
+    wanted = "SELECT 1 FROM stops WHERE found IS NOT NULL OR count IS NOT NULL"
+    try:
+        with closing(sqlite3.connect(file)) as db:
+            return db.execute(wanted).fetchone() is not None
+    except sqlite3.Error:
+        return False
+
+
+def _results_in(file: Path, season: Season) -> Inspections:
+    """Return what a file says of this season's plants without a doubt; nothing of other files."""
+    from fieldmon.infestation.inspections import Inspections  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
+
+    try:
+        return dated(read_inspections(file, season.plot.grid)).value
+    except FieldmonError:
+        return Inspections.none()

@@ -29,7 +29,7 @@ def members_of(
     from fieldmon.io.readers.team import read_team  # noqa: PLC0415
     from fieldmon.planning.members import TeamMember, team_of  # noqa: PLC0415
 
-    if robots.isdigit():
+    if robots.isdecimal():
         return team_of(int(robots), worker.robot()), usual
     stated = read_team(Path(robots))
     starts = [usual if one.start is None else clock(one.start, "start") for one in stated]

@@ -176,17 +176,18 @@ def _plants_of(kept: Season, rows: str) -> NDArray[np.bool_]:
     """Return the plants ``(n,)`` of rows as people count them."""
     import numpy as np  # noqa: PLC0415
 
-    grid = kept.plot.grid
-    wanted: list[int] = []
+    there, wanted = set((kept.plot.grid.row_line + 1).tolist()), set[int]()
     for part in rows.split(","):
         first, dash, last = part.strip().partition("-")
-        if not first.strip().isdigit() or (dash and not last.strip().isdigit()):
+        if not first.strip().isdecimal() or (dash and not last.strip().isdecimal()):
             raise SettingError(f"--rows must be rows such as 3-5,8, but it is {rows!r}.")
-        wanted += range(int(first), int(last if dash else first) + 1)
-    there = set((grid.row_line + 1).tolist())
-    if missing := [row for row in wanted if row not in there]:
-        raise SettingError(
-            f"Rows of this plot are {min(there)} to {max(there)}, but --rows says {missing[0]}."
-        )
-    plants: NDArray[np.bool_] = np.isin(kept.label.line, wanted)
+        ends = sorted({int(first), int(last if dash else first)})
+        # of a range that ends beyond the plot only what matters is counted out
+        within = range(max(ends[0], min(there)), min(ends[-1], max(there)) + 1)
+        if missing := [row for row in (*ends, *within) if row not in there]:
+            raise SettingError(
+                f"Rows of this plot are {min(there)} to {max(there)}, but --rows says {missing[0]}."
+            )
+        wanted.update(within)
+    plants: NDArray[np.bool_] = np.isin(kept.label.line, sorted(wanted))
     return plants

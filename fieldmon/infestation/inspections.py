@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.arguments import shown
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
@@ -68,16 +69,22 @@ class Inspections:
     notes: NDArray[np.object_]
 
     def __post_init__(self) -> None:
-        k = len(self.plant)
+        k = np.size(self.plant)
         for name, type_ in _TYPES.items():
-            values = np.asarray(getattr(self, name))
+            values = np.atleast_1d(getattr(self, name))
             if len(values) != k:
                 raise ObservationError(
                     f"All columns of the inspections must have {k} entries, "
                     f"but {name} has {len(values)}."
                 )
             # a view: the caller's own array stays as it is
-            column = values.astype(type_, copy=False).view()
+            try:
+                column = values.astype(type_, copy=False).view()
+            except (ValueError, TypeError) as error:
+                raise ObservationError(
+                    f"The {name} of inspections must be of type {type_} each, but they are not "
+                    f"({error})."
+                ) from error
             if name in _WHOLE and not np.array_equal(column, values):
                 raise ObservationError(
                     f"The {name} of inspections must be whole numbers of {type_}."
@@ -117,9 +124,15 @@ class Inspections:
         Raises
         ------
         ObservationError
-            If plants or results are no whole numbers of their type.
+            If plants or results are no whole numbers of their type, or dates no dates.
         """
-        k, dates = len(plant), np.asarray(on, "datetime64[D]")
+        k = np.size(plant)
+        try:
+            dates = np.asarray(on, "datetime64[D]")
+        except ValueError as error:
+            raise ObservationError(
+                f"The date of inspections must be as 2026-11-18, but it is {shown(on)}."
+            ) from error
         known: dict[str, Any] = {
             "plant": plant,
             "result": result,

@@ -3,20 +3,36 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 import tempfile
+from contextlib import closing, suppress
 from pathlib import Path
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
+# a database that another program holds for longer is taken for a season: nothing is risked
+_GLANCE_S = 0.5
+
 
 def require_place(target: Path) -> None:
-    """Raise `FileProblem` unless a file of this name may be there: in a folder, and none itself."""
+    """Raise `FileProblem` unless a file of this name may be written.
+
+    Into a folder that exists; over a plain file, but never over a season.
+    """
     if target.exists() and not target.is_file():
         what = "a folder" if target.is_dir() else "not a plain file"
         raise FileProblem(
             worded(
                 "{target} must be a file to write to, but it is {what}.", target=target, what=what
+            )
+        )
+    if target.exists() and _may_be_season(target):
+        raise FileProblem(
+            worded(
+                "{path} must be a file to write to, but it holds a season. A season is never "
+                "overwritten: choose another name, or move the old file away.",
+                path=target,
             )
         )
     require_folder(target)
@@ -72,3 +88,20 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
+
+
+def _may_be_season(file: Path) -> bool:
+    """Return whether a file holds what every season has, be it damaged or held by a program."""
+    try:
+        # through SQLite: whoever else opens and closes a database takes away the locks that other
+        # threads of the same program hold on it
+        with closing(sqlite3.connect(file, timeout=_GLANCE_S)) as db:
+            known = db.execute("SELECT 1 FROM sqlite_master WHERE name = 'fieldmon'")
+            return known.fetchone() is not None
+    except sqlite3.Error as error:
+        if "locked" in str(error):
+            return True
+    with suppress(OSError), file.open("rb") as damaged:
+        head = damaged.read(1 << 16)
+        return head.startswith(b"SQLite format 3\x00") and b"fieldmon" in head
+    return False

@@ -6,10 +6,12 @@ import threading
 from dataclasses import dataclass, field
 from datetime import timedelta
 from functools import cached_property
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
@@ -134,6 +136,8 @@ class Treatment:
     efficacy: float
 
     def __post_init__(self) -> None:
+        must_be("The efficacy of a treatment must be a chance in 0..1", self.efficacy, Real,
+                "Give 0.8, for instance.")  # fmt: skip
         if not 0.0 <= self.efficacy <= 1.0:
             raise SettingError(
                 worded(

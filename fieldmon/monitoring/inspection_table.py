@@ -46,6 +46,12 @@ def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Pa
     return copy
 
 
+def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:
+    """Return plant, day and result of all that was ever recorded, also of what was undone."""
+    wanted = "SELECT DISTINCT plant, date, result FROM inspections WHERE batch IS NOT NULL"
+    return {(plant, day, _CODES.get(said, -1)) for plant, day, said in db.execute(wanted)}
+
+
 def rows(
     inspections: Inspections,
     grid: PlantGrid,
@@ -109,7 +115,8 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
         )
     if not np.isin(inspections.result, list(RESULT_NAMES)).all():
         raise ObservationError(worded("A result must be one of {names}.", names=", ".join(_CODES)))
-    bad = np.flatnonzero(~(np.isnan(inspections.count) | (inspections.count >= 0)))
+    count = inspections.count
+    bad = np.flatnonzero(~(np.isnan(count) | ((count >= 0) & np.isfinite(count))))
     if bad.size:
         raise ObservationError(
             worded(
@@ -118,7 +125,8 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
                 found=inspections.count[bad[0]],
             )
         )
-    late = np.flatnonzero(~(np.isnan(inspections.second) | (inspections.second < _DAY_S)))
+    second = inspections.second
+    late = np.flatnonzero(~(np.isnan(second) | ((second >= 0) & (second < _DAY_S))))
     if late.size:
         raise ObservationError(
             worded(
@@ -138,7 +146,8 @@ def _digest(*parts: object) -> str:
 def _clock(second: float) -> str | None:
     if np.isnan(second):
         return None
-    hour, rest = divmod(round(second) % _DAY_S, 3600)
+    # what rounds up to midnight is of its own day's last second
+    hour, rest = divmod(min(round(second), _DAY_S - 1), 3600)
     return f"{hour:02d}:{rest // 60:02d}:{rest % 60:02d}"
 
 

@@ -6,8 +6,9 @@ Nothing is kept on disk; see `fieldmon.monitoring.season_file` for a season that
 from __future__ import annotations
 
 from dataclasses import replace
+from numbers import Real
 from types import NoneType
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -153,13 +154,13 @@ class Monitor:
 
     @property
     def chance(self) -> NDArray[np.float64]:
-        """Believed chance of infestation now, ``(n,)``."""
-        return self._belief.chance
+        """Believed chance of infestation now, ``(n,)``; it cannot be written to."""
+        return _read_only(self._belief.chance)
 
     @property
     def last_inspected(self) -> NDArray[np.int32]:
-        """Day of each plant's last inspection, from 0; -1: never, ``(n,)``."""
-        return self._last_inspected
+        """Day of each plant's last inspection, from 0; -1: never, ``(n,)``; read-only."""
+        return _read_only(self._last_inspected)
 
     def plan(self) -> DayPlan:
         """Return the day ahead as it goes if nothing is found."""
@@ -337,8 +338,14 @@ class MonitorDay:
         Raises
         ------
         ObservationError
-            If no plant was asked for, `found` is neither, or the clock goes backwards.
+            If no plant was asked for, the day has ended, `found` is neither, or the clock goes
+            backwards.
         """
+        if self.ended:
+            raise ObservationError(
+                "A plant must be told of before its day ends, for the day is learnt then. Tell "
+                "within its with statement."
+            )
         stop = self._asked
         if stop is None:
             raise ObservationError("A plant must be asked for before it is told of. Call ask().")
@@ -348,10 +355,13 @@ class MonitorDay:
                 f"{shown(found)}."
             )
         done_s = stop.arrive_s + stop.inspect_s
-        if at_s is not None and not at_s >= self._since_s:
-            raise ObservationError(
-                f"The day's clock must go on, but it was {self._since_s:.0f} s and is {at_s:.0f} s."
-            )
+        if at_s is not None:
+            must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.")
+            if not self._gone_s <= at_s < np.inf:
+                raise ObservationError(
+                    f"The day's clock must go on, but it was {self._gone_s:.0f} s and is "
+                    f"{at_s:.0f} s."
+                )
         self._told.append((stop, found))
         self._asked = None
         self._gone_s = done_s if at_s is None else at_s
@@ -407,6 +417,13 @@ class MonitorDay:
             inspect_s=float(self._times.stop_s[level]),
             detects=float(self._times.detects[level]),
         )
+
+
+def _read_only(values: NDArray[Any]) -> NDArray[Any]:
+    """Return the same values, which nobody can write to."""
+    kept = values.view()
+    kept.setflags(write=False)
+    return kept
 
 
 def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.float64]:

@@ -90,19 +90,23 @@ class Contradictions:
 
 
 def contradictions(brought: Inspections, held: Inspections) -> Contradictions:
-    """Return which of the inspections brought say otherwise than those held.
+    """Return which of the inspections brought say otherwise than those held, or before them.
 
-    Clean against found or found against clean, of one plant on one day. Where both are held
-    already, neither is news; a plant that could not be inspected says nothing.
+    Clean against found or found against clean, of one plant on one day, whether one is held or
+    both are brought at once. Where both are held already, neither is news; a plant that could not
+    be inspected says nothing.
     """
     same = _n_alike(brought, held)  # nearly all, of two copies of a season
     news = brought.take(slice(same, None))
     results = _held(held.inspected, news)
-    found = [
-        (k, min(was))
-        for k, (key, result) in enumerate(zip(_keys(news), news.result, strict=True), same)
-        if result != SKIPPED and (was := results.get(key)) and result not in was
-    ]
+    found = []
+    for k, (key, result) in enumerate(zip(_keys(news), news.result.tolist(), strict=True), same):
+        if result == SKIPPED:
+            continue
+        was = results.setdefault(key, set())
+        if was and result not in was:
+            found.append((k, min(was)))
+        was.add(result)
     at = np.array([k for k, _ in found], np.intp)
     recorded = np.array([result for _, result in found], np.int8)
     return Contradictions(at, brought.plant[at], brought.date[at], recorded, brought.result[at])

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import (
     batches,
     copy_corrections,
@@ -33,7 +35,6 @@ if TYPE_CHECKING:
     from datetime import date
     from pathlib import Path
 
-    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
@@ -45,6 +46,17 @@ class SeasonRecords(OpenSeason):
     def contradictions(self, inspections: Inspections) -> Contradictions:
         """Return those that say otherwise than what is recorded of the same plant and day."""
         return contradictions(inspections, self.history.inspections)
+
+    def unrecorded(self, inspections: Inspections) -> int:
+        """Return how many are of a plant, day and result that were never recorded.
+
+        What was recorded and taken back since was recorded.
+        """
+        with self.store.reading() as db:
+            known = inspection_table.ever_recorded(db)
+        dates = inspections.date.astype(str).tolist()
+        told = zip(inspections.plant.tolist(), dates, inspections.result.tolist(), strict=True)
+        return sum(one not in known for one in told)
 
     def contradicting(self, on: date) -> Inspections:
         """Return a day's inspections of plants that were both clean and found on it."""
@@ -81,6 +93,8 @@ class SeasonRecords(OpenSeason):
         SettingError
             If a date is not of this season.
         """
+        must_be("What is recorded must be Inspections", inspections, Inspections,
+                "Make them with Inspections.of, or read them with read_inspections.")  # fmt: skip
         with self._writing() as db:
             before = self._read(db)
             held = before.history.inspections

@@ -118,7 +118,13 @@ class SeasonTreatments(OpenSeason):
         return TreatedPlace(ground, self._inside(ground), float(on_plot.area) / 1e4)
 
     def _treated_one_by_one(self, plants: NDArray[np.bool_]) -> TreatedPlace:
-        grid = self.plot.grid
+        grid, plants = self.plot.grid, np.asarray(plants)
+        if plants.dtype != np.bool_:
+            raise SettingError(
+                "Whether it was treated must be said of each plant as True or False, but it is "
+                f"said as {plants.dtype}. Of plants by their numbers give np.isin(np.arange("
+                f"{len(grid)}), numbers)."
+            )
         if plants.shape != (len(grid),):
             raise SettingError(
                 worded(

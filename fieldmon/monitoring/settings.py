@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field, fields
-from datetime import date, time
+from datetime import date, datetime, time
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import day_of, must_be, must_be_known, of_kind
+from fieldmon.compute.arguments import day_of, must_be, must_be_known, of_kind, shown
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
@@ -155,6 +155,10 @@ class MonitoringSettings:
 
     def day(self, on: date) -> int:
         """Return the number of a date, from 0; raise `SettingError` outside the season."""
+        if not isinstance(on, date) or isinstance(on, datetime):
+            raise SettingError(
+                f"A day of a season must be a date, but it is {shown(on)}. Give date(2026, 11, 18)."
+            )
         number = (on - self.begins).days
         if number < 0:
             raise SettingError(

@@ -8,8 +8,14 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.cli.outputs import check_outputs, day_in_words, write_chance_map, write_routes
-from fieldmon.errors import FieldmonError
+from fieldmon.cli.outputs import (
+    check_outputs,
+    day_in_words,
+    refuse_what_is_read,
+    write_chance_map,
+    write_routes,
+)
+from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.plan import PlanSettings, first_day
@@ -84,3 +90,32 @@ def test_a_plan_writes_none_of_its_files_where_one_cannot_be(run, season, what):
     assert (code, out, made) == (2, "", set())
     assert "folder none must exist" in err
     assert season.read_bytes() == before
+
+
+def test_no_file_is_written_over_that_the_same_command_reads(tmp_path):
+    read, other = tmp_path / "plots.geojson", tmp_path / "route.geojson"
+    read.write_text("{}")
+    link = tmp_path / "link.geojson"
+    link.symlink_to(read)
+    for told in ({"output": [other, link]}, {"chance_map": read}, {"output": read}):
+        with pytest.raises(SettingError, match="must be another file than those that are read"):
+            refuse_what_is_read({"plot": read, "hours": 4.0} | told)
+    refuse_what_is_read({"plot": read, "output": [other], "chance_map": None})
+    other.write_text("{}")
+    refuse_what_is_read({"plot": read, "output": [other], "also": [read]})
+
+
+@pytest.mark.parametrize("command", [["plan"], ["decide", "--threshold", "5%"]])
+def test_a_season_is_planned_and_decided_into_any_file_but_a_season(run, season, tmp_path, command):
+    other = tmp_path / "other.gpkg"
+    other.write_bytes(season.read_bytes())
+    before = season.read_bytes()
+    code, _, err, made = run(command[0], season, *command[1:], "-o", season)
+    assert (code, made) == (2, set())
+    assert "must be another file than those that are read" in err
+    code, _, err, made = run(
+        command[0], season, *command[1:], "-o", tmp_path / "a.kml", "-o", other
+    )
+    assert (code, made) == (2, set())
+    assert "holds a season" in err
+    assert season.read_bytes() == other.read_bytes() == before

@@ -3,12 +3,13 @@
 import shlex
 import shutil
 
+import pyogrio
 import pytest
 
 from fieldmon.cli.season_files import opened
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import Season
-from tests.cli.estate import begin_next_year, table
+from tests.cli.estate import BEGINS, begin_next_year, filled_in, table
 from tests.cli.test_merge import worked
 
 
@@ -39,3 +40,31 @@ def test_seasons_of_their_own_go_into_one_table(run, season, tmp_path):
     code, _, err, _ = run("export", season, other, "--of", "inspections", "-o", "all.csv")
     assert code == 0, err
     assert len(table(tmp_path / "all.csv")) == len(Season(season).history.inspections) == 6
+
+
+def test_a_day_that_was_filled_in_is_not_written_over_before_it_is_recorded(run, season, tmp_path):
+    words = ("plan", season, "--date", BEGINS, "-o", "day.csv", "-o", "day.gpkg")
+    for _ in range(2):  # not filled in, it may be
+        code, _, err, _ = run(*words)
+        assert code == 0, err
+    filled_in(tmp_path / "day.csv", {0, 2}, 5)
+    for name in ("day.csv", "day.gpkg"):
+        if name == "day.gpkg":
+            stops = pyogrio.read_dataframe(tmp_path / name, layer="stops")
+            stops.loc[3, "found"] = "clean"
+            pyogrio.write_dataframe(stops, tmp_path / name, layer="stops")
+        held = (tmp_path / name).read_bytes()
+        code, _, err, made = run(*words)
+        assert (code, made) == (2, set())
+        assert f"{name} would be written over" in err
+        assert (tmp_path / name).read_bytes() == held
+        told = shlex.split(err.partition("Record them first: ")[2].partition(";")[0])
+        code, _, err, _ = run(*told[1:])
+        assert code == 0, err
+        code, _, err, _ = run(*words)
+        assert code == 0, err
+    filled_in(tmp_path / "day.csv", {0}, 1)
+    run("record", season, "day.csv")
+    run("undo", season)  # what was taken back was recorded
+    code, _, err, _ = run(*words)
+    assert code == 0, err

@@ -89,6 +89,8 @@ def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, seas
         (["--dose", "2 buckets"], "The unit of a dose must be"),
         (["--rows", "three"], "--rows must be rows such as 3-5,8"),
         (["--rows", "999"], "but --rows says 999"),
+        (["--rows", "1-999999999999"], "but --rows says 999999999999"),
+        (["--rows", "²"], "--rows must be rows such as 3-5,8"),
         (["--rows", "1", "--area", "a.geojson"], "not both"),
         (["--irac", "sulphur"], "must be one of IRAC"),
         (["--ended", "9"], "--ended must be a time"),
@@ -115,3 +117,11 @@ def test_a_treatment_of_a_day_that_has_not_come_is_noted_and_doubted(run, season
         code, _, err, _ = run("treat", season, "--efficacy", "0.5", "--date", str(on))
         assert code == 0
         assert (f"the day of the treatment, {on}, has not come" in err) == doubted
+
+
+def test_rows_are_a_range_from_either_end(run, season):
+    code, _, err, _ = run("treat", season, "--efficacy", "1", "--rows", "5-3,8", "--date", BEGINS)
+    assert code == 0, err
+    (treated,) = Season(season).treatments()
+    rows = Season(season).label.line[treated.place.plants]
+    assert sorted(set(rows.tolist())) == [3, 4, 5, 8]

@@ -85,3 +85,10 @@ def test_taking_some_takes_the_same_of_every_column(which):
 def test_every_result_has_a_name_of_its_own():
     assert sorted(RESULT_NAMES) == [CLEAN, FOUND, SKIPPED]
     assert len(set(RESULT_NAMES.values())) == 3
+
+
+def test_what_is_no_plant_or_day_at_all_is_refused_in_a_sentence():
+    for plant, on, says in ((["a"], MONDAY, "The plant of"), ([1], "6/4", "date .* '6/4'")):
+        with pytest.raises(ObservationError, match=says):
+            Inspections.of(plant, [FOUND], on)
+    assert len(Inspections.of(7, FOUND, MONDAY)) == 1

@@ -2,6 +2,8 @@
 
 import errno
 import os
+import sqlite3
+from contextlib import closing
 
 import pytest
 
@@ -41,3 +43,38 @@ def test_a_folder_or_a_device_is_not_written_over(tmp_path):
 def test_a_missing_folder_is_named(tmp_path):
     with pytest.raises(FileProblem, match="none must exist"):
         write_whole(tmp_path / "none" / "a.json", b"one")
+
+
+def database(path, *tables):
+    with closing(sqlite3.connect(path)) as db:
+        for name in tables:
+            db.execute(f"CREATE TABLE {name} (key)")
+        db.commit()
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("damage", [b"", b"x"])
+def test_a_season_is_never_written_over_be_it_damaged(tmp_path, damage):
+    path = tmp_path / "season.gpkg"
+    held = database(path, "fieldmon")
+    held = held[:100] + damage * 20 + held[100 + 20 * len(damage) :]
+    path.write_bytes(held)
+    with pytest.raises(FileProblem, match="but it holds a season"):
+        write_whole(path, b"a route")
+    assert path.read_bytes() == held
+
+
+def test_a_season_that_another_program_holds_is_not_written_over(tmp_path):
+    path = tmp_path / "season.gpkg"
+    database(path, "fieldmon")
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("BEGIN EXCLUSIVE")
+        with pytest.raises(FileProblem, match="but it holds a season"):
+            write_whole(path, b"a route")
+
+
+def test_another_database_is_written_over_as_any_file(tmp_path):
+    path = tmp_path / "day.gpkg"
+    database(path, "stops")
+    write_whole(path, b"a route")
+    assert path.read_bytes() == b"a route"

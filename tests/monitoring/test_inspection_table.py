@@ -166,3 +166,22 @@ def test_rows_that_another_program_adds_do_not_count_before_they_are_recorded(pa
     pyogrio.write_dataframe(extra, path, layer="inspections", append=True)
     assert np.array_equal(season.evening(BEGINS), before)
     assert len(season.history.inspections) == 12
+
+
+@pytest.mark.parametrize(
+    ("columns", "says"),
+    [
+        ({"second": -5.0}, "A time must lie within its day"),
+        ({"count": np.inf}, "A count must be 0 or more"),
+    ],
+)
+def test_no_row_is_made_of_what_cannot_have_been(db, columns, says):
+    with pytest.raises(ObservationError, match=says):
+        kept(db, one(**columns))
+    assert column(db, "plant") == []
+
+
+def test_the_last_second_of_a_day_is_its_last(db):
+    kept(db, one(second=86_399.0))
+    kept(db, one(8, second=86_399.9))
+    assert column(db, "time") == ["23:59:59", "23:59:59"]

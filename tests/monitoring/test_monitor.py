@@ -135,6 +135,40 @@ def test_a_clock_that_goes_backwards_is_refused(plot):
             day.tell(found=False, at_s=400.0)
 
 
+def test_the_clock_never_goes_behind_what_is_gone_as_charged(plot):
+    day = Monitor(plot, robot=Robot(hours=1)).day()
+    day.ask()
+    day.tell(found=False)
+    gone_s = day.gone_s
+    day.ask()
+    for at_s in (gone_s - 30.0, np.nan, np.inf):
+        with pytest.raises(ObservationError, match="The day's clock must go on"):
+            day.tell(found=False, at_s=at_s)
+    with pytest.raises(SettingError, match="must be in seconds, but it is '90'"):
+        day.tell(found=False, at_s="90")
+    assert (day.gone_s, len(day.plants)) == (gone_s, 1)
+    day.tell(found=False, at_s=gone_s)
+    assert day.gone_s == gone_s
+
+
+def test_nothing_is_told_after_the_day_for_nobody_would_learn_it(plot):
+    monitor = Monitor(plot, robot=Robot(hours=1))
+    with monitor.day() as day:
+        asked = day.ask()
+    with pytest.raises(ObservationError, match="told of before its day ends"):
+        day.tell(found=True)
+    assert not len(day.plants)
+    assert monitor.last_inspected[asked.plant] == -1
+
+
+def test_what_is_believed_is_read_and_not_written_to(plot):
+    monitor = Monitor(plot, robot=Robot(hours=1))
+    for held in (monitor.chance, monitor.last_inspected):
+        with pytest.raises(ValueError, match="read-only"):
+            held[0] = 1
+    assert monitor.chance[0] < 1
+
+
 @pytest.mark.parametrize("chance", [np.zeros(3), np.full(240, 2.0)])
 def test_a_chance_map_that_does_not_fit_is_refused(plot, chance):
     with pytest.raises(SettingError, match="240"):

@@ -46,6 +46,18 @@ def test_what_was_confirmed_once_is_no_news():
     assert not len(contradictions(results((3, CLEAN)), held))
 
 
+def test_one_file_contradicts_itself_as_two_files_contradict_each_other():
+    both = [(3, FOUND), (4, CLEAN), (3, CLEAN), (3, SKIPPED), (3, FOUND), (4, CLEAN)]
+    found = contradictions(results(*both), results())
+    assert (found.which.tolist(), found.recorded.tolist()) == ([2], [FOUND])
+    for cut in range(1, len(both)):
+        held = results(*both[:cut])
+        n = len(contradictions(held, results())) + len(contradictions(results(*both[cut:]), held))
+        assert n == 1
+    apart = results((3, FOUND)).and_those(results((3, CLEAN), on=NEXT))
+    assert not len(contradictions(apart, results()))
+
+
 @pytest.fixture
 def season(tmp_path):
     return a_season(tmp_path / "s.gpkg")

@@ -107,3 +107,9 @@ def test_results_that_do_not_fit_are_a_sentence_and_leave_no_trace(
         )
     assert season.batches() == ()
     assert len(season.history.inspections) == 0
+
+
+@pytest.mark.parametrize("results", [None, [1, 2], "day.csv"])
+def test_what_are_no_inspections_is_refused_in_a_sentence(season, results):
+    with pytest.raises(SettingError, match="What is recorded must be Inspections"):
+        season.record(results)

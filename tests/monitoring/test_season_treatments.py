@@ -42,3 +42,14 @@ def test_a_treatment_is_undone(season):
     season.undo()
     assert np.array_equal(season.evening(BEGINS), before)
     assert [(batch.kind, batch.undone) for batch in season.batches()] == [("treatment", True)]
+
+
+def test_numbers_of_plants_are_not_taken_for_which_were_treated(season):
+    n = len(season.plot.grid)
+    for plants in (np.arange(n), np.ones(n)):
+        with pytest.raises(SettingError, match="of each plant as True or False"):
+            season.treat(BEGINS, 0.5, plants=plants)
+    assert season.treatments() == ()
+    season.treat(BEGINS, 0.5, plants=np.isin(np.arange(n), [1, 2, 3]))
+    (treated,) = season.treatments()
+    assert np.flatnonzero(treated.place.plants).tolist() == [1, 2, 3]

@@ -1,7 +1,7 @@
 """Settings of a season: as values and as JSON, and the days that are of it."""
 
 import json
-from datetime import date, time
+from datetime import date, datetime, time
 
 import numpy as np
 import pytest
@@ -122,3 +122,9 @@ def test_more_weather_than_a_season_can_carry_is_refused():
     weather = weather_of(at, HOUR_S, temperature_c=np.full(40_000, 20.0))
     with pytest.raises(SettingError, match="36000 hours or days of weather at most"):
         MonitoringSettings(date(2026, 11, 18), pest=shipped_pest("thesis"), weather=weather)
+
+
+@pytest.mark.parametrize("on", ["2026-04-06", None, datetime(2026, 4, 6, 10), 3])
+def test_what_is_no_date_is_refused_in_a_sentence(on):
+    with pytest.raises(SettingError, match="A day of a season must be a date"):
+        MonitoringSettings(date(2026, 4, 6)).day(on)

@@ -109,7 +109,7 @@ class Transformation:
 
 def system(text: str) -> pyproj.CRS:
     """Return the coordinate system that is named; raise `ChoiceNeeded` where it is unknown."""
-    wanted = f"EPSG:{text}" if text.strip().isdigit() else text
+    wanted = f"EPSG:{text}" if text.strip().isdecimal() else text
     try:
         return pyproj.CRS.from_user_input(wanted)
     except CRSError:

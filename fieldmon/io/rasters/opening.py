@@ -309,7 +309,7 @@ def band_named(opened: OpenRaster, wanted: str) -> int:
     text = wanted.strip()
     if text in tif.descriptions:
         return int(tif.descriptions.index(text)) + 1
-    if text.isdigit() and 1 <= int(text) <= tif.count:
+    if text.isdecimal() and 1 <= int(text) <= tif.count:
         return int(text)
     raise ChoiceNeeded(
         worded(

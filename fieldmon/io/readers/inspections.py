@@ -113,9 +113,9 @@ def look_up(
     snapped = _by_position(rows, grid, np.flatnonzero(open_yet), options)
     plant = np.where(snapped.plant >= 0, snapped.plant, plant)
     problems |= snapped.problems
-    doubts = doubts | snapped.doubts | _own_doubts(rows)
+    doubts = doubts | _from_zero(rows, labelled.plant) | snapped.doubts | _own_doubts(rows)
     for i in np.flatnonzero(plant < 0).tolist():
-        problems.setdefault(i, worded("it names no plant and has no position"))
+        problems.setdefault(i, _nowhere(below_one=rows.line[i] < 0))
     taken = plant >= 0
     if not options.take_doubtful:
         taken[list(doubts)] = False
@@ -128,6 +128,7 @@ def look_up(
             doubtful,
             None if options.take_doubtful else _TAKE,
         ),
+        *_about_numbers(rows, grid, named.plant, taken),
         *labelled.said,
         *_about_faces(rows, grid, plant, taken),
         *_about_accuracy(rows, options, open_yet & taken),
@@ -237,6 +238,27 @@ def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) 
         for i in records[~is_there].tolist()
     }
     return _Placed(plant, problems, {}, said)
+
+
+def _from_zero(rows: InspectionRows, plant: NDArray[np.int64]) -> dict[int, str]:
+    """Return a doubt for each plant ``(m,)`` named by its row where others of the file say row 0.
+
+    Who counts from 0 means the next plant or row each time, and only the first of them shows it.
+    """
+    if not (rows.line < 0).any():
+        return {}
+    why: str = worded(
+        "others in the file say row 0 or plant 0: rows and plants are counted from 1 here. Add 1 "
+        "where they were counted from 0"
+    )
+    return dict.fromkeys(np.flatnonzero(plant >= 0).tolist(), why)
+
+
+def _nowhere(*, below_one: bool) -> str:
+    """Return why a record has no plant."""
+    if below_one:
+        return worded("rows and plants are counted from 1, but it says 0 or less")
+    return worded("it names no plant and has no position")
 
 
 def _of_block(rows: InspectionRows, grid: PlantGrid, record: int) -> str:
@@ -424,6 +446,22 @@ def _listed(
             )
         )
     return messages
+
+
+def _about_numbers(
+    rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64], taken: NDArray[np.bool_]
+) -> list[ImportMessage]:
+    """Return what to say of plants named by a number that nothing else in the file bears out."""
+    alone = taken & (plant >= 0) & (rows.line == 0) & ~np.isfinite(rows.lonlat).all(axis=1)
+    if not alone.any():
+        return []
+    said = worded(
+        "{n} record(s) name a plant by its number alone: taken as files given out count them, 0 to "
+        "{last} on the whole plot.",
+        n=int(alone.sum()),
+        last=len(grid) - 1,
+    )
+    return [guessed(said)]
 
 
 def _about_faces(

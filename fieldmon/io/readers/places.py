@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _MOST_NAMED = 12
+# a row or a plant 0 in a name such as "0/12"
+_ZERO = re.compile(r"(?:^|/)0+(?=/|$)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,10 +190,27 @@ def by_plant(
     joined = [_join(wanted, names) for names in known]
     best = int(np.argmax([np.count_nonzero(match >= 0) for match, _ in joined]))
     match, how = joined[best]
+    _refuse_from_zero(wanted, match, known[best])
     lonlat = np.where(match[:, None] >= 0, plants.lonlat[match], np.nan)
     about = _about_blocks(plants, best, row, block) if (match >= 0).any() else []
     messages = (*how, *about, *_unmatched(wanted, match, "plant"))
     return PlacedByName(lonlat, np.full(len(wanted), np.nan), messages)
+
+
+def _refuse_from_zero(wanted: list[str], match: NDArray[np.int64], known: list[str]) -> None:
+    """Refuse records of a row or plant 0 where the plot has none: all may be one off."""
+    if (match < 0).all() or any(_ZERO.search(name) for name in known):
+        return
+    zero = [name for name, at in zip(wanted, match, strict=True) if at < 0 and _ZERO.search(name)]
+    if zero:
+        raise ObservationError(
+            worded(
+                "Rows and plants of this plot are counted from 1, but {n} record(s) say 0: {some}. "
+                "Add 1 to all where they were counted from 0; else leave these out.",
+                n=len(zero),
+                some=_some(sorted(set(zero))),
+            )
+        )
 
 
 def _both(*columns: NDArray[np.object_]) -> list[str]:

@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.atomic_write import write_whole
@@ -100,6 +101,7 @@ def write_handoff(
         Where a file cannot be written. Each file appears whole or not at all, and none is touched
         before all are made.
     """
+    must_be("A file must be given by its path", to, (str, Path), 'Give "route.gpx", for instance.')
     target = Path(to)
     chosen = format_of(target, as_format)
     known = (e for e in chosen.endings if target.name.lower().endswith(e))

@@ -441,3 +441,26 @@ def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
     assert any("1 record(s) have no date" in str(one) for one in brought.messages)
     none = read("plant,result\n1,found\n")
     assert dated(none) is none
+
+
+@pytest.mark.parametrize(
+    ("below", "other"),
+    [("0,3", "1,4"), ("3,0", "4,1"), ("0,0", "1,1"), ("-1,2", "2,2"), ("0/3", "1/4")],
+)
+def test_rows_or_plants_counted_from_zero_put_nobody_next_door(below, other):
+    head = "row,plant" if "," in below else "tree"
+    text = f"{head},count\n{below},2\n{other},2\n"
+    told = read(text)
+    assert not len(told.value)
+    dropped, doubted = (str(one) for one in told.messages if "record" in str(one.feature))
+    assert "counted from 1, but it says 0 or less" in dropped
+    assert "Add 1 where they were counted from 0" in doubted
+    assert len(read(text, InspectionOptions(take_doubtful=True)).value) == 1
+
+
+def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():
+    alone = (
+        "record(s) name a plant by its number alone: taken as files given out count them, 0 to 59"
+    )
+    assert any(alone in str(one) for one in read("plant,count\n1,2\n").messages)
+    assert not any(alone in str(one) for one in read("plant,row,number,count\n1,1,2,2\n").messages)

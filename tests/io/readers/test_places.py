@@ -152,3 +152,14 @@ def test_records_of_a_file_are_put_into_the_block_they_name(two_blocks):
     rows = int(grid.row_line[np.asarray(grid.block) == 0].max()) + 1
     there = [plant_of(grid, rows + 1, 3), plant_of(grid, rows + 2, 4), plant_of(grid, 1, 1)]
     assert read.value.lonlat == pytest.approx(np.array(there))
+
+
+def test_rows_counted_from_zero_are_refused_but_where_rows_are_called_so():
+    with pytest.raises(ObservationError, match=r"counted from 1, but 1 record\(s\) say 0: 0/1\."):
+        by_plant(cells(0, 1), cells(1, 2), plants(0))
+    with pytest.raises(ObservationError, match=r"say 0: 1/0\."):
+        by_plant(cells(1, 1), cells(0, 2), plants(0))
+    known = plants(0)
+    called = Plants(known.lonlat, np.array(["0", "0", "1"]), known.plant)
+    there = by_plant(cells(0, 1), cells(1, 1), called)
+    np.testing.assert_array_equal(there.lonlat, known.lonlat[[0, 2]])

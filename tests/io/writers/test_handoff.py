@@ -119,6 +119,12 @@ def test_the_ending_or_the_name_tells_the_format(tmp_path):
         write_handoff(plan, tmp_path / "a.csv", "docx")
 
 
+@pytest.mark.parametrize("to", [None, 5])
+def test_what_is_no_path_is_refused_in_a_sentence(to):
+    with pytest.raises(SettingError, match="A file must be given by its path"):
+        write_handoff(usual(), to)
+
+
 def test_every_ending_tells_one_format_only():
     endings = [ending for chosen in FORMATS.values() for ending in chosen.endings]
     assert len(set(endings)) == len(endings)

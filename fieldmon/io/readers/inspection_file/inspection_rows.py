@@ -19,7 +19,8 @@ class InspectionRows:
     plant
         Number of the plant in the grid, as files given out have it; -1 where it is not named.
     line, number, face
-        Row and number in it as people count, and which face; 0 where not named.
+        Row and number in it as people count, and which face; 0 where not named. Row and number are
+        -1 where one of them is said to be less than 1.
     lonlat
         ``(m, 2)`` degrees; NaN without a position.
     accuracy_m

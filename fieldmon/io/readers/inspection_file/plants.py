@@ -27,18 +27,24 @@ _LABEL = re.compile(r"^[^\d\s]{0,8}\s*(\d{1,6})\s*[/\-.,:;\s]\s*[^\d\s]{0,8}\s*(
 PLANT_IN_NAME = re.compile(r"(?:^|\s)(?:\d+\s+)?R(\d{1,6})/(\d{1,6})([ab]?)(?=\s|$)")
 _FACES = {"1": 1, "a": 1, "2": 2, "b": 2}
 _ROW = "\0row"
+_UNSAID = -(2**31)
 
 
 def named_plants(
     layer: Layer, columns: InspectionColumns
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
-    """Return the plant's number in the grid, or row, number and face, by which a file names it."""
+    """Return the plant's number in the grid, or row, number and face, by which a file names it.
+
+    People count rows and numbers from 1: both are -1 where one of them is said to be less.
+    """
     n = len(layer)
     plant = np.full(n, -1, np.int64)
     line, number, face = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int8)
+    unsaid = np.ones(n, bool)
     if columns.line is not None and columns.number is not None:
-        line, number = (_whole(layer, name, 0) for name in (columns.line, columns.number))
-        line[number <= 0] = number[line <= 0] = 0
+        line, number = (_whole(layer, name, _UNSAID) for name in (columns.line, columns.number))
+        unsaid = (line == _UNSAID) | (number == _UNSAID)
+        line[unsaid] = number[unsaid] = 0
     if columns.face is not None:
         words = [text(v).casefold() for v in layer.column(columns.face)]
         face[:] = [_FACES.get(word, 0) for word in words]
@@ -52,6 +58,9 @@ def named_plants(
             if found and plant[i] < 0:
                 line[i], number[i] = int(found.group(1)), int(found.group(2))
                 face[i] = _FACES.get(found.group(3).casefold(), 0)
+                unsaid[i] = False
+    below = ~unsaid & (np.minimum(line, number) < 1)
+    line[below] = number[below] = -1
     return plant, line, number, face
 
 

@@ -52,7 +52,7 @@ def test_a_row_counts_only_with_a_number_in_it():
     _, line, number, face = named(
         row=[2, 2, 0, None], number=[3, None, 3, 3], found=["x"] * 4, side=["b", 1, "A", "?"]
     )
-    assert (line, number) == ([2, 0, 0, 0], [3, 0, 0, 0])
+    assert (line, number) == ([2, 0, -1, 0], [3, 0, -1, 0])  # people count from 1
     assert face == [2, 1, 1, 0]
 
 

@@ -22,7 +22,13 @@ _LONGEST = 40
 _NUMBERS = {"float", "int"}
 
 
-def must_be(what: str, given: object, kind: type | tuple[type, ...], instead: str) -> None:
+def must_be(
+    what: str,
+    given: object,
+    kind: type | tuple[type, ...],
+    instead: str,
+    but_no: tuple[type, ...] = (),
+) -> None:
     """Raise `SettingError` unless something is of a kind.
 
     Parameters
@@ -35,6 +41,8 @@ def must_be(what: str, given: object, kind: type | tuple[type, ...], instead: st
         What it must be.
     instead
         What to do.
+    but_no
+        Kinds of it that will not do: a moment is a date to Python.
 
     Examples
     --------
@@ -43,7 +51,7 @@ def must_be(what: str, given: object, kind: type | tuple[type, ...], instead: st
     ...
     fieldmon.errors.SettingError: A name must be text, but it is 3. Put it in quotes.
     """
-    if not isinstance(given, kind):
+    if not isinstance(given, kind) or isinstance(given, but_no):
         raise SettingError(f"{what}, but it is {shown(given)}. {instead}")
 
 
@@ -100,6 +108,22 @@ def numbers(what: str, given: object) -> NDArray[np.float64]:
         return np.asarray(given, np.float64)
     except (TypeError, ValueError) as error:
         raise SettingError(f"{what} must hold numbers, but {shown(given)} does not.") from error
+
+
+def truths(what: str, given: object, instead: str) -> NDArray[np.bool_]:
+    """Return an array of True and False; raise `SettingError` where it holds anything else.
+
+    Examples
+    --------
+    >>> truths("Whether it was treated must be said of each plant", [True, False], "")
+    array([ True, False])
+    """
+    import numpy as np  # noqa: PLC0415 - names of samplers are known without it
+
+    array = np.asarray(given)
+    if array.dtype != np.bool_:
+        raise SettingError(f"{what} as True or False, but it is said as {array.dtype}. {instead}")
+    return array
 
 
 def must_be_known(what: str, given: Iterable[str], known: Sequence[str]) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.arguments import truths
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.labels import label_for
 from fieldmon.decisions.zones import outline_of
@@ -118,13 +119,11 @@ class SeasonTreatments(OpenSeason):
         return TreatedPlace(ground, self._inside(ground), float(on_plot.area) / 1e4)
 
     def _treated_one_by_one(self, plants: NDArray[np.bool_]) -> TreatedPlace:
-        grid, plants = self.plot.grid, np.asarray(plants)
-        if plants.dtype != np.bool_:
-            raise SettingError(
-                "Whether it was treated must be said of each plant as True or False, but it is "
-                f"said as {plants.dtype}. Of plants by their numbers give np.isin(np.arange("
-                f"{len(grid)}), numbers)."
-            )
+        grid = self.plot.grid
+        plants = truths(
+            "Whether it was treated must be said of each plant", plants,
+            f"Of plants by their numbers give np.isin(np.arange({len(grid)}), numbers).",
+        )  # fmt: skip
         if plants.shape != (len(grid),):
             raise SettingError(
                 worded(

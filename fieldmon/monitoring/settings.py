@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import day_of, must_be, must_be_known, of_kind, shown
+from fieldmon.compute.arguments import day_of, must_be, must_be_known, of_kind
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
@@ -155,10 +155,8 @@ class MonitoringSettings:
 
     def day(self, on: date) -> int:
         """Return the number of a date, from 0; raise `SettingError` outside the season."""
-        if not isinstance(on, date) or isinstance(on, datetime):
-            raise SettingError(
-                f"A day of a season must be a date, but it is {shown(on)}. Give date(2026, 11, 18)."
-            )
+        what = "A day of a season must be a date"
+        must_be(what, on, date, "Give date(2026, 11, 18).", but_no=(datetime,))
         number = (on - self.begins).days
         if number < 0:
             raise SettingError(

@@ -208,7 +208,7 @@ def _refuse_from_zero(wanted: list[str], match: NDArray[np.int64], known: list[s
                 "Rows and plants of this plot are counted from 1, but {n} record(s) say 0: {some}. "
                 "Add 1 to all where they were counted from 0; else leave these out.",
                 n=len(zero),
-                some=_some(sorted(set(zero))),
+                some=first_few(sorted(set(zero)), _MOST_NAMED),
             )
         )
 

@@ -3,7 +3,7 @@
 import pytest
 from shapely import Point, Polygon, box
 
-from fieldmon.cli import plan
+from fieldmon.cli import plan, plan_options
 from tests.cli.estate import BEGINS, MITES, ZIP, square
 
 
@@ -118,7 +118,7 @@ def test_bad_input_is_a_sentence_with_exit_code_2_and_nothing_written(run, tmp_p
 
 
 def test_a_mistake_of_our_own_is_an_apology_without_traceback(run, monkeypatch):
-    monkeypatch.setattr(plan, "day", lambda _: 1 / 0)
+    monkeypatch.setattr(plan_options, "day", lambda _: 1 / 0)
     code, _, err, _ = run("plan", ZIP)
     assert code == 1
     assert "Sorry" in err

@@ -104,7 +104,9 @@ ASSUMED_WHAT = {
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
 }
-ASSUMED_CHANGE, ASSUMED_USE = "Change", "Use these"
+ASSUMED_ROBOT_TOO = "how fast and how well who inspects works"
+ASSUMED_OF_ROBOT = "Of who inspects: {what}."
+ASSUMED_CHANGE, ASSUMED_ALL, ASSUMED_USE = "Change", "See all, or change", "Use these"
 ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
 ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen below, under Who inspects."
 ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."

@@ -23,6 +23,12 @@ def in_short(result: str) -> str:
     return texts.HISTORY_RESULTS[_CODES[result]] if known else texts.isolated(result)
 
 
+def last(choices: Choices, said: BatchContents) -> str:
+    """Return what was said last, of one plant: what an undo beside it takes back."""
+    words = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
+    return words.format(row=said.row, plant=said.plant, result=in_short(said.result))
+
+
 def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     """Return what tells a batch from the others."""
     at = choices.clock.at(datetime.fromisoformat(batch.at))

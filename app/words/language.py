@@ -377,6 +377,17 @@ def number(value: float, form: str = "") -> str:
     return _number(value, form, current())
 
 
+def about(value: float) -> str:
+    """Return an estimate as precise as it is worth saying: from 10 on as a whole number.
+
+    Examples
+    --------
+    >>> about(45.93), about(4.593)
+    ('46', '4.6')
+    """
+    return number(value, ",.0f" if round(abs(value), 1) >= 10 else ".1f")
+
+
 def _number(value: Any, form: str, language: str) -> str:  # noqa: ANN401 - any number
     said = written(value, form) if language in _SHARE_APART else format(value, form)
     return _separated(said, language)

@@ -393,7 +393,7 @@ CHANGED_FINDS = Plural(
     "{found} found on {inspected} plants inspected on {day}.", by="inspected",
 )  # fmt: skip
 CHANGED_NONE = "Nothing was recorded on {day}."
-CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}{diff:.1f})."
+CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
 _OVER = (
@@ -758,7 +758,7 @@ LEARNT = {
 AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"
 AHEAD = (
     "About {last} plants are infested after {nights} nights without inspections ({low} to {high} "
-    "with a chance of 90%); now it is about {now}."
+    "with a chance of 90 %); now it is about {now}."
 )
 AHEAD_BASIS = {
     "none": "No weather is known of: every night is taken as the season's settings say.",

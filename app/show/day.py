@@ -48,7 +48,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
 
 def headline(choices: Choices, plan: DayPlan) -> str:
     """Return what there is to do on the day, in one sentence."""
-    return in_words(sentences.headline(plan.route, choices.units.day(choices.day)))
+    return in_words(sentences.headline(plan.route, choices.units.said_day(choices.day)))
 
 
 def plan_in_short(plan: DayPlan) -> str:
@@ -102,7 +102,7 @@ def changes(choices: Choices) -> list[str]:
         return [texts.CHANGED_FIRST]
     yesterday = str(choices.on - timedelta(days=1))
     before, now = (chosen_day.figures(choices, day) for day in (yesterday, choices.day))
-    on = choices.units.day(yesterday)
+    on = choices.units.said_day(yesterday)
     said = [texts.CHANGED_NONE.format(day=on)]
     if before.inspected:
         said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]

@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.infestation.prior_settings import PriorSettings
 
-from ..show.assumed import sentence
+from ..show.assumed import of_who_inspects, sentence
 from ..state import assumptions, notices, widget_memory
 from ..words import texts
 from . import drawing
@@ -22,7 +22,9 @@ def show(choices: Choices) -> None:
     """Say what the figures above rest on, with the way to say otherwise."""
     assumed = assumptions.of(choices)
     st.caption(sentence(assumed, choices.units) or texts.ASSUMED_NOTHING)
-    with st.popover(texts.ASSUMED_CHANGE):
+    with st.popover(texts.ASSUMED_ALL):
+        if more := of_who_inspects(assumed, choices.units):
+            st.caption(more)
         if choices.season is None:
             _boxes(choices)
         else:

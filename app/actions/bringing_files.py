@@ -123,7 +123,10 @@ def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> Non
     if error.option in _OTHER_FILES:
         return
     offered = [str(choice) for choice in error.choices]
-    for number, answer in enumerate(offered[:_MOST_BUTTONS], start=1):
+    numbered = list(enumerate(offered[:_MOST_BUTTONS], start=1))
+    # what leads to a plot comes first, under the number that it has on the map
+    numbered.sort(key=lambda one: one[1] in tried and not tried[one[1]].leads)
+    for number, answer in numbered:
         st.button(_label(number, answer, tried.get(answer)), key=f"pick {asking} {answer}",
                   width="stretch", on_click=brought_files.answer,
                   args=(asking, error.option, answer))  # fmt: skip

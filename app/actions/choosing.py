@@ -76,7 +76,7 @@ def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
 
 def _where_and_when(choices: Choices) -> str:
     """Return the plot and the day in a line: on a phone it stands for the boxes, which fold."""
-    day = choices.units.day(choices.day)
+    day = choices.units.said_day(choices.day, choices.today)
     return day if choices.season is not None else f"**{choices.name}**, {day}"
 
 
@@ -208,9 +208,9 @@ def mark_day(choices: Choices) -> None:
     """Say above a page that its day is not today, with the way back."""
     if choices.is_today:
         return
-    now = choices.units.day(choices.today)
+    day, now = (choices.units.said_day(on, choices.today) for on in (choices.day, choices.today))
     # below each other: beside the sentence there is no room for the button's words
-    st.warning(texts.OTHER_DAY.format(day=choices.units.day(choices.day), today=now))
+    st.warning(texts.OTHER_DAY.format(day=day, today=now))
     st.button(texts.BACK_TO_TODAY, key="back_to_today",
               on_click=work_day.back_to_today, args=(plot_source.chosen(),))  # fmt: skip
 

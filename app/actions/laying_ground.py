@@ -64,7 +64,7 @@ def _web_map(choices: Choices, agreed: Agreement | None) -> None:
     """Ask once, in words that say who then learns what; show what was agreed to, to take back."""
     if agreed is not None:
         host = texts.isolated(web_maps.host(agreed.address))
-        day = choices.units.day(agreed.on)
+        day = choices.units.said_day(agreed.on, choices.on)
         st.markdown(texts.WEB_MAP_AGREED.format(host=host, day=day))
         st.button(texts.WEB_MAP_BACK.format(host=host), key="web_map_back", on_click=ground.agree,
                   args=(choices, None))  # fmt: skip

@@ -126,7 +126,7 @@ def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
 def _use_plan(choices: Choices) -> str:
     """Keep the day's route with the season, so that the report can hold it to what was done."""
     choices.season.plan(choices.on, wishes=choices.wishes)
-    return texts.PLAN_USED.format(day=choices.units.day(choices.day))
+    return texts.PLAN_USED.format(day=choices.units.said_day(choices.day))
 
 
 def _begin(choices: Choices, _: DayPlan, step: Step) -> None:

@@ -39,7 +39,7 @@ _GEOPACKAGE = b"SQLite format 3"
 
 def show(choices: Choices) -> None:
     """Show the ways of recording, and of noting a treatment."""
-    st.markdown(f"**{texts.RECORD} · {choices.units.day(choices.day)}**")
+    st.markdown(f"**{texts.RECORD} · {choices.units.said_day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
     ask_about_contradictions(choices)
     one, route, file, treat = st.tabs(

@@ -10,7 +10,7 @@ import streamlit as st
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.plot.grid import row_label
 
-from ..show import plant_history
+from ..show import plant_history, recorded_batches
 from ..state import notices
 from ..words import texts
 from . import recording
@@ -41,6 +41,9 @@ def show(choices: Choices) -> None:
         if batch is not None:
             st.button(texts.UNDO, key="here_undo", icon=":material/undo:",
                       on_click=recording.undo, args=(choices, batch))  # fmt: skip
+    # the plant shown now may be another one
+    if batch is not None and (said := choices.season.contents([batch]).get(batch)):
+        st.caption(recorded_batches.last(choices, said))
     recording.ask_about_contradictions(choices)
 
 

@@ -65,9 +65,7 @@ def last_tap(choices: Choices) -> tuple[int, str] | None:
     tapped = season.contents([number]).get(number)
     if tapped is None or (tapped.n, tapped.first) != (1, str(choices.on)):
         return None
-    said = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
-    result = recorded_batches.in_short(tapped.result)
-    return number, said.format(row=tapped.row, plant=tapped.plant, result=result)
+    return number, recorded_batches.last(choices, tapped)
 
 
 @notices.reporting

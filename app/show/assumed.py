@@ -17,13 +17,26 @@ if TYPE_CHECKING:
     from ..words.units import UnitsInLanguage
 
 _LENGTHS = frozenset({"row_spacing_m", "plant_spacing_m", "half_canopy_m"})
+_OF_WHO_INSPECTS = frozenset({"speed_m_s", "row_change_s", "stop_s", "detects"})
 
 
 def sentence(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:
-    """Return what is assumed, as one line; empty if nothing is."""
+    """Return what is assumed, as one line; empty if nothing is.
+
+    Of who inspects it says only that something is: `of_who_inspects` says what.
+    """
     if not assumed:
         return ""
-    return texts.ASSUMED.format(what=", ".join(_words(one, units) for one in assumed))
+    said = [_words(one, units) for one in assumed if one.setting not in _OF_WHO_INSPECTS]
+    if len(said) < len(assumed):
+        said.append(texts.ASSUMED_ROBOT_TOO)
+    return texts.ASSUMED.format(what=", ".join(said))
+
+
+def of_who_inspects(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:
+    """Return what is assumed of who inspects; empty if nothing is."""
+    said = [_words(one, units) for one in assumed if one.setting in _OF_WHO_INSPECTS]
+    return texts.ASSUMED_OF_ROBOT.format(what=", ".join(said)) if said else ""
 
 
 def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str:

@@ -35,7 +35,7 @@ def show_treatments(choices: Choices) -> None:
     season, units = choices.season, choices.units.of_library
     first = season.harvest_from(choices.on)
     if first is not None:
-        st.markdown(texts.HARVEST_FROM.format(day=choices.units.day(first[0])))
+        st.markdown(texts.HARVEST_FROM.format(day=choices.units.said_day(first[0], choices.on)))
     effects = season.effects(choices.on, units)
     if effects:
         st.markdown(f"**{texts.EFFECTS}**")

@@ -13,7 +13,7 @@ import pandas as pd
 from ..words import language, texts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
@@ -67,13 +67,15 @@ def _month_and_day(on: date) -> str:
     return f"{on:%m-%d}"
 
 
-def _days(labels: pd.Series, title: str) -> alt.X:
-    """Return the axis of days by their names, in the table's order, with as many as have room.
+def _days(labels: Sequence[str], title: str) -> alt.X:
+    """Return the axis of days by their names, in this order, with as many as have room.
 
-    Layers do not agree which names to leave out: so few never overlap.
+    Layers do not agree which names to leave out: so few never overlap. The days are told: of a
+    table alone, those on which nothing was done came last.
     """
     some = list(labels[:: math.ceil(len(labels) / _FEW_LABELS)])
-    return alt.X("day:O", title=title, sort=None, axis=alt.Axis(labelAngle=0, values=some))
+    days = alt.Scale(domain=list(labels))
+    return alt.X("day:O", title=title, scale=days, axis=alt.Axis(labelAngle=0, values=some))
 
 
 def _sides() -> tuple[str, str]:
@@ -193,7 +195,7 @@ def season_days(
         columns=["day", "inspected", "found"],
     )  # fmt: skip
     table = table.astype({"inspected": "Int64", "found": "Int64"})
-    x = _days(table["day"], axes[0])
+    x = _days(list(table["day"]), axes[0])
     tip = [alt.Tooltip("day", title=axes[0]), alt.Tooltip("inspected:Q", title=axes[1]),
            alt.Tooltip("found:Q", title=axes[2])]  # fmt: skip
     bars = (
@@ -240,7 +242,7 @@ def still_out(
         }
     )
     base = alt.Chart(table).encode(
-        x=_days(table["day"], axes[0]),
+        x=_days([named(on) for on in _dates(days)], axes[0]),
         tooltip=[
             alt.Tooltip("day", title=axes[0]),
             alt.Tooltip("expected:Q", title=axes[1], format=".1f"),
@@ -275,7 +277,7 @@ def development(
             "guessed": there.guessed,
         }
     )
-    days = _days(table["day"], axes[0])
+    days = _days(list(table["day"]), axes[0])
     base = alt.Chart(table).encode(
         x=days,
         y=alt.Y("gathered:Q", title=axes[1]),
@@ -315,7 +317,7 @@ def ahead(
         {"day": dates, "expected": forecast.expected, "low": forecast.low, "high": forecast.high}
     )
     base = alt.Chart(table).encode(
-        x=_days(table["day"], axes[0]),
+        x=_days(dates, axes[0]),
         tooltip=[
             alt.Tooltip("day", title=axes[0]),
             alt.Tooltip("expected:Q", title=axes[1], format=".0f"),

@@ -16,7 +16,7 @@ from fieldmon.reports import sentences
 
 from ..state import assumptions, chosen_day
 from ..words import texts
-from ..words.language import in_words, number, weekday
+from ..words.language import about, in_words, number, weekday
 from ..words.units import hours
 from .assumed import mark
 
@@ -48,7 +48,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
 
 def headline(choices: Choices, plan: DayPlan) -> str:
     """Return what there is to do on the day, in one sentence."""
-    return in_words(sentences.headline(plan.route, choices.units.day(choices.day)))
+    return in_words(sentences.headline(plan.route, choices.units.said_day(choices.day)))
 
 
 def plan_in_short(plan: DayPlan) -> str:
@@ -70,7 +70,7 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
                   width="content")  # fmt: skip
         st.metric(mark(texts.DRIVE, taken, rows), choices.units.metres(route.drive_m),
                   width="content")  # fmt: skip
-        st.metric(mark(texts.FINDS, taken, for_finds), number(route.expected_found, ".1f"),
+        st.metric(mark(texts.FINDS, taken, for_finds), about(route.expected_found),
                   width="content")  # fmt: skip
     if len(route) and (said := chosen_day.with_bound(choices, plan).route.bound_sentence):
         st.caption(in_words(said), help=texts.BOUND_HELP)
@@ -102,16 +102,12 @@ def changes(choices: Choices) -> list[str]:
         return [texts.CHANGED_FIRST]
     yesterday = str(choices.on - timedelta(days=1))
     before, now = (chosen_day.figures(choices, day) for day in (yesterday, choices.day))
-    on = choices.units.day(yesterday)
+    on = choices.units.said_day(yesterday)
     said = [texts.CHANGED_NONE.format(day=on)]
     if before.inspected:
         said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
-    diff = now.expected - before.expected
-    said.append(
-        texts.CHANGED_OUT.format(
-            now=now.expected, before=before.expected, diff=abs(diff), sign="+" if diff >= 0 else "−"
-        )
-    )
+    expected = {"now": about(now.expected), "before": about(before.expected)}
+    said.append(texts.CHANGED_OUT.format(**expected))
     spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (yesterday, choices.day)]
     if spots[0] != spots[1]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -40,7 +41,7 @@ def show(choices: Choices) -> None:
 
 
 def _sentence(choices: Choices, there: Development) -> str:
-    day = choices.units.day
+    day = partial(choices.units.said_day, seen_from=choices.on)
     values = {
         "degree_days": number(there.so_far, ".0f"),
         "threshold": pest_figures.celsius(there.threshold_c),
@@ -52,7 +53,7 @@ def _sentence(choices: Choices, there: Development) -> str:
         said += " " + texts.STAGE_NOW.format(stage=pest_figures.stage_name(there.stage))
     if there.next_generation is None:
         return f"{said} {texts.NO_GENERATION}"
-    when = texts.NEXT_GENERATION.format(when=day(there.next_generation))
+    when = texts.NEXT_GENERATION.format(when=choices.units.short_day(there.next_generation))
     return f"**{when}** {said}"
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from ..state import chosen_day
 from ..words import texts
-from ..words.language import number
+from ..words.language import about, number
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -21,6 +22,6 @@ def show(choices: Choices) -> None:
     if not estimates:
         st.caption(texts.NOT_LEARNT)
     for one in estimates:
-        form = ".0%" if one.is_share else ".1f"
-        figures = {name: number(getattr(one, name), form) for name in ("value", "low", "high")}
+        said = partial(number, form=".0%") if one.is_share else about
+        figures = {name: said(getattr(one, name)) for name in ("value", "low", "high")}
         st.markdown(f"- {texts.LEARNT[one.name].format(**figures)}")

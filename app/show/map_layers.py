@@ -78,7 +78,7 @@ def season_frames(choices: Choices) -> Frames | None:
     days = [days[k] for k in kept.tolist()]
     at = [replace(choices, day=day) for day in days]
     key = f"{language.current()} {choices.key} {choices.revision} {choices.day} {choices.dark}"
-    names = tuple(choices.units.day(day) for day in days)
+    names = tuple(choices.units.said_day(day) for day in days)
     now = int(np.searchsorted(days, choices.day))
     shown = cached.frames(key, lambda: [marks.with_hot(_plants(one), _hot(one)) for one in at])
     return Frames(key, names, tuple(shown), min(now, len(days) - 1))

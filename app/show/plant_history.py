@@ -112,7 +112,7 @@ def _show_photos(choices: Choices, plant: int) -> None:
     for photo in own[:_MOST_PHOTOS]:
         found = photos.picture(choices.season, photo.id)
         if found is not None:
-            day, who = choices.units.day(photo.on), texts.isolated(photo.scout)
+            day, who = choices.units.said_day(photo.on, choices.on), texts.isolated(photo.scout)
             st.html(_picture(*found, f"{day}, {who}"))
 
 
@@ -153,7 +153,7 @@ def _inspections(choices: Choices, plant: int) -> list[str]:
     for k in own.tolist():
         second = done.second[k]
         at = "" if np.isnan(second) else f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}"
-        day = choices.units.day(done.date[k].item())
+        day = choices.units.said_day(done.date[k].item(), choices.on)
         result = texts.HISTORY_RESULTS[int(done.result[k])]
         lines.append(texts.HISTORY_LINE.format(day=day, time=at, result=result))
     return lines or [texts.HISTORY_NEVER]

@@ -23,10 +23,16 @@ def in_short(result: str) -> str:
     return texts.HISTORY_RESULTS[_CODES[result]] if known else texts.isolated(result)
 
 
+def last(choices: Choices, said: BatchContents) -> str:
+    """Return what was said last, of one plant: what an undo beside it takes back."""
+    words = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
+    return words.format(row=said.row, plant=said.plant, result=in_short(said.result))
+
+
 def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     """Return what tells a batch from the others."""
     at = choices.clock.at(datetime.fromisoformat(batch.at))
-    parts = [f"{choices.units.day(at.date())} {at:%H:%M}"]
+    parts = [f"{choices.units.said_day(at.date(), choices.on)} {at:%H:%M}"]
     source = texts.isolated(batch.source) if batch.source else ""
     if batch.kind == "findings" and said is not None:
         parts += [source, _what(choices, said)]
@@ -38,7 +44,7 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
         # results may be brought days later
         days = [date.fromisoformat(day) for day in dict.fromkeys((said.first, said.last))]
         if days != [at.date()]:
-            parts.append("–".join(choices.units.day(day) for day in days))
+            parts.append("–".join(choices.units.said_day(day, choices.on) for day in days))
     parts += [texts.isolated(batch.who) if batch.who else "", texts.UNDONE if batch.undone else ""]
     return " · ".join(part for part in parts if part)
 

@@ -34,9 +34,14 @@ def bring(problem: FieldmonError | None) -> None:
     if problem is None:
         st.title(texts.TITLE)
         st.markdown(texts.EMPTY)
+    # what is wrong, or asked, comes first: below five boxes it was not seen
+    said, boxes = st.container(), st.container()
     if plot_source.chosen() == plot_source.FILES:
-        bringing_files.show()
-    if problem is not None:
+        with boxes:
+            bringing_files.show()
+    if problem is None:
+        return
+    with said:
         answering.show(problem)
         laying = plot_files.laying()
         # what was set by hand may be what is wrong: it must stay within reach

@@ -12,7 +12,7 @@ from ..actions import assuming, beginning
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..state import assumptions, chosen_day
 from ..words import texts
-from ..words.language import number
+from ..words.language import about, number
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import DayFigures, Progress
@@ -46,7 +46,8 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     detected = 100.0 * progress.found / everything if everything else 100.0
     star = " *" if assumptions.of(choices) else ""
     with st.container(horizontal=True):
-        expected = f"{number(now.expected, '.1f')} ({now.low}-{now.high})"
+        low, high = (number(one, ",") for one in (now.low, now.high))
+        expected = f"{about(now.expected)} ({low}–{high})"
         st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")

@@ -377,6 +377,17 @@ def number(value: float, form: str = "") -> str:
     return _number(value, form, current())
 
 
+def about(value: float) -> str:
+    """Return an estimate as precise as it is worth saying: from 10 on as a whole number.
+
+    Examples
+    --------
+    >>> about(45.93), about(4.593)
+    ('46', '4.6')
+    """
+    return number(value, ",.0f" if round(abs(value), 1) >= 10 else ".1f")
+
+
 def _number(value: Any, form: str, language: str) -> str:  # noqa: ANN401 - any number
     said = written(value, form) if language in _SHARE_APART else format(value, form)
     return _separated(said, language)
@@ -401,11 +412,24 @@ def separators() -> tuple[str, str]:
     return number(0.5, ".1f")[1:2], number(1000, ",")[1:2]
 
 
-def weekday(on: date) -> str:
-    """Return the name of a date's day of the week."""
+def weekday(on: date, *, short: bool = False) -> str:
+    """Return the name of a date's day of the week, in full or as short as it is written."""
     language = current()
     if language == ENGLISH:
-        return f"{on:%A}"
+        return f"{on:%a}" if short else f"{on:%A}"
     from babel.dates import format_date  # noqa: PLC0415
 
-    return format_date(on, "EEEE", locale=language)
+    # Hebrew names Sunday to Friday "day A" to "day F", and a sentence says "on day" itself
+    return format_date(on, "EEE" if short else "EEEE", locale=language).removeprefix(
+        "יום " if short else ""
+    )
+
+
+def day_and_month(on: date, *, month_first: bool = False) -> str:
+    """Return a date by its day and the short name of its month."""
+    language = current()
+    if language == ENGLISH:
+        return f"{on:%b} {on.day}" if month_first else f"{on.day} {on:%b}"
+    from babel.dates import format_skeleton  # noqa: PLC0415
+
+    return format_skeleton("MMMd", on, locale=language)

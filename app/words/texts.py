@@ -104,7 +104,9 @@ ASSUMED_WHAT = {
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
 }
-ASSUMED_CHANGE, ASSUMED_USE = "Change", "Use these"
+ASSUMED_ROBOT_TOO = "how fast and how well who inspects works"
+ASSUMED_OF_ROBOT = "Of who inspects: {what}."
+ASSUMED_CHANGE, ASSUMED_ALL, ASSUMED_USE = "Change", "See all, or change", "Use these"
 ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
 ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen below, under Who inspects."
 ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
@@ -391,7 +393,7 @@ CHANGED_FINDS = Plural(
     "{found} found on {inspected} plants inspected on {day}.", by="inspected",
 )  # fmt: skip
 CHANGED_NONE = "Nothing was recorded on {day}."
-CHANGED_OUT = "Still infested, as expected: {now:.1f} after {before:.1f} ({sign}{diff:.1f})."
+CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
 _OVER = (
@@ -756,7 +758,7 @@ LEARNT = {
 AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"
 AHEAD = (
     "About {last} plants are infested after {nights} nights without inspections ({low} to {high} "
-    "with a chance of 90%); now it is about {now}."
+    "with a chance of 90 %); now it is about {now}."
 )
 AHEAD_BASIS = {
     "none": "No weather is known of: every night is taken as the season's settings say.",

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING
+from datetime import date
 
 from fieldmon.compute import units as library
 from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
 
 from . import texts
-from .language import in_words, number
-
-if TYPE_CHECKING:
-    from datetime import date
+from .language import day_and_month, in_words, number, weekday
 
 __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
+
+_HALF_A_YEAR_DAYS = 182
 
 
 class UnitsInLanguage(library.Units):
@@ -33,9 +31,20 @@ class UnitsInLanguage(library.Units):
         """Return an area."""
         return in_words(super().square(value_m2))
 
+    def said_day(self, on: date | str, seen_from: date | None = None) -> str:
+        """Return a date as people say it: weekday, day, month; its year where that is far off.
+
+        >>> UnitsInLanguage().said_day("2026-11-16")
+        'Mon 16 Nov'
+        """
+        day = date.fromisoformat(on) if isinstance(on, str) else on
+        far = seen_from is not None and abs((day - seen_from).days) > _HALF_A_YEAR_DAYS
+        said = f"{weekday(day, short=True)} {self.short_day(day)}"
+        return f"{said} {day.year}" if far else said
+
     def short_day(self, on: date) -> str:
-        """Return a date without its year, for the axes of charts."""
-        return on.strftime(re.sub(r"\W?%Y\W?", "", DATES[self.date_like]))
+        """Return a date without its weekday and year, for the axes of charts."""
+        return day_and_month(on, month_first=DATES[self.date_like].startswith("%m"))
 
     def lengths(self) -> list[tuple[float, str]]:
         """Return the round lengths for scale bars, shortest first: in metres and as text."""

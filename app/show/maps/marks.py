@@ -77,7 +77,7 @@ def treated(
     """Return what was treated of a plot, if anything was: its tint, and its outline."""
     rows = []
     for one in treatments:
-        product, day = one.application.product, units.day(one.on)
+        product, day = one.application.product, units.said_day(one.on)
         text = texts.TIP_TREATED.format(day=day)
         if product:
             text = texts.TIP_TREATED_WITH.format(day=day, product=texts.isolated(product))

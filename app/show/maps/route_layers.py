@@ -41,9 +41,11 @@ def route(the_route: Route, *, dark: bool = False) -> list[Layer]:
         ),
         Layer(
             "ScatterplotLayer", [{"p": gate, "t": texts.TIP_GATE}], id="gate",
-            get_position="p", get_radius=3, radius_min_pixels=7, filled=True,
+            get_position="p", get_radius=3, radius_min_pixels=7,
+            # from near, it would cover a small plot
+            radius_max_pixels=14, filled=True,
             get_fill_color=[255, 255, 255], stroked=True, get_line_color=list(GATE),
-            line_width_min_pixels=4,
+            line_width_min_pixels=4, line_width_max_pixels=4,
         ),
     ]  # fmt: skip
 

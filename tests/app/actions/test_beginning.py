@@ -18,7 +18,7 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(season):
     assert season().messages()
     again = opened("Gate 2026")
     assert plot_name(again) == "Gate"
-    assert "on 2026-11-16, " in headline(again)
+    assert "on Mon 16 Nov, " in headline(again)
     assert "first day of the season" in texts_of(again)
     assert plants(again).rank.tolist() == plants(app).rank.tolist()
     assert plants(again).lonlat == pytest.approx(plants(app).lonlat, abs=1e-9)

@@ -29,8 +29,9 @@ def test_a_scout_is_planned_for_too(app):
 
 def test_lengths_and_dates_are_written_as_the_person_wants(app):
     app.selectbox(key="length").set_value("ft").run()
-    app.selectbox(key="date_like").set_value("16.11.2026").run()
-    assert "on 16.11.2026, " in headline(app)
+    app.selectbox(key="date_like").set_value("11/16/2026").run()
+    assert "on Mon Nov 16, " in headline(app)
+    assert next(one for one in app.date_input).proto.format == "MM/DD/YYYY"
     assert metric(app, "Drive").endswith(" mi")
     go(app, "plot")
     app.selectbox(key="area").set_value("dunam").run()

@@ -19,7 +19,7 @@ def test_the_plan_is_kept_once_it_is_used(season_app, season):
     assert not len(season().kept_route(date(2026, 11, 16)))
     tap(season_app, "do_plan")
     assert len(season().kept_route(date(2026, 11, 16))) > 100
-    assert texts.PLAN_USED.format(day="2026-11-16") in season_app.success[0].value
+    assert texts.PLAN_USED.format(day="Mon 16 Nov") in season_app.success[0].value
 
 
 @pytest.mark.parametrize("begun", [True, False], ids=["season", "plan"])

@@ -144,7 +144,7 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
         assert rest[0] == rest[1]
     go(season_app, "today")
     assert "30 plants inspected" in texts_of(season_app)
-    assert "Still infested, as expected" in texts_of(season_app)
+    assert "Plants expected to be still infested: " in texts_of(season_app)
 
 
 def record_clean(project, on, n):

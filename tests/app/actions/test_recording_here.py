@@ -46,6 +46,11 @@ def test_it_is_taken_back_beside_it_and_a_second_press_of_the_same_is_known(tapp
     tap(tapped, "here_1")
     tap(tapped, "here_1")
     assert "0 recorded, 1 known" in tapped.success[0].value
+    # another plant is looked at meanwhile
+    tapped.session_state["history plant"] = 5
+    tapped.run()
+    assert "**Row 3, plant 5**" in texts_of(tapped)
+    assert "Last: row 3, plant 4: found" in texts_of(tapped)
     assert len(season().history.inspections) == 1
     tap(tapped, "here_undo")
     assert not len(season().history.inspections)

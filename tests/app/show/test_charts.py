@@ -77,6 +77,16 @@ def test_a_day_without_work_is_a_gap_and_not_a_day_without_finds():
     assert line["mark"]["invalid"] == "break-paths-filter-domains"
 
 
+def test_every_day_stands_at_its_place_be_it_without_work_or_figures():
+    last = DayFigures(date(2026, 11, 21), 0, 0, 18.0, 10, 27, 0.01)
+    every = [f"11-{day}" for day in range(16, 22)]
+    worked = charts.season_days([*DAYS, last], ("day", "inspected", "found"))
+    left = charts.still_out([*DAYS, last], ("day", "left"))
+    for chart in (worked, left):
+        for one in spec(chart)["layer"]:
+            assert one["encoding"]["x"]["scale"]["domain"] == every
+
+
 def test_what_is_still_out_there_is_of_the_days_given():
     out = rows(charts.still_out(DAYS, ("day", "left")))
     assert {(row["expected"], row["low"], row["high"]) for row in out} == {
@@ -122,4 +132,5 @@ def test_days_of_two_years_stay_in_their_order_and_are_named_as_told():
             DayFigures(date(2027, 1, 1), 4, 0, 8.0, 1, 19, 0.0)]  # fmt: skip
     chart = charts.still_out(days, ("day", "left"), lambda on: f"{on:%d.%m}")
     assert [row["day"] for row in rows(chart)] == ["31.12", "01.01"]
-    assert spec(chart)["layer"][0]["encoding"]["x"]["sort"] is None
+    scale = spec(chart)["layer"][0]["encoding"]["x"]["scale"]
+    assert scale["domain"] == ["31.12", "01.01"]

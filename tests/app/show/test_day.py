@@ -77,8 +77,8 @@ def test_stops_of_a_day_that_was_worked_say_what_was_found_there(worked):
 def test_what_changed_is_the_difference_of_two_days(worked):
     said = "\n".join(day.changes(on(worked, 1)))
     before, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (0, 1))
-    assert f"{before.found} found on 40 plants inspected on {before.on}" in said
-    assert f"{now.expected:.1f} after {before.expected:.1f}" in said
+    assert f"{before.found} found on 40 plants inspected on Mon 6 Apr." in said
+    assert f"still infested: {now.expected:.0f}, the day before {before.expected:.0f}." in said
     assert day.changes(on(worked, 0)) == [texts.CHANGED_FIRST]
     assert "Nothing was recorded" in day.changes(on(worked, 3))[0]
     assert day.changes(chosen(a_plot())) == []

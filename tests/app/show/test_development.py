@@ -46,7 +46,7 @@ def test_the_next_generation_and_the_line_against_its_stages_are_shown(said):
     development.show(shown(MITE, weather(22.5)))
     title, sentence, (alt, chart), *notes = said
     assert "Two-spotted spider mite" in title
-    assert sentence.startswith("**Next generation around 2026-11-15.** 100 degree-days above")
+    assert sentence.startswith("**Next generation around 15 Nov.** 100 degree-days above")
     assert alt == texts.DEGREE_DAYS
     rows = [row for data in chart["datasets"].values() for row in data]
     marks = {row["name"]: row["gathered"] for row in rows if "name" in row}

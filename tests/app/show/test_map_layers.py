@@ -169,7 +169,7 @@ def test_what_was_treated_lately_is_shown_with_its_day_and_product(tmp_path):
     half = MultiPolygon([box(west, south, east, (south + north) / 2)])
     season.treat(BEGINS, 0.8, half, application=Application("soap"))
     done = season.treat(BEGINS + timedelta(days=3), 0.8)
-    tips = ["treated on 2026-04-06: \u2068soap\u2069", "treated on 2026-04-09"]
+    tips = ["treated on Mon 6 Apr: \u2068soap\u2069", "treated on Thu 9 Apr"]
     for days, said in ((0, tips[:1]), (3, tips), (13, tips), (14, tips[1:]), (17, [])):
         day = map_layers.day_map(in_season(season, BEGINS + timedelta(days=days)))
         shown = [layer for layer in day.layers if layer.id == "treated"]

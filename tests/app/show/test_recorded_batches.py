@@ -27,9 +27,9 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     lines = [one.value for one in season_app.markdown if "\u2068" in one.value]
     said = [line.replace("\u2068", "").replace("\u2069", "").split(" · ", 1)[1] for line in lines]
     # recorded today, and of a day that is not
-    assert said[0] == "day.csv · 4 plants, 2 found · 2026-11-16 · undone"
-    assert said[1] == f"typed in · {second}: could not inspect · 2026-11-16 · Ann"
-    assert said[2] == f"typed in · {first}: found · 2026-11-16"
+    assert said[0] == "day.csv · 4 plants, 2 found · Mon 16 Nov · undone"
+    assert said[1] == f"typed in · {second}: could not inspect · Mon 16 Nov · Ann"
+    assert said[2] == f"typed in · {first}: found · Mon 16 Nov"
     assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:3]}
 
 
@@ -43,8 +43,8 @@ def test_a_treatment_is_told_by_how_many_plants_were_treated_and_when(season_app
     assert some < every == len(kept.plot.grid)
     go(season_app, "record")
     said = [one.value.replace(",", "") for one in season_app.markdown if "treatment" in one.value]
-    assert f"treatment \u2068oil\u2069 · {some} plants · 2026-11-16" in said[0]
-    assert f"treatment \u2068soap\u2069 · {every} plants · 2026-11-16" in said[1]
+    assert f"treatment \u2068oil\u2069 · {some} plants · Mon 16 Nov" in said[0]
+    assert f"treatment \u2068soap\u2069 · {every} plants · Mon 16 Nov" in said[1]
 
 
 def test_every_result_has_its_word():

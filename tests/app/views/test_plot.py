@@ -14,3 +14,9 @@ def test_rows_set_by_hand_that_leave_no_plant_can_be_set_again(app, tmp_path):
     assert not app.error
     go(app, "plot")
     assert metric(app, "Plants") == plants
+
+
+def test_what_is_wrong_with_a_file_is_said_above_the_boxes_for_more(app):
+    upload(app, plot=("plot.zip", b"", "application/zip"))
+    shown = [one.type for one in app.main]
+    assert shown.index("error") < shown.index("file_uploader")

@@ -22,8 +22,9 @@ def test_a_season_just_begun_has_found_nothing_and_says_what_is_expected(app):
     assert not app.exception
     assert metric(app, texts.FOUND_EVER) == "0"
     assert metric(app, texts.INSPECTED_EVER).startswith("0 / ")
-    low, high = metric(app, texts.EXPECTED_LEFT).split("(")[1].rstrip(")").split("-")
-    assert 0 <= int(low) < int(high)
+    interval = metric(app, texts.EXPECTED_LEFT).split("(")[1].rstrip(")").replace(",", "")
+    low, high = map(int, interval.split("–"))
+    assert 0 <= low < high
     assert len(app.get("vega_lite_chart")) == 2, "of what was not done there is no chart"
 
 

@@ -20,7 +20,7 @@ def test_the_first_screen_shows_the_sample_estate_with_a_route(app):
 
 def test_the_first_sentence_says_what_to_do_in_the_route_s_own_figures(app):
     said = re.fullmatch(
-        r"Inspect ([\d,]+) plants in rows (\d+)–(\d+) on 2026-11-16, ([\d.]+) h: "
+        r"Inspect ([\d,]+) plants in rows (\d+)–(\d+) on Mon 16 Nov, ([\d.]+) h: "
         r"about (\d+) finds expected\.",
         headline(app),
     )

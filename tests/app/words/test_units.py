@@ -27,8 +27,22 @@ def test_units_and_numbers_are_those_of_the_language(speaking):
     assert UnitsInLanguage().lengths()[0] == (0.1, "0,1 m")
 
 
-def test_a_day_on_an_axis_has_no_year_and_the_order_of_the_language():
+def test_a_day_on_an_axis_has_no_year_and_the_order_of_the_language(speaking):
+    on = date(2026, 11, 6)
+    assert UnitsInLanguage().short_day(on) == "6 Nov"
+    assert UnitsInLanguage(date_like="11/16/2026").short_day(on) == "Nov 6"
+    said = {"he": "6 בנוב׳", "ar": "6 نوفمبر", "es": "6 nov"}
+    for code, day in said.items():
+        speaking(code)
+        assert usual(code).short_day(on) == day
+
+
+def test_a_day_in_a_sentence_has_its_weekday_and_a_year_only_where_that_is_far_off(speaking):
     on = date(2026, 11, 16)
-    assert UnitsInLanguage().short_day(on) == "11-16"
-    assert usual("he").short_day(on) == "16.11"
-    assert usual("es").short_day(on) == "16/11"
+    assert UnitsInLanguage().said_day(on, date(2027, 1, 2)) == "Mon 16 Nov"
+    assert UnitsInLanguage().said_day(on, date(2028, 1, 2)) == "Mon 16 Nov 2026"
+    assert UnitsInLanguage(date_like="11/16/2026").said_day("2026-11-16") == "Mon Nov 16"
+    said = {"he": "ב׳ 16 בנוב׳", "ar": "الاثنين 16 نوفمبر", "es": "lun 16 nov"}
+    for code, day in said.items():
+        speaking(code)
+        assert usual(code).said_day(on) == day

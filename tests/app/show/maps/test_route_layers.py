@@ -33,6 +33,8 @@ def test_the_line_is_the_one_that_is_driven_and_arrows_point_along_it(route):
         drawn = np.array(layers[name].data[0]["path"])
         assert drawn == pytest.approx(route.line_lonlat(), abs=1e-7)
     assert layers["gate"].data[0]["p"] == pytest.approx((35.15, 30.36), abs=1e-6)
+    # a gate 3 m wide would cover a plot of one plant
+    assert layers["gate"].radius_max_pixels <= 16
     frame, arrows = route.aisles.grid.frame, layers["arrows"].data
     step = np.diff(route.line_m, axis=0)
     before = np.cumsum(np.hypot(*step.T))

@@ -273,12 +273,12 @@ class OpenSeason:
         the file keeps and that still follows from all that happened until then.
         """
         self._last = None
+        inspection_lots.keep(db)  # what is read next is read of these
         now = self._read(db, before, since or 0)
         if since is None:
             since = now.mornings.last_until(newest_day(db))
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         self._keep_mornings(db, now.mornings, newest)
-        inspection_lots.keep(db)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
         kept = now.revision._replace(changes=now.revision.changes + 1)

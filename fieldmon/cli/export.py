@@ -83,7 +83,7 @@ def _observations(kept: list[Season], pest: str, crop: str) -> bytes:
     return observations_json(
         *(
             field_observations(
-                season.history.inspections, season.plot.grid, local_clock(season.plot.field), codes
+                season.inspections, season.plot.grid, local_clock(season.plot.field), codes
             )
             for season in kept
         )

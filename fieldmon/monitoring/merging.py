@@ -183,22 +183,22 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
     They are those of whole batches, which have their numbers already: no other row can be known
     again in one of them, or come between them.
     """
-    wanted = "SELECT batch, fid, digest, undone, who, notes FROM inspections ORDER BY fid"
     ours, theirs = numbers
+    here, there = (_spans(one) for one in both)
+    said = "SELECT digest, undone, who, notes FROM inspections WHERE batch = ? ORDER BY fid"
     n, batch = 0, 0
-    digests: set[str] = set()
-    for our, their in zip(*(one.execute(wanted) for one in both), strict=False):
-        number = ours.get(our[0])
-        if number is None or (our[0], theirs.get(their[0])) != (number, number):
+    for number in sorted(ours):
+        if number not in here and number not in there:
+            continue  # of treatments
+        first, last, count = span = here.get(number, (0, 0, 0))
+        if (ours[number], theirs.get(number)) != (number, number) or span != there.get(number):
             break
-        if our[2:] != their[2:] or None in our or our[1] != n + 1 or number < batch:
+        rows, other = (one.execute(said, (number,)).fetchall() for one in both)
+        if (first, last) != (n + 1, n + count) or rows != other or any(None in r for r in rows):
             break
-        if number > batch:
-            batch, digests = number, set()
-        if our[2] in digests:  # taken back and recorded again
+        if len({digest for digest, *_ in rows}) < count:  # taken back and recorded again
             break
-        digests.add(our[2])
-        n += 1
+        n, batch = last, number
     rest = (
         "SELECT DISTINCT batch FROM (SELECT batch FROM inspections ORDER BY fid LIMIT -1 OFFSET ?)"
     )
@@ -210,6 +210,12 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
     before = "SELECT count(*) FROM inspections WHERE fid <= ? AND batch < ?"
     (stay,) = both[0].execute(before, (n, min(later, default=batch + 1))).fetchone()
     return int(stay)
+
+
+def _spans(db: sqlite3.Connection) -> dict[int, tuple[int, int, int]]:
+    """Return of each batch its first and last inspection, and how many there are."""
+    spans = "SELECT batch, min(fid), max(fid), count(*) FROM inspections GROUP BY batch"
+    return {number: (first, last, count) for number, first, last, count in db.execute(spans)}
 
 
 def _merged_findings(

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Arrays = dict[str, NDArray[np.generic]]
 
 # every so many days a morning stays at hand, and the last two of these in the file beside the
-# newest: of a plot of 100 000 plants each is 4 MB
+# newest and the one before: of a plot of 100 000 plants each is 4 MB
 _EVERY, _IN_FILE = 8, 2
 # how the names of arrays begin that are of what hides
 _LATENCY = "latency_"
@@ -139,7 +139,8 @@ def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
     wanted: set[int] = set()
     if mornings.history.living is None:
         eighths = range(newest - newest % _EVERY, 0, -_EVERY)[:_IN_FILE]
-        wanted = {day for day in (*eighths, newest) if day > 0}
+        # that before the newest: who corrects the last day's work begins there
+        wanted = {day for day in (*eighths, newest - 1, newest) if day > 0}
     causes = {day: _causes(mornings.history, day) for day in wanted}
     for day, of_kept in db.execute("SELECT day, causes FROM mornings WHERE day > 0").fetchall():
         if causes.get(day) == of_kept:

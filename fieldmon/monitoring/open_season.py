@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.history import Treatment
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
@@ -141,12 +142,31 @@ class OpenSeason:
     @property
     def settings(self) -> MonitoringSettings:
         """Return what is chosen for the season."""
-        return self._now().settings
+        with self._lock, self.store.reading() as db:
+            outside_changes.refuse(db)
+            return settings_of(db) if (known := self._known(db)) is None else known.settings
 
     @property
     def history(self) -> History:
         """Return all that happened so far."""
         return self._now().history
+
+    @property
+    def inspections(self) -> Inspections:
+        """Return those of `history`, for who asks for no more: nothing is worked out for them."""
+        with self._lock, self.store.reading() as db:
+            return self._inspections(db)
+
+    def _inspections(self, db: sqlite3.Connection) -> Inspections:
+        outside_changes.refuse(db)
+        if (known := self._known(db)) is not None:
+            return known.history.inspections
+        return inspection_lots.load(db, settings_of(db).begins)
+
+    def _known(self, db: sqlite3.Connection) -> SeasonContents | None:
+        """Return what was read last, if the file still says it."""
+        last = self._last
+        return last if last is not None and last.revision == FileRevision.of(db) else None
 
     def last_date(self) -> date:
         """Return the last day on which anything was planned or recorded; at first the first."""
@@ -273,12 +293,12 @@ class OpenSeason:
         the file keeps and that still follows from all that happened until then.
         """
         self._last = None
+        inspection_lots.keep(db)  # what is read next is read of these
         now = self._read(db, before, since or 0)
         if since is None:
             since = now.mornings.last_until(newest_day(db))
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         self._keep_mornings(db, now.mornings, newest)
-        inspection_lots.keep(db)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
         kept = now.revision._replace(changes=now.revision.changes + 1)

@@ -6,7 +6,7 @@ import os
 import shutil
 import sqlite3
 import tempfile
-from contextlib import closing, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,8 @@ from fieldmon.monitoring.season_file import Season
 from fieldmon.monitoring.transactions import Store
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fieldmon.monitoring.geopackage import GeoPackageTable
 
 _MOST_ROWS = 50_000_000
@@ -64,17 +66,11 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
         copy = _padded_copy(source, Path(folder))
         with closing(sqlite3.connect(copy)) as db, Store.new(to) as new:
             new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
-            # nobody else has the file yet: it need not note row by row what comes in
-            noting = "SELECT name, sql FROM sqlite_master WHERE type = 'trigger'"
-            triggers = new.execute(noting).fetchall()
-            for name, _ in triggers:
-                new.execute(f"DROP TRIGGER {name}")
-            for table in schema.CAUSES:
-                if table is not schema.META:
-                    rows[table.name], complete = _taken(db, new, table)
-                    lost += [] if complete else [table.name]
-            for _, sql in triggers:
-                new.execute(sql)
+            with _written_at_once(new):
+                for table in schema.CAUSES:
+                    if table is not schema.META:
+                        rows[table.name], complete = _taken(db, new, table)
+                        lost += [] if complete else [table.name]
             if not any(rows.values()):
                 raise FileProblem(
                     worded(
@@ -124,6 +120,27 @@ def _padded_copy(source: Path, folder: Path) -> Path:
     if copy.stat().st_size < whole:
         os.truncate(copy, whole)
     return copy
+
+
+@contextmanager
+def _written_at_once(new: sqlite3.Connection) -> Iterator[None]:
+    """Let a file that nobody else has yet neither note nor sort row by row what comes in."""
+    later = new.execute(
+        "SELECT type, name, sql FROM sqlite_master WHERE type = 'trigger' "
+        "OR type = 'index' AND tbl_name = 'inspections' ORDER BY type"
+    ).fetchall()
+    for kind, name, _ in later:
+        new.execute(f"DROP {kind} {name}")
+    yield
+    for _, _, sql in later:
+        try:
+            new.execute(sql)
+        except sqlite3.IntegrityError:  # of inspections that stand there twice the first counts
+            new.execute(
+                "DELETE FROM inspections WHERE undone = 0 AND digest NOTNULL AND fid NOT IN "
+                "(SELECT min(fid) FROM inspections WHERE undone = 0 GROUP BY digest)"
+            )
+            new.execute(sql)
 
 
 def _columns(db: sqlite3.Connection, table: GeoPackageTable) -> tuple[str, ...]:

@@ -239,20 +239,22 @@ class SeasonRecords(OpenSeason):
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
         with self._lock, self.store.writing() as db:
-            before, was = inspection_table.n_counting(db), season_log.states(db)
-            held = self._read(db).history.inspections
+            before = inspection_table.n_counting(db)
+            held = self._inspections(db)
             with other.store.reading() as theirs:
                 told = season_log.taken_in(db, theirs)
+                # what is told is noted in any case
+                was = None if told else season_log.states(db)
                 # nobody writes there from here on
-                contradict = contradictions(other.history.inspections, held)
+                contradict = contradictions(other.inspections, held)
                 chosen = merging.merge(db, theirs)
             self._refresh(db)
             new = inspection_table.n_counting(db) - before
-            if told or season_log.states(db) != was:
+            states = season_log.states(db)
+            if states != was:
                 season_log.append(
-                    db, "merged", states=season_log.states(db), new=new, entries=len(told),
-                    theirs=told,
-                )  # fmt: skip
+                    db, "merged", states=states, new=new, entries=len(told), theirs=told
+                )
         return Merged(new, (*contradict.sentences(self.label), *chosen))
 
     def batches(self) -> tuple[Batch, ...]:

@@ -180,8 +180,8 @@ class SeasonTreatments(OpenSeason):
     def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow."""
         with self._lock, self.store.reading() as db:  # all of one moment
-            settings, labels = self._read(db).settings, label_table.read(db)
             done = self._treatments(db)
+            settings, labels = settings_of(db), label_table.read(db)
         rules = cautions.RulesToKeep(labels, settings.harvest, settings.starts)
         if units is not None:
             rules = replace(rules, units=units)
@@ -200,6 +200,10 @@ class SeasonTreatments(OpenSeason):
     def effects(self, on: date, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
         """Return what inspections up to the evening of a day tell of each treatment before it."""
         with self._lock, self.store.reading() as db:  # both of one moment
-            now, done = self._read(db), self._treatments(db)
+            done = self._treatments(db)
+            if not done:
+                settings_of(db).day(on)  # or raise
+                return ()
+            now = self._read(db)
         day = now.settings.day(on)
         return treatment_effect.effects(done, now.history, day, units)

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Caution, KeptTreatment, LogEntry, Season
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
 
@@ -57,6 +58,7 @@ class _PlotRecord:
     effects: tuple[TreatmentEffect, ...]
     log: tuple[LogEntry, ...]
     wrong: str
+    done: Inspections
 
     @classmethod
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
@@ -68,7 +70,9 @@ class _PlotRecord:
             log, wrong = season.log(), " ".join(season.held_to_log())
         except FieldmonError as changed:
             log, wrong = (), str(changed)
-        return cls(season, on, units, done, beware, told, log, wrong)
+        seen = season.inspections
+        seen = seen.take(seen.date <= np.datetime64(on, "D")).inspected
+        return cls(season, on, units, done, beware, told, log, wrong, seen)
 
     @property
     def name(self) -> str:
@@ -76,8 +80,7 @@ class _PlotRecord:
 
     def inspected(self) -> tuple[int, int]:
         """Return how many inspections there were, and finds among them."""
-        done = self.season.history.until(self.season.settings.day(self.on)).inspected
-        return len(done), int(np.count_nonzero(done.result == FOUND))
+        return len(self.done), int(np.count_nonzero(self.done.result == FOUND))
 
     def advised(self, one: KeptTreatment) -> str:
         """Return what was advised last, up to a treatment's day; empty: nothing."""
@@ -349,8 +352,7 @@ def _plain(text: str) -> str:
 
 def _inspections(one: _PlotRecord) -> Iterator[Table]:
     """Yield which plants were inspected, day by day and by whom, page by page."""
-    history = one.season.history
-    done = history.until(one.season.settings.day(one.on)).inspected
+    done = one.done
     rows: list[tuple[str, ...]] = []
     for day in np.unique(done.date).tolist():
         of = done.take(done.date == np.datetime64(day, "D"))

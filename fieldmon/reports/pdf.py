@@ -29,7 +29,7 @@ from fieldmon.reports.content import (
 from fieldmon.reports.drawing import Lettering
 from fieldmon.reports.fonts import FontSet
 from fieldmon.reports.language import ENGLISH
-from fieldmon.reports.pdf_painter import PT_MM, letter, paint
+from fieldmon.reports.pdf_painter import PT_MM, letter, paint, wide_mm
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -296,9 +296,9 @@ class _Page:
     def _shortened(self, text: str, wide: float) -> str:
         """Return as much of a text as has room, in the font that is set."""
         text = self.fonts.printable(text)
-        if self.pdf.get_string_width(text) <= wide:
+        if wide_mm(self.pdf, text) <= wide:
             return text
-        while text and self.pdf.get_string_width(f"{text}...") > wide:
+        while text and wide_mm(self.pdf, f"{text}...") > wide:
             text = text[:-1]
         return f"{text.rstrip()}..."
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -33,6 +34,8 @@ PT_MM = 25.4 / 72
 _ALIGN = {"start": "L", "middle": "C", "end": "R"}
 # a disc with an edge has so many corners: smaller than a plant, a hundredth of a curve's bytes
 _CORNERS = 16
+#: how wide texts are in each file that is written, by font and size
+_WIDE_MM: WeakKeyDictionary[FPDF, dict[tuple[str, str, float, str], float]] = WeakKeyDictionary()
 
 
 def paint(pdf: FPDF, fonts: FontSet, drawing: Drawing, corner: tuple[float, float]) -> None:
@@ -128,12 +131,24 @@ def _discs(pdf: FPDF, part: Discs, at: NDArray[np.float64]) -> None:
         _paths(pdf, places + about, f" h\n {paint_by}")
 
 
+def wide_mm(pdf: FPDF, text: str) -> float:
+    """Return how wide a text is in the font that is set; of each it is asked once, which is slow.
+
+    The same numbers and names stand in hundreds of rows of a table.
+    """
+    known = _WIDE_MM.setdefault(pdf, {})
+    asked = pdf.font_family, pdf.font_style, pdf.font_size_pt, text
+    if asked not in known:
+        known[asked] = float(pdf.get_string_width(text))
+    return known[asked]
+
+
 def letter(pdf: FPDF, fonts: FontSet, part: Lettering, at: tuple[float, float]) -> None:
     """Write words, their middle at the height named."""
     text = fonts.printable(part.text)
     pdf.set_font("open", "B" if part.bold else "", part.size_pt)
     pdf.set_text_color(*part.colour)
-    wide = pdf.get_string_width(text)
+    wide = wide_mm(pdf, text)
     x = at[0] + part.x - wide * {"start": 0.0, "middle": 0.5, "end": 1.0}[part.anchor]
     high = part.size_pt * PT_MM * 1.2
     pdf.set_xy(x - pdf.c_margin, at[1] + part.y - high / 2)

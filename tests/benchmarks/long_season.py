@@ -227,8 +227,9 @@ def _quietly(*words: object, at: Path | None = None) -> None:
 
 
 def _here() -> dict[str, str]:
-    """Let a command in another folder be of this one's code."""
-    return {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    """Let a command in another folder be of this one's code, kept compiled as a person's is."""
+    kept = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+    return {**kept, "PYTHONPATH": str(Path(__file__).parents[2])}
 
 
 #: run by a small process of its own: a child's most memory is at least that of who begins it

@@ -149,3 +149,29 @@ def test_a_correction_changes_every_day_from_its_own_on(three_weeks, row):
     assert as_if_all_was_worked_out_again(season)
     season.undo()
     assert as_if_all_was_worked_out_again(season)
+
+
+def test_a_correction_of_the_last_days_work_begins_at_its_morning(three_weeks, nights):
+    """Though the next day is planned already: the days before it are not worked out again."""
+    three_weeks.plan(on(19))
+    with closing(sqlite3.connect(three_weeks.path)) as db:
+        last = "(SELECT max(fid) FROM inspections)"
+        db.execute(f"UPDATE inspections SET count = 7, result = 'found' WHERE fid = {last}")  # noqa: S608
+        db.commit()
+    season = Season(three_weeks.path)
+    nights.clear()
+    assert season.correct("Ann") == 1
+    assert nights == [18]
+    assert as_if_all_was_worked_out_again(season)
+
+
+def test_inspections_alone_are_those_of_the_history_whoever_asks_first(three_weeks):
+    first = Season(three_weeks.path)
+    alone, known = first.inspections, first.history.inspections
+    for one in (alone, first.inspections):
+        for name in ("plant", "result", "date", "second", "count", "who", "notes"):
+            assert getattr(one, name).tolist() == pytest.approx(
+                getattr(known, name).tolist(), nan_ok=True
+            )
+    Season(three_weeks.path).record(three_results(18), "another window")
+    assert len(first.inspections) == len(known) + 3

@@ -11,7 +11,7 @@ import pytest
 
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, schema
 from fieldmon.monitoring.history import History
 from fieldmon.monitoring.salvage import salvage
 from tests.monitoring.seasons import BEGINS, state
@@ -176,3 +176,34 @@ def test_a_file_of_an_earlier_version_is_salvaged_with_the_columns_that_it_has(t
     assert len(was.inspections) > 0
     assert now.inspections.plant.tolist() == was.inspections.plant.tolist()
     assert len(now.treatments) == len(was.treatments)
+
+
+def test_of_inspections_that_stand_there_twice_the_first_is_saved(path, tmp_path):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("DROP INDEX inspections_once")
+        names = ", ".join(name for name in schema.INSPECTIONS.names if name != "notes")
+        db.execute(
+            f"INSERT INTO inspections (notes, {names}) SELECT 'twice', {names} "  # noqa: S608
+            "FROM inspections WHERE fid <= 3"
+        )
+        db.execute("DELETE FROM outside_changes")
+        db.commit()
+        (n,) = db.execute("SELECT count(*) FROM inspections").fetchone()
+    rescued = tmp_path / "rescued.gpkg"
+    salvage(path, rescued)
+    with closing(sqlite3.connect(rescued)) as db:
+        assert db.execute("SELECT count(*) FROM inspections").fetchone() == (n - 3,)
+        assert db.execute("SELECT 1 FROM inspections WHERE notes = 'twice'").fetchone() is None
+
+
+def test_a_rescued_file_has_the_indexes_and_triggers_of_a_new_one(path, tmp_path):
+    salvage(path, tmp_path / "rescued.gpkg")
+    made = (
+        "SELECT type, name, sql FROM sqlite_master WHERE type IN ('index', 'trigger') "
+        "AND sql NOTNULL ORDER BY name"
+    )
+    with (
+        closing(sqlite3.connect(path)) as one,
+        closing(sqlite3.connect(tmp_path / "rescued.gpkg")) as two,
+    ):
+        assert one.execute(made).fetchall() == two.execute(made).fetchall()

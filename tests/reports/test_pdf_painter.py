@@ -5,6 +5,7 @@ from datetime import date
 
 import numpy as np
 import pytest
+from fpdf import FPDF
 from PIL import Image
 
 from fieldmon.reports.content import Illustration, Report, Sheet
@@ -18,6 +19,7 @@ from fieldmon.reports.drawing import (
     Strokes,
 )
 from fieldmon.reports.pdf import pdf_bytes
+from fieldmon.reports.pdf_painter import wide_mm
 from tests.reports.reading import MM, opened, texts
 
 RED, BLUE = (213, 30, 30), (20, 80, 200)
@@ -100,3 +102,18 @@ def test_letters_without_a_font_are_replaced_in_drawings_too():
     )
     report = Report("葡", "y", date(2026, 1, 1), (Sheet("z", (picture,)),))
     assert "? 9" in texts(pdf_bytes(report))[0]
+
+
+def test_a_text_is_as_wide_as_the_font_that_is_set_makes_it_however_often_it_is_asked():
+    pdf, texts_ = FPDF(), ("1 667", "Ann", "1 667")
+    for family, style, size in (
+        ("helvetica", "", 8),
+        ("helvetica", "B", 8),
+        ("courier", "", 8),
+        ("helvetica", "", 9),
+    ):
+        pdf.set_font(family, style, size)
+        for _ in range(2):
+            assert [wide_mm(pdf, one) for one in texts_] == [
+                pdf.get_string_width(one) for one in texts_
+            ]

@@ -161,16 +161,11 @@ class Priced:
         room, ladder, tables = self._room, self.ladder, self.tables
         _value(ladder, self.reward, self.costs, (price, False), room)
         self._value_rest(price)
-        state = _sweep(ladder, tables, price * self.costs.metre_s, room)
         way, passes = (
             np.zeros(len(ladder.across_m), np.int64),
             np.zeros((len(ladder.across_m), 2), np.int64),
         )
-        for k in range(len(way) - 1, -1, -1):
-            ways = tables.gate if k == ladder.gate else tables.aisle
-            before, way[k], after = ways[room.choice[k, state]]
-            passes[k] = tables.passes[after]
-            state = before
+        _sweep(ladder, tables, price * self.costs.metre_s, room, (way, passes))
         at = np.arange(len(way)), way
         return Drawn(
             float(room.best[-1, 1]), float(room.reward[at].sum()), way, room.cut[at], passes
@@ -490,14 +485,26 @@ def _take_element(ladder: Ladder, tables: Tables, metre: float, room: _Room, k: 
 
 
 @loop
-def _sweep(ladder: Ladder, tables: Tables, metre: float, room: _Room) -> int:
-    """Find the best way to every state after every element; return the last state."""
+def _sweep(
+    ladder: Ladder, tables: Tables, metre: float, room: _Room, drawn: tuple[Int, Int]
+) -> None:
+    """Find the best way to every state after every element; follow back that to the last state.
+
+    `drawn`: how each element is driven then, and its passes, as `Drawn` has them.
+    """
     room.best[:] = _NEVER
     room.best[0, 0] = 0.0
     room.held[0, 0] = 0.0
     for k in range(ladder.across_m.size):
         _take_element(ladder, tables, metre, room, k)
-    return 1
+    way, passes = drawn
+    state = 1
+    for k in range(way.size - 1, -1, -1):
+        ways = tables.gate if k == ladder.gate else tables.aisle
+        t = room.choice[k, state]
+        way[k], after = ways[t, 1], ways[t, 2]
+        passes[k, 0], passes[k, 1] = tables.passes[after, 0], tables.passes[after, 1]
+        state = ways[t, 0]
 
 
 @loop

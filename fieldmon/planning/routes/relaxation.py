@@ -165,8 +165,8 @@ class Ladders:
 
 def _apart(rungs: Rungs, members: Int, to_gate_m: Float) -> Float:
     """Return the metres between the ends of some aisles and a gate of their own, the last."""
-    apart_m = rungs.apart_m[:, :, members[:, None], members]
-    apart_m = np.pad(apart_m, ((0, 0), (0, 0), (0, 1), (0, 1)), constant_values=np.inf)
+    apart_m = np.full((2, 2, len(members) + 1, len(members) + 1), np.inf)
+    apart_m[:, :, :-1, :-1] = rungs.apart_m[:, :, members[:, None], members]
     for side in range(2):
         apart_m[side, :, :-1, -1] = to_gate_m[side]
         apart_m[:, side, -1, :-1] = to_gate_m[side]
@@ -178,6 +178,8 @@ def _lines(apart_m: Float, hangs: Int) -> Float:
 
     Both ends of an aisle that hangs are one place of its headland, and it has none of the other.
     """
+    if not hangs.any():
+        return apart_m
     either_from = apart_m.min(axis=0)
     lines = apart_m.copy()
     for side in range(2):
@@ -289,14 +291,22 @@ def _hull(apart_m: Float) -> Float:
 
 def _places(apart_m: Float) -> Float:
     """Return places ``(e,)`` on a line, ascending, no two further apart than they truly are."""
-    hull = _hull(apart_m)
     place = np.zeros(len(apart_m))
-    for k in range(1, len(place)):
-        place[k] = (place[:k] + hull[:k, k]).min() * _LESS
+    _put_in_line(np.ascontiguousarray(_hull(apart_m).T), place)
+    return place
+
+
+@loop
+def _put_in_line(hull: Float, place: Float) -> None:
+    """Put each place as far up as all before it allow; ``hull[b, a]`` is the metres from a to b."""
+    for k in range(1, place.size):
+        least = np.inf
+        for j in range(k):
+            least = min(least, place[j] + hull[k, j])
+        place[k] = least * _LESS
         if not np.isfinite(place[k]):
             # nothing of this headland is there, or below
             place[k] = place[k - 1]
-    return place
 
 
 def _fitted(

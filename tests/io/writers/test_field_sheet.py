@@ -8,7 +8,8 @@ import pytest
 
 from fieldmon.io.writers import write_handoff
 from fieldmon.io.writers.field_sheet import _map_of, _marks, _row_numbers, _scale_bar
-from fieldmon.plot.layout import Planting, rectangle
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from tests.io.writers.handed import DAYS, START, crooked, day, long, usual
 from tests.pages import HOSTILE, Page, held
 

@@ -13,7 +13,7 @@ from fieldmon.io.writers import HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
-from fieldmon.plot.block import blocks_from_outline
+from fieldmon.plot.block_cutting import blocks_from_outline
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting

@@ -98,6 +98,19 @@ def test_stops_of_a_geopackage_carry_their_order_and_a_list_to_choose_findings_f
     assert read.result.tolist() == [FOUND, CLEAN, SKIPPED]
 
 
+def test_in_the_form_of_a_stop_only_what_is_filled_in_stands_beside_what_names_it(tmp_path):
+    """Numbers that nobody needs in the field, and may not change, are hidden."""
+    (path,) = write_handoff(crooked(), tmp_path / "route.gpkg")
+    form = ET.fromstring(styles_of(path)["stops"]).find("fieldConfiguration")  # noqa: S314 - ours
+    widgets = {one.get("name"): one.find("editWidget").get("type") for one in form}
+    columns = set(pyogrio.read_info(path, layer="stops")["fields"])
+    hidden = {name for name, kind in widgets.items() if kind == "Hidden"}
+    assert hidden == {"plant", "arrive_s", "inspect_s", "chance"}
+    assert widgets.keys() - hidden == {"found", "count"}
+    assert hidden < columns
+    assert {"who", "notes", "time", "stop", "row", "number", "face"} <= columns - hidden
+
+
 # --- zipped shapefile --------------------------------------------------------------------------
 
 

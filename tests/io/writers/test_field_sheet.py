@@ -227,7 +227,7 @@ def test_row_numbers_are_round_and_as_many_as_have_room(rows, faces):
         assert (place <= size).all()
 
 
-@pytest.mark.parametrize("hours", [0.6, 1.2, 3.0, 6.0])
+@pytest.mark.parametrize("hours", [0.6, 1.2, 3.0, 9.0])
 def test_numbers_of_stops_are_round_and_sixty_at_most(hours):
     plan = day(rectangle(16, 30), hours=hours, by="naive")
     placed, _ = _map_of(plan)

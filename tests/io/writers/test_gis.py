@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pyogrio
+import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.io.options import Upload
@@ -155,8 +156,9 @@ def dbf_fields(table):
     return names, [field[16] for field in fields]
 
 
-def test_a_long_name_is_cut_between_letters(tmp_path):
-    plan = day(rectangle(3, 4), plot="חלקה " * 60)
+@pytest.mark.parametrize("first", ["", "a"])  # a letter that ends at an odd byte, or an even one
+def test_a_long_name_is_cut_between_letters(tmp_path, first):
+    plan = day(rectangle(3, 4), plot=first + "חלקה " * 30 + "ח" * 60)
     (path,) = write_handoff(plan, tmp_path / "route.zip")
     name = pyogrio.read_dataframe(f"zip://{path}!route.shp")["plot"][0]
     assert len(name.encode()) > 240

@@ -376,6 +376,9 @@ def main():
     asked.add_argument("--minutes", type=float, default=10**6, help="most minutes a room")
     asked.add_argument("--again", type=Path, help="only those that this file says survived")
     asked.add_argument("--tests-s", type=float, default=60, help="most seconds of tests a mutant")
+    asked.add_argument(
+        "--tested", nargs="+", help="tests of these rooms alone, as of tests/io/writers"
+    )
     asked.add_argument("--kept", type=Path, help="folder of a copy and what was measured of it")
     asked.add_argument("--output", type=Path, default=Path("mutants.csv"))
     told = asked.parse_args()
@@ -384,10 +387,10 @@ def main():
         folder = (told.kept or Path(passing)).absolute()
         folder.mkdir(exist_ok=True)
         tree = copied_tree(folder)
-        from mutants_warm import Warm
+        from mutants_warm import TESTED, Warm
 
         out = os.fdopen(os.dup(1), "w")
-        warm = Warm(tree)
+        warm = Warm(tree, told.tested or TESTED)
         warm.measure(folder / "reached.json")
         nearest = Nearest(warm.known)
         for room in told.rooms:

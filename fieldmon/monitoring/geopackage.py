@@ -131,10 +131,14 @@ def insert(
 def touch(
     db: sqlite3.Connection, name: str, bounds: tuple[float, float, float, float] | None = None
 ) -> None:
-    """Note in the contents that a table changed, and how far it reaches now."""
+    """Note in the contents that a table changed, and how far it reaches now.
+
+    Views that show something of it have changed with it.
+    """
     db.execute(
         "UPDATE gpkg_contents SET last_change = strftime('%Y-%m-%dT%H:%M:%fZ','now') "
-        "WHERE table_name = ?",
+        "WHERE table_name = ?1 OR table_name IN (SELECT name FROM sqlite_master "
+        "WHERE type = 'view' AND instr(sql, ' ' || ?1 || ' '))",
         (name,),
     )
     if bounds is not None:

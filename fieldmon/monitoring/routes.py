@@ -38,7 +38,10 @@ def keep(
     today: DayPlan,
     who: str = "",
 ) -> bool:
-    """Keep a day's route, of one of a team, unless it is the one kept last; tell whether it was."""
+    """Keep a day's route, of one of a team, unless it is the one kept last; tell whether it was.
+
+    It has a stop or more.
+    """
     day, route = today.scene.day, today.route
     mark, last = _digest(today), _last(db, today, who)
     if last is not None and last[1] == mark:
@@ -77,10 +80,9 @@ def keep(
         strict=True,
     )
     insert(db, schema.STOPS, list(stops))
-    if len(line):
-        bounds = (*line.min(axis=0).tolist(), *line.max(axis=0).tolist())
-        for table in (schema.ROUTES, schema.STOPS):
-            touch(db, table.name, bounds)
+    bounds = (*line.min(axis=0).tolist(), *line.max(axis=0).tolist())
+    for table in (schema.ROUTES, schema.STOPS):
+        touch(db, table.name, bounds)
     return True
 
 

@@ -2,15 +2,22 @@
 
 from dataclasses import replace
 from datetime import timedelta
+from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fieldmon.compute.wording import counted
+from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.decisions.sequential import LEAVE, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring.advice import AdviceSettings
+from fieldmon.monitoring.advice import Advice, AdviceSettings, _first
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.samplers.decide import Decide
 from tests.monitoring.seasons import BEGINS, a_season
 
 CHEAP = TreatmentCosts(per_ha=20.0, per_zone=0.1)
@@ -80,3 +87,62 @@ def test_a_rate_that_cannot_be_is_refused(season):
         AdviceSettings(rate_l_ha=0.0)
     with pytest.raises(SettingError, match="between 0 and 1"):
         season.advice(BEGINS + timedelta(days=1), AdviceSettings(0.0))
+
+
+def test_the_fewest_looks_are_those_that_trying_one_after_another_finds():
+    for most, fewest in product(range(24), range(1, 30)):
+        asked = []
+        found = _first(lambda k, seen=asked, least=fewest: seen.append(k) or k >= least, most)
+        assert found == (fewest if fewest <= most else None)
+        assert all(1 <= k <= most for k in asked)
+        assert len(asked) <= 2 * most.bit_length() + 2
+
+
+def test_one_look_less_would_not_decide(season):
+    level = float(season.evening(BEGINS).mean())
+    asked, scene = AdviceSettings(level, costs=CHEAP), season.scene(BEGINS)
+    more = season.advice(BEGINS, asked).more
+    evening = season.history.evening(season.history.first_morning, 0)
+    order = Decide().walk(replace(scene, seconds_left=1e6), np.zeros(len(scene.chance), bool)).plant
+    learning = Learning(scene.robot.detects, treated=False)
+    for looks, found, verdict in ((more.if_clean, False, LEAVE), (more.if_found, True, TREAT)):
+        for k in (looks - 1, looks):
+            after = evening.learn(order[:k], np.full(k, found), learning)
+            said = map_verdict(
+                scene.grid, after.chance, level, after.pair_chance, sure=asked.sure,
+                doubt=after.doubt,
+            )  # fmt: skip
+            assert (said.verdict == verdict) == (k == looks)
+
+
+@pytest.mark.parametrize(
+    ("m2", "above", "verdict", "said"),
+    [
+        (1000.0, 1, TREAT, "Treat the whole plot, "), (995.0, 1, TREAT, "Treat the whole plot, "),
+        (990.0, 1, TREAT, " in 1 zone, 99 % of the plot."),
+        (250.0, 1, LEAVE, " of it in 1 zone, 25 %."), (250.0, 0, LEAVE, "Do not treat today."),
+        (0.0, 0, TREAT, "Treat: so much is infested, though nowhere it pays by these costs."),
+    ],
+)  # fmt: skip
+def test_each_verdict_has_its_sentence(season, m2, above, verdict, said):
+    zones = SimpleNamespace(m2=m2, plot_m2=1000.0, whole_cost=512.345, cost=500.0)
+    one = SimpleNamespace(verdict=TREAT if above else LEAVE)
+    of = type("Zones", (), {**vars(zones), "__len__": lambda _: int(m2 > 0)})()
+    asked, plot = AdviceSettings(rate_l_ha=200.0), SimpleNamespace(verdict=verdict)
+    advice = Advice(season.plot.grid, asked, plot, of, SimpleNamespace(zones=[one]))
+    headline = advice.headline()
+    assert said in headline
+    assert advice.above == above
+    assert advice.litres == pytest.approx(m2 / 50.0)
+    assert (advice.saving, advice.saved) == (pytest.approx(12.345), "12.35")
+    assert repr(advice) == f"<Advice: {verdict}, {counted(len(of), 'zone')}>"
+
+
+@pytest.mark.parametrize(
+    ("saving", "said"),
+    [(99.994, "99.99"), (100.0, "100"), (2000.4, "2,000"), (-3.456, "-3.46"), (-1488.0, "-1,488")],
+)
+def test_sums_of_a_hundred_and_more_are_said_without_hundredths(season, saving, said):
+    zones = SimpleNamespace(whole_cost=saving + 5000.0, cost=5000.0)
+    advice = Advice(season.plot.grid, AdviceSettings(), None, zones, None)
+    assert advice.saved == said

@@ -1,10 +1,12 @@
 """What to beware of after treatments: the third use in a row, and not the second."""
 
+from dataclasses import replace
 from datetime import date, time, timedelta
 
 import numpy as np
 import pytest
 
+from fieldmon.compute.wording import counted
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring.applications import Application
@@ -135,3 +137,63 @@ def test_a_product_without_a_label_is_said_where_there_is_a_table():
 
 def test_what_comes_after_the_day_is_not_looked_at():
     assert kinds([treated(9, dose=Dose(9, "l/ha"))], [LABEL], on=8) == []
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_rows_of_uses_are_those_that_each_plant_alone_had(seed):
+    """The rule read out for each plant: days on which a group known was used, one after another."""
+    rng = np.random.default_rng(seed)
+    groups = [(), ("6",), ("28",), ("6", "28"), ("4A",)]
+    done = [
+        treated(int(day), rng.random(20) < 0.6, product="",
+                irac_groups=groups[rng.choice(5, p=[0.1, 0.5, 0.1, 0.25, 0.05])])
+        for day in sorted(rng.integers(0, 9, 11))
+    ]  # fmt: skip
+    done = [replace(one, batch=k) for k, one in enumerate(done)]
+    wanted = []
+    for one in done:
+        for group in one.application.irac_groups:
+            uses = np.zeros(20, int)
+            for plant in np.flatnonzero(one.place.plants):
+                for day in range(one.day, -1, -1):
+                    that_day = [
+                        g for t in done if t.day == day and t.place.plants[plant]
+                        for g in t.application.irac_groups
+                    ]  # fmt: skip
+                    if that_day and group not in that_day:
+                        break
+                    uses[plant] += group in that_day
+            if uses.max() > 2:
+                plants = counted(int(np.count_nonzero(uses > 2)), "plant")
+                use = f"Use {uses.max()} of mode-of-action group {group} in a row on {plants}: "
+                wanted.append((one.batch, use))
+    told = [(one.batch, one.sentence) for one in found(done) if one.kind == "group"]
+    assert len(told) == len(wanted) > 0
+    for (batch, sentence), (number, said) in zip(told, wanted, strict=True):
+        assert batch == number
+        assert sentence.startswith(said)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_uses_of_a_season_are_the_days_on_which_each_plant_had_the_product(seed):
+    rng = np.random.default_rng(seed)
+    names = ["Acarol", "ACAROL", "soap"]
+    done = [
+        treated(int(day), rng.random(20) < 0.5, product=names[rng.integers(0, 3)])
+        for day in sorted(rng.integers(0, 8, 9))
+    ]
+    done = [replace(one, batch=k) for k, one in enumerate(done)]
+    label = ProductLabel("acarol", max_uses=2)
+    wanted = []
+    for at, one in enumerate(done):
+        if one.application.product == "soap":
+            continue
+        same = [t for t in done[: at + 1] if t.application.product != "soap"]
+        uses = np.array([len({t.day for t in same if t.place.plants[p]}) for p in range(20)])
+        uses = uses * one.place.plants
+        if uses.max() > 2:
+            plants = counted(int(np.count_nonzero(uses > 2)), "plant")
+            wanted.append((one.batch, f"Use {uses.max()} in this season on {plants}: "))
+    told = [(one.batch, one.sentence) for one in found(done, [label]) if one.kind == "uses"]
+    assert [batch for batch, _ in told] == [batch for batch, _ in wanted]
+    assert all(s.startswith(said) for (_, s), (_, said) in zip(told, wanted, strict=True))

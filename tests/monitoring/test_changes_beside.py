@@ -4,13 +4,15 @@ import shutil
 import sqlite3
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from itertools import takewhile
 from time import sleep
 
+import numpy as np
 import pytest
 
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.changes_beside import _reaches
+from fieldmon.monitoring.changes_beside import _is_of_the_last_transaction, _reaches
 from tests.monitoring.open_elsewhere import as_qgis, beside, left_by_a_crash
 from tests.monitoring.seasons import a_plot, a_season, state, three_results
 
@@ -151,3 +153,60 @@ def test_a_page_behind_the_files_last_that_is_not_in_the_log_is_missed():
     # what no transaction ended does not count
     assert _reaches(log((2, 4), (5, 0)), 4)
     assert not _reaches(log((2, 3)), 4)
+
+
+def frames(*pages, size=512, salts=b"saltsalt"):
+    """Return a log of frames: the page of each, how long the file is where it ends, its salts."""
+    head = bytes(8) + size.to_bytes(4) + bytes(4) + salts + bytes(8)
+    parts = [
+        page.to_bytes(4) + ends.to_bytes(4) + mark + bytes(8) + bytes(size)
+        for page, ends, mark in ((*one, salts)[:3] for one in pages)
+    ]
+    return head + b"".join(parts)
+
+
+def test_a_log_reaches_if_each_new_page_came_in_a_transaction_that_ended():
+    """By the words of the format: of frames before a torn or foreign one, up to the last commit."""
+    rng = np.random.default_rng(1)
+    outcomes = []
+    for _ in range(600):
+        drawn = [
+            (int(rng.integers(1, 7)), int(rng.choice([0, 0, 3, 4, 5, 2])),
+             b"saltsalt" if rng.random() < 0.9 else b"other---")
+            for _ in range(rng.integers(0, 7))
+        ]  # fmt: skip
+        size = int(rng.choice([512, 1024]))
+        log = frames(*drawn, size=size)
+        if rng.random() < 0.3 and drawn:
+            log, drawn = log[: -int(rng.integers(1, size + 24))], drawn[:-1]
+        counting = list(takewhile(lambda one: one[2] == b"saltsalt", drawn))
+        ends = [k for k, one in enumerate(counting) if one[1]]
+        kept = counting[: ends[-1] + 1] if ends else []
+        length = kept[-1][1] if kept else 3
+        pages = {1, 2, 3} | {page for page, *_ in kept}
+        outcomes.append(length >= 3 and all(page in pages for page in range(1, length + 1)))
+        assert _reaches(log, 3) == outcomes[-1], drawn
+    assert 100 < sum(outcomes) < 500
+
+
+@pytest.mark.parametrize("size", [512, 4096, 65536])
+@pytest.mark.parametrize("sector", [512, 4096])
+@pytest.mark.parametrize(("counted", "own"), [(6, False), (7, True), (8, True), (9, False)])
+def test_a_journal_is_of_the_last_transaction_if_the_file_counts_one_more_at_most(
+    size, sector, counted, own
+):
+    """The page of the first may stand anywhere in it; where it is not, nothing of it changed."""
+    head = bytearray(100)
+    head[16:18] = (1 if size == 65536 else size).to_bytes(2)
+    head[24:28] = (8).to_bytes(4)
+    start = bytearray(sector)
+    start[20:24] = sector.to_bytes(4)
+
+    def kept(number, page=b""):
+        return number.to_bytes(4) + page.ljust(size, b"\0") + bytes(4)
+
+    first = kept(1, bytes(24) + counted.to_bytes(4))
+    for pages in (first, kept(3) + first, kept(2) + first + kept(9)):
+        assert _is_of_the_last_transaction(head, start + pages) == own
+    assert _is_of_the_last_transaction(head, start + kept(2) + kept(3))
+    assert _is_of_the_last_transaction(head, start)

@@ -45,6 +45,14 @@ def test_a_part_has_stops_in_its_rows_only_and_is_given_out_to_nobody_else(seaso
     assert inside(season, (1, 3))[ahead.plant].all()
 
 
+def test_a_part_is_all_plants_of_its_rows_and_no_others(season):
+    line = season.label.line.tolist()
+    for rows in ((1, 3), (2, 2), (4, 400), (3, 2)):
+        wanted = [rows[0] <= one <= rows[1] for one in line]
+        assert inside(season, rows).tolist() == wanted
+    assert inside(season, None).all()
+
+
 def test_the_rest_planned_again_fits_what_is_left_of_the_hours(season):
     done = season.history.inspections.plant
     short = planned_again(season, BEGINS, seconds_left=900)

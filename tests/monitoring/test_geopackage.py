@@ -1,7 +1,10 @@
 """Geometries as GeoPackages hold them, in and out, bit for bit."""
 
+import inspect
+import shutil
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
 
 import numpy as np
 import pyogrio
@@ -12,7 +15,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from shapely import LineString, MultiPolygon, Point, box
 
-from fieldmon.monitoring import geopackage
+from fieldmon.decisions.labels import ProductLabel
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season, geopackage, photos, scouts
 from fieldmon.monitoring.geopackage import (
     GeoPackageTable,
     blob,
@@ -21,6 +26,11 @@ from fieldmon.monitoring.geopackage import (
     point_blobs,
     touch,
 )
+from fieldmon.monitoring.photos_asked import ask_no_more, ask_photo
+from fieldmon.monitoring.tellings import take
+from tests.monitoring.seasons import BEGINS, on, some_results
+from tests.monitoring.telling import JPEG, NOW, a_telling
+from tests.monitoring.test_drafts import add
 
 TABLE = GeoPackageTable("spots", ("number INTEGER", "name TEXT NOT NULL"), "POINT", "Some spots.")
 degrees = st.floats(-180.0, 180.0)
@@ -80,3 +90,134 @@ def test_gdal_reads_what_was_written_and_where_it_is(spots):
 def test_a_table_names_its_geometry_first():
     assert TABLE.names == ("geom", "number", "name")
     assert GeoPackageTable("notes", ("text TEXT",), None, "Notes.").names == ("text",)
+
+
+# --- programs draw a layer anew only if the contents say that it changed --------------------------
+
+
+def _look(season):
+    take(season, scouts.let_in(season, "Ann"), [a_telling(30, FOUND, lonlat=(35.15, 30.36))], NOW)
+
+
+def _take_back(season):
+    key, told = scouts.let_in(season, "Ann"), a_telling(30)
+    take(season, key, [told], NOW)
+    yield
+    take(season, key, [a_telling(None, None, undoes=told.id)], NOW)
+
+
+def _photograph(season):
+    key, told = scouts.let_in(season, "Ann"), a_telling(30)
+    take(season, key, [told], NOW)
+    yield
+    photos.keep(season, key, photos.Photo("one", told.id, JPEG, NOW))
+
+
+def _undo_photographed(season):
+    for _ in _photograph(season):
+        pass
+    yield
+    season.undo()
+
+
+def _ask_no_more(season):
+    ask_photo(season, 30, name="mine")
+    yield
+    ask_no_more(season, "mine")
+
+
+def _undo_treatment(season):
+    season.treat(BEGINS, 0.8)
+    yield
+    season.undo()
+
+
+def _take_back_key(season):
+    scouts.let_in(season, "Ann")
+    yield
+    scouts.take_back(season, "Ann")
+
+
+def _draft(season):
+    add(season.path)
+    yield
+    Season(season.path)
+
+
+def _merge(season):
+    other = Season(shutil.copy(season.path, season.path.with_name("other.gpkg")))
+    other.record(some_results(other, day=2, found=[1]), "wednesday.csv", "Ben")
+    other.plan(on(3))
+    other.treat(on(2), 0.5)
+    yield
+    season.merge(other)
+
+
+WORK = {
+    "plan": lambda season: season.plan(on(1)),
+    "record": lambda season: season.record(some_results(season, day=1, found=[0, 1]), "x", "Ann"),
+    "undo": lambda season: season.undo(),
+    "undo one": lambda season: season.undo(inspection=3),
+    "treat": lambda season: season.treat(BEGINS, 0.8, product="soap"),
+    "undo a treatment": _undo_treatment,
+    "labels": lambda season: season.keep_labels([ProductLabel("soap", waiting_days=3)]),
+    "settings": lambda season: season.change(
+        replace(season.settings, sampler="naive"), season.settings
+    ),
+    "advise": lambda season: season.advise(BEGINS, "Look on."),
+    "let in": lambda season: scouts.let_in(season, "Ann"),
+    "take a key back": _take_back_key,
+    "tell": _look,
+    "take back": _take_back,
+    "photo": _photograph,
+    "undo what has a photo": _undo_photographed,
+    "ask": lambda season: ask_photo(season, 30),
+    "ask no more": _ask_no_more,
+    "draft": _draft,
+    "merge": _merge,
+}
+#: what no program shows
+INNER = {
+    *("fieldmon", "batches", "settings", "arrays", "mornings", "inspection_lots", "log"),
+    *("learnt", "scouts", "labels", "import_findings", "outside_changes"),
+}
+
+
+def _told(db):
+    """Return what stands in each layer and table of the contents, and when it says it changed."""
+    changed = dict(db.execute("SELECT table_name, last_change FROM gpkg_contents"))
+    rows = {
+        name: db.execute(f"SELECT * FROM {name}").fetchall()  # noqa: S608 - a name of ours
+        for name in changed.keys() - INNER
+    }
+    return rows, changed
+
+
+@pytest.mark.parametrize("work", WORK.values(), ids=WORK)
+def test_a_layer_that_a_piece_of_work_changed_says_so_and_holds_what_it_shows(path, work):
+    season = Season(path)
+    made = work if inspect.isgeneratorfunction(work) else None
+    steps = made(season) if made else iter(())
+    next(steps, None)
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE gpkg_contents SET last_change = '2000-01-01T00:00:00.000Z'")
+        db.commit()
+        before, _ = _told(db)
+    assert next(steps, None) is None
+    if made is None:
+        work(season)
+    with closing(sqlite3.connect(path)) as db:
+        after, changed = _told(db)
+        boxes = db.execute(
+            "SELECT c.table_name, min_x, min_y, max_x, max_y FROM gpkg_contents c "
+            "JOIN gpkg_geometry_columns USING (table_name) WHERE min_x NOTNULL"
+        ).fetchall()
+        for name, *box_of in boxes:
+            wanted = f"SELECT geom FROM {name} WHERE geom NOTNULL"  # noqa: S608 - as above
+            shapes = [geometry(one) for (one,) in db.execute(wanted)]
+            if name in ("treatments", "plots", "hot_spots") or not shapes:
+                continue
+            whole = shapely.box(*box_of).buffer(1e-4)
+            assert all(whole.contains(one) for one in shapes), name
+    silent = {name for name in after if before[name] != after[name] and changed[name] < "2001"}
+    assert silent == set()

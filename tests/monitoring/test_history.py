@@ -1,6 +1,7 @@
 """What was done on a plot, day by day, and what that says each morning."""
 
 from datetime import date
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -132,3 +133,75 @@ def test_a_day_on_which_nothing_was_done_begins_at_the_gate_or_where_one_stayed(
 def test_an_impossible_efficacy_is_refused():
     with pytest.raises(SettingError, match="efficacy"):
         Treatment(0, np.ones(N, np.bool_), 1.5)
+
+
+def random_history(seed):
+    """Return a history of some weeks of three people, and each of its looks as a tuple."""
+    rng = np.random.default_rng(seed)
+    days = np.sort(rng.choice([0, 1, 3, 4, 7], 25))
+    who = np.array(["", "Ann", "ANN", "bob"], object)[rng.integers(0, 4, 25)]
+    seconds = np.where(rng.random(25) < 0.5, np.nan, 6 * 3600.0 + np.arange(25) * 100.0)
+    done = Inspections.of(
+        rng.integers(0, 8, 25), rng.integers(0, 3, 25), np.datetime64(BEGINS) + days,
+        second=seconds, who=who,
+    )  # fmt: skip
+    looks = zip(done.plant.tolist(), done.result.tolist(), days.tolist(), seconds.tolist(), who,
+                strict=True)  # fmt: skip
+    recorded = np.full(N, -1, np.int8)
+    recorded[:8] = rng.integers(-1, 2, 8)
+    return History(PLOT.grid, BEGINS, MORNING, done, recorded=recorded), list(looks)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("who", [None, "ann", "Bob", "eve"])
+def test_a_day_and_all_before_it_are_what_going_through_the_looks_says(seed, who):
+    history, looks = random_history(seed)
+    stays = Shift(PLOT.aisles, Robot(hours=2.0, returns=False))
+    for day in range(9):
+        today = [one for one in looks if one[2] == day]
+        until = [one for one in looks if one[2] <= day]
+        seen = [one for one in until if one[1] != SKIPPED]
+        last, state = np.full(N, NEVER), np.full(N, -1)
+        for plant, result, number, *_ in seen:
+            last[plant], state[plant] = number, max(state[plant], result)
+        assert history.on(day).plant.tolist() == [one[0] for one in today]
+        assert history.until(day).plant.tolist() == [one[0] for one in until]
+        assert history.last_inspected(day).tolist() == last.tolist()
+        assert history.states(day).tolist() == state.tolist()
+        assert history.known(day).tolist() == np.maximum(state, history.recorded).tolist()
+        finds = [one[2] for one in seen if one[1] == FOUND]
+        first = history.date_of(finds[0]) if finds else None
+        assert history.first_find(history.date_of(day)) == first
+
+        scene = history.scene(stays, day, MORNING, who=who)
+        mine = [one for one in looks if who is None or one[4].casefold() == who.casefold()]
+        earlier = [one for one in mine if one[2] < day and one[1] != SKIPPED]
+        trail = [one[0] for one in earlier if one[2] == earlier[-1][2]]
+        own = [one for one in mine if one[2] == day]
+        closed = last.copy()
+        closed[[one[0] for one in today]] = day
+        assert scene.last_inspected.tolist() == closed.tolist()
+        assert scene.trail.tolist() == trail
+        assert scene.at == (own[-1][0] if own else trail[-1] if trail else GATE)
+        gone_s = stays.robot.day_s - scene.seconds_left
+        if own and np.isfinite(own[-1][3]):
+            assert gone_s == own[-1][3] - stays.starts_s
+        elif own:
+            visits_s = stays.robot.visit_s * len(own)
+            places = [trail[-1] if trail else GATE, *(one[0] for one in own)]
+            way_m = sum(float(PLOT.aisles.distance_m(a, b)) for a, b in pairwise(places))
+            assert gone_s >= visits_s + way_m / stays.robot.speed_m_s - 1e-6
+        else:
+            assert gone_s == 0.0
+        early = history.scene(stays, day, MORNING, now_s=stays.starts_s - 60.0, who=who)
+        assert early.seconds_left == stays.robot.day_s
+
+
+def test_each_of_a_team_is_learnt_from_by_what_they_find():
+    who = np.array(["Ann", "BOB", "", "ann"], object)
+    done = Inspections.of(np.arange(4), np.array([CLEAN] * 4), np.datetime64(BEGINS), who=who)
+    team = History(PLOT.grid, BEGINS, MORNING, done, detection_of={"ann": 0.9, "bob": 0.5})
+    known = MORNING.learn(
+        done.plant, np.zeros(4, bool), Learning(np.array([0.9, 0.5, team.detection, 0.9]))
+    )
+    assert team.evening(MORNING, 0).chance.tolist() == known.chance.tolist()

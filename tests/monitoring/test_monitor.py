@@ -209,3 +209,42 @@ def test_the_plants_ahead_are_those_asked_for_while_nothing_is_found(plot, start
             asked.append(stop.plant)
             day.tell(found=False)
         assert asked == [first.plant, *rest]
+
+
+@pytest.mark.parametrize("over_s", [-30.0, 0.0, 5000.0])
+def test_nothing_is_asked_for_once_the_hours_are_gone_by_the_robots_own_clock(plot, over_s):
+    robot = Robot(hours=1.0)
+    with Monitor(plot, sampler="naive", robot=robot).day() as day:
+        day.ask()
+        day.tell(found=False, at_s=robot.day_s + over_s)
+        assert day.gone_s == robot.day_s + over_s
+        assert day.ask() is None
+        assert day.ahead(3) == []
+        assert len(day.plants) == 1
+
+
+def test_a_day_that_goes_on_anew_leaves_out_what_was_told_of_and_has_what_is_left(plot):
+    monitor = Monitor(plot, sampler="naive", robot=Robot(hours=1.0))
+    with monitor.day() as day:
+        for k in range(6):
+            stop = day.ask()
+            assert stop is day.ask()
+            day.tell(None if k == 2 else k == 4, at_s=stop.arrive_s + stop.inspect_s + 40.0)
+            assert day.gone_s == stop.arrive_s + stop.inspect_s + 40.0
+            follows = day.ask()
+            assert follows.arrive_s >= day.gone_s
+            assert follows.plant not in day.plants
+            assert day.at == stop.plant
+        assert len(set(day.plants.tolist())) == len(day.plants) == 5
+        assert day.found.tolist() == [False, False, False, True, False]
+        assert day.detects.tolist() == [monitor.robot.detects] * 5
+        assert repr(day) == "<MonitorDay: 5 inspected, 1 found>"
+    assert day.ask() is None
+    with pytest.raises(ObservationError, match="before its day ends"):
+        day.tell(found=True)  # it was asked for, and would be lost
+    assert len(day.plants) == 5
+    assert "day 1>" in repr(monitor)
+    monitor.night()
+    assert "day 2>" in repr(monitor)
+    assert np.flatnonzero(monitor.last_inspected >= 0).tolist() == sorted(day.plants.tolist())
+    assert set(monitor.last_inspected[day.plants].tolist()) == {0}

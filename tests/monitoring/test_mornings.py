@@ -11,8 +11,10 @@ import pytest
 
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.mornings import Mornings, _causes, _packed, _unpacked
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS
@@ -212,3 +214,47 @@ def test_a_morning_of_another_plot_is_not_taken():
     assert the_same(_unpacked(first, kept), _unpacked(first, kept))
     # as many plants, and other pairs
     assert _unpacked(TracedPairs.of(rectangle(2, 10), np.full(20, 0.1)), kept) is None
+
+
+def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(path):
+    history, day = Season(path).history, 9
+    own = _causes(history, day)
+    n = len(history.grid)
+    assert own == _causes(replace(history), day)
+    assert own != _causes(history, day - 1) != _causes(history, day + 1)
+
+    def treated(on, plants=5, efficacy=0.8):
+        return replace(history, treatments=(Treatment(on, np.arange(n) < plants, efficacy),))
+
+    def looked(on, **more):
+        done = history.inspections
+        late = Inspections.of(np.array([1]), np.array([0]), history.date_of(on))
+        until, after = history.until(on), done.take(slice(len(history.until(on)), None))
+        return replace(history, inspections=until.and_those(replace(late, **more)).and_those(after))
+
+    first = history.first_morning
+    another = np.append(first.chance[:-1], first.chance[-1] / 2)
+    causes = [
+        treated(8), treated(8, plants=6), treated(8, efficacy=0.7), treated(7), looked(8),
+        looked(8, plant=np.array([2])), looked(8, result=np.array([1])), looked(7),
+        replace(history, detection=0.7), replace(history, detection_of={"ann": 0.7}),
+        replace(history, belief=replace(history.belief, treated=False)),
+        replace(history, belief=replace(history.belief, spread=Spread(0.3))),
+        replace(history, first_morning=TracedPairs.of(history.grid, another)),
+    ]  # fmt: skip
+    names = [_causes(one, day) for one in causes]
+    assert len({own, *names}) == len(names) + 1
+    for nothing in (treated(9), looked(9), looked(12), treated(20)):
+        assert _causes(nothing, day) == own
+
+
+def test_mornings_are_forgotten_from_the_day_on_that_changed(path):
+    season = Season(path)
+    season.status(BEGINS + timedelta(days=LAST))
+    mornings = Mornings(season.history)
+    for day in (3, 9, 16):
+        mornings.of(day)
+    after = mornings.after_change(season.history, 9)
+    assert after.last_until(LAST) == 9
+    assert {*after.known} == {day for day in mornings.known if day <= 9}
+    assert mornings.last_until(8) == max(day for day in mornings.known if day <= 8)

@@ -13,9 +13,11 @@ from datetime import timedelta
 from xml.etree import ElementTree as ET
 
 import pytest
+from pyproj import Transformer
 
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.qgis_project import _mercator
 from tests.monitoring.seasons import BEGINS, a_season
 
 INTERNAL = {"fieldmon", "settings", "import_findings", "arrays", "batches", "days", "plant_state"}
@@ -151,3 +153,11 @@ def test_qgis_opens_the_project_edits_and_saves_and_the_season_records_it(season
     read = read_inspections(counted, season.plot.grid).value
     assert read.plant.tolist() == [plant]
     assert sys.version_info >= (3, 11)
+
+
+@pytest.mark.parametrize("box", [(35.1, 30.3, 35.2, 30.4), (-70.5, -33.75, -70.0, -33.0),
+                                 (-179.9, 59.0, -179.0, 84.0)])  # fmt: skip
+def test_the_view_is_the_box_in_metres_of_web_maps(box):
+    there = Transformer.from_crs(4326, 3857, always_xy=True)
+    wanted = [*there.transform(*box[:2]), *there.transform(*box[2:])]
+    assert _mercator(box) == pytest.approx(wanted, abs=1e-3)

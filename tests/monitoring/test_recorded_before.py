@@ -5,7 +5,9 @@ import pytest
 
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring.recorded_before import contradictions, said_before
+from fieldmon.monitoring.recorded_before import contradicting, contradictions, said_before
+from fieldmon.plot.grid import row_label
+from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS, a_season
 
 DAY, NEXT = np.datetime64("2026-04-06"), np.datetime64("2026-04-07")
@@ -87,3 +89,61 @@ def test_a_route_filled_in_after_its_stops_were_tapped_counts_once(season):
     assert said_before(results((3, FOUND), (3, CLEAN), (9, FOUND)), taps).tolist() == [
         True, False, False
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_each_result_is_held_to_all_that_is_recorded_of_its_plant_and_day(seed):
+    """The rules read out, one result after another."""
+    rng = np.random.default_rng(seed)
+
+    def some(n):
+        days = np.sort(rng.integers(0, 2, n)) + np.datetime64("2026-04-06")
+        noted = {
+            name: np.where(rng.random(n) < 0.5, np.nan, value)
+            for name, value in (("second", 30.0), ("count", 2.0))
+        }
+        return Inspections.of(rng.integers(0, 4, n), rng.integers(0, 3, n), days, **noted)
+
+    held = some(rng.integers(0, 9))
+    brought = some(rng.integers(0, 9))
+    if rng.random() < 0.5:  # as of two copies of a season
+        brought = held.take(slice(0, rng.integers(0, len(held) + 1))).and_those(brought)
+
+    def told(inspections):
+        columns = (inspections.plant, inspections.date, inspections.result)
+        return list(zip(*(column.tolist() for column in columns), strict=True))
+
+    of_key = {}
+    for plant, day, result in told(held):
+        of_key.setdefault((plant, day), []).append(result)
+    wanted = []
+    for k, (plant, day, result) in enumerate(told(brought)):
+        before = [*told(held), *told(brought)[:k]]
+        seen = {r for p, d, r in before if (p, d) == (plant, day) and r != SKIPPED}
+        if result != SKIPPED and seen and result not in seen:
+            wanted.append((k, plant, day, min(seen), result))
+    said = contradictions(brought, held)
+    columns = (said.which, said.plant, said.date, said.recorded, said.brought)
+    assert list(zip(*(column.tolist() for column in columns), strict=True)) == wanted
+    assert len(said) == len(wanted)
+    bare = np.isnan(brought.second) & np.isnan(brought.count)
+    known = [result in of_key.get((plant, day), ()) for plant, day, result in told(brought)]
+    assert said_before(brought, held).tolist() == (bare & np.array(known, bool)).tolist()
+    both = [
+        one for one in told(held)
+        if one[2] != SKIPPED and {CLEAN, FOUND} <= set(of_key[one[:2]])
+    ]  # fmt: skip
+    assert told(contradicting(held)) == sorted(both, key=lambda one: one[0])
+
+
+@pytest.mark.parametrize("n", [1, 5, 6])
+def test_the_first_five_contradictions_are_named_and_more_are_counted(n):
+    label = row_label(rectangle(1, 9))
+    held = Inspections.of(np.arange(9), np.full(9, CLEAN), np.datetime64("2026-04-06"))
+    brought = Inspections.of(np.arange(n), np.full(n, FOUND), np.datetime64("2026-04-06"))
+    with pytest.raises(ContradictionError) as told:
+        contradictions(brought, held).refuse(label)
+    assert f"but {n} of them contradict it" in str(told.value)
+    named = [f"Row 1, plant {k + 1} on 2026-04-06: recorded as clean, now found." for k in range(n)]
+    assert [one in str(told.value) for one in named] == [k < 5 for k in range(n)]
+    assert (" ... " in str(told.value)) == (n > 5)

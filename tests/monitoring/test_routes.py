@@ -3,10 +3,13 @@
 from datetime import datetime, time, timedelta
 
 import numpy as np
+import pyogrio
 import pytest
+import shapely
 
 from fieldmon.monitoring import Season, routes
-from tests.monitoring.seasons import BEGINS, some_results
+from fieldmon.planning.members import TeamMember
+from tests.monitoring.seasons import BEGINS, ROBOT, a_season, some_results
 
 
 @pytest.fixture
@@ -73,3 +76,47 @@ def test_a_route_has_the_digest_that_season_files_hold(season):
     assert np.array_equal(season.plan(BEGINS + timedelta(days=1)).route.plant, today.route.plant)
     assert rows(season, "SELECT digest FROM routes WHERE day = 1") == [again]
     assert len(again[0]) == 24
+
+
+def test_each_field_of_a_kept_route_and_of_its_stops_is_what_the_route_says(season):
+    season.plan(BEGINS)
+    today = season.plan(BEGINS)
+    route, grid, label = today.route, season.plot.grid, season.label
+    kept = season.path.with_name("read.gpkg")
+    season.store.back_up(kept)
+    frame = pyogrio.read_dataframe(kept, layer="routes").set_index("revision").loc[2]
+    begin = routes.begins(season.settings, today)
+    assert frame.drop("geometry").to_dict() == {
+        "day": 0, "date": frame["date"], "sampler": season.settings.sampler,
+        "starts": begin.isoformat(), "seconds": route.end_s, "drive_m": route.drive_m,
+        "stops": len(route), "expected": route.expected_finds, "at_plant": today.scene.at,
+        "seconds_left": today.scene.seconds_left, "digest": frame["digest"], "who": "",
+    }  # fmt: skip
+    assert str(frame["date"])[:10] == str(BEGINS)
+    assert shapely.get_coordinates(frame["geometry"]) == pytest.approx(route.line_lonlat())
+    assert today.scene.at >= 0
+    assert today.scene.seconds_left < season.settings.robot.day_s
+    stops = pyogrio.read_dataframe(kept, layer="stops")
+    stops = stops[stops["route"] == 2]
+    plants = route.plant
+    assert stops.get_coordinates().to_numpy() == pytest.approx(grid.lonlat()[plants])
+    for name, values in (
+        ("stop", range(1, len(route) + 1)), ("plant", plants), ("line", label.line[plants]),
+        ("number", label.number[plants]), ("arrive_s", route.arrive_s), ("chance", route.chance),
+    ):  # fmt: skip
+        assert stops[name].tolist() == list(values), name
+    clock = [(begin + timedelta(seconds=round(s))).isoformat() for s in route.arrive_s.tolist()]
+    assert stops["arrive"].tolist() == clock
+
+
+def test_the_route_of_one_of_a_team_begins_when_that_one_does(tmp_path):
+    team = (TeamMember("Ann", ROBOT), TeamMember("Ben", ROBOT, None, 1800.0))
+    season = a_season(tmp_path / "team.gpkg", team=team)
+    days = season.plan_each(BEGINS)
+    starts = dict(rows(season, "SELECT who, starts FROM routes"))
+    assert starts == {"Ann": "2026-04-06T06:00:00", "Ben": "2026-04-06T06:30:00"}
+    for today, name in zip(days, ("Ann", "Ben"), strict=True):
+        assert season.kept_route(BEGINS, name).tolist() == today.route.plant.tolist()
+        with season.store.reading() as db:
+            assert routes.is_kept(db, today, name)
+            assert not routes.is_kept(db, today, "")

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.errors import FileProblem, SettingError
+from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.transactions import Store
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
@@ -163,3 +165,32 @@ def test_what_a_season_answers_is_of_one_moment_others_may_write_between_two(
     monkeypatch.setattr(Store, "reading", lambda self: moments.append(self) or reading(self))
     asked(season, BEGINS)
     assert len(moments) == 1
+
+
+@pytest.mark.parametrize("wrong", [
+    {"plot": "vineyard.kml"}, {"plot": None}, {"observations": [(35.15, 30.36)]},
+    {"settings": {"begins": BEGINS}}, {"settings": None, "colour": "green"},
+    {"settings": None, "begins": "tomorrow"},
+])  # fmt: skip
+def test_what_is_no_plot_no_records_or_no_settings_is_refused_and_nothing_is_written(
+    tmp_path, wrong
+):
+    given = {"plot": a_plot(), "observations": None, "settings": MonitoringSettings(BEGINS)}
+    with pytest.raises(FieldmonError):
+        Season.create(tmp_path / "season.gpkg", **(given | wrong))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_season_begins_today_on_the_plot_without_records_unless_told_otherwise(tmp_path):
+    plot = a_plot()
+    before = local_clock(plot.field).today()
+    season = Season.create(tmp_path / "a.gpkg", plot, sampler="naive")
+    assert season.settings.begins in (before, local_clock(plot.field).today())
+    assert season.settings.sampler == "naive"
+    other = Season.create(tmp_path / "b.gpkg", plot, Observations.none(), season.settings)
+    today = season.settings.begins
+    assert np.array_equal(season.morning(today), other.morning(today))
+    risk = np.full(len(plot.grid), 0.3)
+    risky = Season.create(tmp_path / "c.gpkg", plot, settings=season.settings, risk=risk)
+    assert (risky.morning(today) > season.morning(today)).all()
+    assert np.array_equal(Season(risky.path).morning(today), risky.morning(today))

@@ -234,3 +234,18 @@ def test_a_copy_that_is_brought_back_is_taken_as_it_is(path, tmp_path):
     shutil.copy(copy, path)
     season.record(three_results(1), "again")
     assert [one.kind for one in season.log()] == ["begins", "planned", "seen", "seen"]
+
+
+def test_a_log_is_told_line_by_line_and_how_many_entries_it_has(path):
+    said = Season(path).log()
+    told = list(season_log.lines(said))
+    assert len(told) == len(said) + 1
+    for line, one in zip(told, said, strict=False):
+        assert line.split()[:3] == [str(one.number), one.at[:16], one.kind]
+        assert line.endswith(f"{one.who or '-':12}  {one.sentence()}")
+    assert told[-1] == (
+        f"{len(said)} entries, the chain holds; the last digest is {said[-1].digest}"
+    )
+    (_, alone) = season_log.lines(said[:1])
+    assert alone.startswith("1 entry, the chain")
+    assert list(season_log.lines(())) == []

@@ -1,14 +1,22 @@
 """A treatment lowers chances where it was, and is undone like findings."""
 
+from dataclasses import replace
+from datetime import time
+
 import numpy as np
+import pandas as pd
+import pyogrio
 import pytest
+import shapely
+from pyproj import Geod
 from shapely import MultiPolygon, box
 
+from fieldmon.decisions.doses import Dose
+from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import SettingError
-from tests.monitoring.seasons import (
-    BEGINS,
-    some_results,
-)
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.monitoring import Application
+from tests.monitoring.seasons import BEGINS, on, some_results
 
 
 def test_a_spraying_lowers_the_chance_where_it_was(season):
@@ -53,3 +61,122 @@ def test_numbers_of_plants_are_not_taken_for_which_were_treated(season):
     season.treat(BEGINS, 0.5, plants=np.isin(np.arange(n), [1, 2, 3]))
     (treated,) = season.treatments()
     assert np.flatnonzero(treated.place.plants).tolist() == [1, 2, 3]
+
+
+LABEL = ProductLabel(
+    "Acarol", waiting_days=7, reentry_hours=12.0, irac_groups=("6", "28"), max_uses=1
+)
+SAID = Application(
+    "acarol", Dose(0.5, "l/ha"), 400.0, "Ann", "mites on 3 %", began=time(22, 30),
+    ended=time(1, 15), machinery="knapsack", crop="vine", pest="mite", authorised_by="Dr Bo",
+    active_ingredient="abc", weather="2 m/s",
+)  # fmt: skip
+
+
+def read(season, layer="treatments"):
+    """Return what a GIS reads of a layer, row by row, without what is empty."""
+    frame = pyogrio.read_dataframe(season.path, layer=layer)
+    return [
+        {k: v for k, v in row.items() if not (np.isscalar(v) and pd.isna(v)) and v is not None}
+        for row in frame.to_dict("records")
+    ]
+
+
+def geodesic_ha(shape):
+    area_m2, _ = Geod(ellps="WGS84").geometry_area_perimeter(shapely.orient_polygons(shape))
+    return area_m2 / 1e4
+
+
+def test_each_field_of_a_treatment_is_read_by_a_gis_as_it_was_said(season):
+    season.keep_labels([LABEL])
+    area = MultiPolygon([box(35.14, 30.3602, 35.1504, 30.3605)])
+    made = season.treat(on(2), 0.75, area, application=SAID)
+    assert (made.new, made.known) == (1, 0)
+    (row,) = read(season)
+    assert row.pop("geometry").equals(area)
+    within = shapely.intersection(area, season.plot.field.boundary)
+    assert row.pop("area_ha") == pytest.approx(geodesic_ha(within), rel=1e-3)
+    assert str(row.pop("date"))[:10] == "2026-04-08"
+    inside = shapely.contains_xy(area, season.plot.grid.lonlat())
+    assert len(row.pop("digest")) == 24
+    assert row == {
+        "day": 2, "efficacy": 0.75, "product": "acarol", "plants": inside.sum(), "undone": 0,
+        "batch": made.batch, "dose": 0.5, "unit": "l/ha", "water_l_ha": 400.0,
+        "operator": "Ann", "reason": "mites on 3 %", "waiting_days": 7, "reentry_hours": 12.0,
+        "irac_groups": "6+28", "began": "2026-04-08T22:30:00+03:00",
+        "ended": "2026-04-09T01:15:00+03:00", "zone": "Asia/Jerusalem", "machinery": "knapsack",
+        "crop": "vine", "pest": "mite", "authorised_by": "Dr Bo", "active_ingredient": "abc",
+        "weather": "2 m/s",
+    }  # fmt: skip
+    (kept,) = season.treatments()
+    assert kept.application == replace(
+        SAID, waiting_days=7, reentry_hours=12.0, irac_groups=("6", "28")
+    )
+    assert kept.place.plants.tolist() == inside.tolist()
+    assert (kept.day, kept.on, kept.efficacy, kept.number) == (2, on(2), 0.75, 1)
+    assert kept.place.area_ha == pytest.approx(geodesic_ha(within), rel=1e-3)
+    assert not kept.place.by_plant
+    entry = season.log()[-1]
+    assert (entry.kind, entry.who) == ("treated", "Ann")
+    assert entry.what["batch"] == made.batch
+    assert (entry.what["date"], entry.what["efficacy"]) == ("2026-04-08", 0.75)
+    assert f"acarol 0.5 l/ha on {kept.place.area_ha:.3g} ha, {inside.sum()} plants" in str(
+        entry.sentence()
+    )
+    again = season.treat(on(2), 0.75, area, application=SAID)
+    assert (again.batch, again.new, again.known) == (None, 0, 1)
+    assert season.log()[-1] == entry
+    assert len(season.batches()) == 1
+
+
+def test_plants_treated_one_by_one_are_these_and_their_ground_is_the_outline(season):
+    grid = season.plot.grid
+    plants = np.zeros(len(grid), bool)
+    plants[[3, 4, 40]] = True
+    with pytest.raises(SettingError, match="of an area or of plants"):
+        season.treat(BEGINS, 0.5, season.plot.field.boundary, plants=plants)
+    with pytest.raises(SettingError, match=f"each of the {len(grid)} plants, but it is of 5"):
+        season.treat(BEGINS, 0.5, plants=plants[:5])
+    with pytest.raises(SettingError, match="holds none"):
+        season.treat(BEGINS, 0.5, plants=plants & False)
+    assert season.batches() == ()
+    season.treat(BEGINS, 0.5, plants=plants)
+    (kept,) = season.treatments()
+    assert kept.place.by_plant
+    assert np.flatnonzero(kept.place.plants).tolist() == [3, 4, 40]
+    assert kept.place.area_ha == pytest.approx(geodesic_ha(kept.place.area), rel=1e-3, abs=1e-4)
+    assert shapely.contains_xy(kept.place.area, grid.lonlat()[plants]).all()
+
+
+def test_how_well_a_product_works_is_what_the_season_learnt_where_nobody_says(season):
+    plants = np.arange(60)
+    for day, result in ((0, FOUND), (4, CLEAN)):
+        season.record(Inspections.of(plants, np.full(60, result), np.datetime64(on(day))))
+        if day == 0:
+            with pytest.raises(SettingError, match="after a treatment with soap"):
+                season.treat(on(2), product="soap")
+            season.treat(on(2), 0.6, product="soap")
+    (told,) = season.effects(on(4))
+    assert told.cured_of == 60
+    assert season.effects(on(1)) == ()
+    season.treat(on(5), product="Soap")
+    assert season.treatments()[-1].efficacy == pytest.approx(told.efficacy)
+    assert told.efficacy > 0.85
+    with pytest.raises(SettingError, match="a product that nobody named"):
+        season.treat(on(5))
+
+
+def test_cautions_and_harvest_are_of_treatments_up_to_the_day(season):
+    season.change(replace(season.settings, harvest=on(12)), season.settings)
+    assert season.keep_labels([LABEL], "table.csv", "Bo") == 1
+    assert season.labels() == (LABEL,)
+    for day in (2, 6):
+        season.treat(on(day), 0.9, application=Application("Acarol", ended=time(9)))
+    assert [one.kind for one in season.cautions(on(1))] == []
+    assert season.harvest_from(on(1)) is None
+    assert {one.kind for one in season.cautions(on(2))} == {"entry"}
+    assert {one.kind for one in season.cautions(on(6))} == {"harvest", "entry", "uses"}
+    first, one = season.harvest_from(on(5))
+    assert (first, one.day) == (on(10), 2)
+    first, one = season.harvest_from(on(6))
+    assert (first, one.day) == (on(14), 6)

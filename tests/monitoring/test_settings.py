@@ -13,8 +13,15 @@ from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.history import BeliefSettings
-from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.monitoring.settings import (
+    MonitoringSettings,
+    as_json,
+    from_json,
+    seconds,
+    settings_from,
+)
 from fieldmon.pests.weather import DAY_S, HOUR_S, weather_of
+from fieldmon.planning.members import TeamMember, Teamwork
 from fieldmon.plot.robot import Robot, Viewpoints
 
 BEGINS = date(2026, 4, 6)
@@ -128,3 +135,56 @@ def test_more_weather_than_a_season_can_carry_is_refused():
 def test_what_is_no_date_is_refused_in_a_sentence(on):
     with pytest.raises(SettingError, match="A day of a season must be a date"):
         MonitoringSettings(date(2026, 4, 6)).day(on)
+
+
+places = st.none() | st.tuples(st.floats(-180.0, 180.0), st.floats(-85.0, 85.0))
+robots = st.builds(
+    Robot,
+    speed_m_s=st.floats(0.1, 5.0),
+    row_change_s=st.floats(0.0, 90.0),
+    turn_180_s=st.floats(0.0, 90.0),
+    stop_s=st.floats(0.0, 9.0),
+    look_s=st.floats(1.0, 99.0),
+    hours=st.floats(0.1, 24.0),
+    viewpoints=st.sampled_from([Viewpoints(), Viewpoints(((20.0, 0.5), (60.0, 0.9)))]),
+    detection=st.none() | st.floats(0.1, 1.0),
+    returns=st.booleans(),
+    width_m=st.just(1.0),
+    length_m=st.none() | st.floats(1.0, 3.0),
+)
+
+
+@given(
+    st.lists(st.tuples(robots, places, st.floats(0.0, 80_000.0)), max_size=3),
+    st.builds(
+        Teamwork, st.booleans(), st.floats(0.0, 999.0), st.floats(0.0, 9.0), st.floats(0.0, 9.0)
+    ),
+    robots,
+    st.none() | st.dates(BEGINS, date(2027, 1, 1)),
+    st.tuples(st.sampled_from(["", "he"]), st.booleans()),
+)
+def test_a_team_a_harvest_and_a_language_come_back_too(members, teamwork, robot, harvest, others):
+    language, traces = others
+    settings = MonitoringSettings(
+        BEGINS,
+        robot=robot,
+        team=tuple(TeamMember(f"robot {k}", *one) for k, one in enumerate(members)),
+        teamwork=teamwork if members else Teamwork(),
+        harvest=harvest,
+        language=language,
+        belief=BeliefSettings(traces=traces),
+    )
+    assert from_json(as_json(settings)) == settings
+
+
+def test_a_season_has_its_days_from_the_first_to_the_last_and_a_harvest_among_them():
+    settings = MonitoringSettings(BEGINS)
+    assert [settings.day(settings.date(day)) for day in (0, 800)] == [0, 800]
+    MonitoringSettings(BEGINS, harvest=BEGINS)
+    with pytest.raises(SettingError, match="Harvest must not be before"):
+        MonitoringSettings(BEGINS, harvest=date(2026, 4, 5))
+    assert settings_from({"begins": "2026-04-06", "harvest": "2026-05-01", "seed": 3}) == (
+        MonitoringSettings(BEGINS, harvest=date(2026, 5, 1), seed=3)
+    )
+    with pytest.raises(SettingError, match="A season's settings"):
+        settings_from({"begins": BEGINS, "colour": "green"})

@@ -3,19 +3,23 @@
 from dataclasses import fields, replace
 
 import numpy as np
+import pyogrio
 import pytest
+import shapely
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from pyproj import Geod
 from shapely import MultiLineString, MultiPolygon, box
 
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import Remedy, guessed, seen
-from fieldmon.monitoring import tables
+from fieldmon.monitoring import Season, tables
 from fieldmon.monitoring.tables import KeptMessage
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
+from fieldmon.plot.grid import row_label
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from tests.monitoring.seasons import a_plot
@@ -141,3 +145,71 @@ def test_what_imports_had_to_say_is_kept_with_its_source_and_its_way_out(db):
         "mites.csv", "guessed", "row 3", "Dates could be either.", "date_order=mdy"
     )
     assert kept[1].remedy is None
+
+
+def test_a_gis_sees_boundary_places_rows_and_plants_where_and_as_many_as_they_are(tmp_path):
+    field = replace(full_field(), plants=None)
+    plot = Plot.of(field, Planting(row_bearing_deg=12.5, row_spacing_m=4.0))
+    season = Season.create(tmp_path / "season.gpkg", plot, begins="2026-04-06")
+    read = {name: pyogrio.read_dataframe(season.path, layer=name) for name in
+            ("plots", "places", "rows", "plants")}  # fmt: skip
+    (boundary,) = read["plots"].to_dict("records")
+    assert boundary.pop("geometry").equals(field.boundary)
+    area_m2, _ = Geod(ellps="WGS84").geometry_area_perimeter(
+        shapely.orient_polygons(field.boundary)
+    )
+    assert boundary.pop("area_ha") == pytest.approx(area_m2 / 1e4, rel=1e-4, abs=1e-4)
+    assert boundary == {"name": field.name, "plants": len(plot.grid)}
+    places = dict(zip(read["places"]["kind"], read["places"].geometry, strict=True))
+    assert places.keys() == {"no-go", "path", "row line", "gate"} & places.keys()
+    assert (places["gate"].x, places["gate"].y) == field.gate
+    for kind, shape in (("no-go", field.no_go), ("path", field.paths),
+                        ("row line", field.row_lines)):  # fmt: skip
+        assert (kind in places) == (not shape.is_empty)
+        assert kind not in places or places[kind].equals(shape)
+    label = row_label(plot.grid)
+    plants = read["plants"]
+    assert plants["plant"].tolist() == list(range(len(plot.grid)))
+    assert plants["line"].tolist() == label.line.tolist()
+    assert plants["number"].tolist() == label.number.tolist()
+    assert plants.get_coordinates().to_numpy() == pytest.approx(plot.grid.lonlat())
+    rows = read["rows"]
+    of_row = np.bincount(plot.grid.row)
+    assert rows["plants"].tolist() == of_row.tolist()
+    lines = plot.grid.row_line + 1
+    assert rows["line"].tolist() == lines.tolist()
+    for row, shape in enumerate(rows.geometry):
+        own = shapely.points(plants.get_coordinates().to_numpy()[plot.grid.row == row])
+        assert shapely.distance(shape, own).max() < 1e-7
+    with season.store.reading() as db:
+        extents = db.execute(
+            "SELECT table_name, min_x, min_y, max_x, max_y FROM gpkg_contents "
+            "WHERE table_name IN ('plots', 'plants', 'rows', 'chance')"
+        ).fetchall()
+    for name, *box_of in extents:
+        shapes = field.boundary if name == "plots" else plants.geometry
+        assert box_of == pytest.approx(shapely.total_bounds(shapes))
+
+
+@pytest.mark.parametrize("missing", range(1, 6))
+def test_a_record_comes_back_with_whatever_of_it_is_known(db, missing):
+    rng = np.random.default_rng(missing)
+    n = 6
+    known = {
+        name: np.where(rng.random(n) < 0.5, np.nan, rng.random(n))
+        for name in ("count", "accuracy_m", "leaves_sampled")
+    }
+    days = np.where(rng.random(n) < 0.5, np.datetime64("NaT", "D"), np.datetime64("2026-03-01"))
+    made = Observations.of(
+        rng.random((n, 2)), rng.integers(-1, 2, n).astype(np.int8), days,
+        species=np.array(["", "mite", "", "x", "y", "z"]),
+        stage=np.array(["egg", "", "", "x", "y", "z"]), **known,
+    )  # fmt: skip
+    tables.write_observations(db, made)
+    again = tables.read_observations(db)
+    for each in fields(made):
+        np.testing.assert_array_equal(getattr(again, each.name), getattr(made, each.name))
+    (extent,) = db.execute(
+        "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'observations'"
+    ).fetchall()
+    assert list(extent) == [*made.lonlat.min(axis=0), *made.lonlat.max(axis=0)]

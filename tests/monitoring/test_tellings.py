@@ -8,7 +8,7 @@ import pyogrio
 import pytest
 
 from fieldmon.errors import AccessError, LimitError
-from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
 from fieldmon.monitoring import Season, scouts, tellings
 from fieldmon.monitoring.tellings import take
 from tests.monitoring.seasons import BEGINS, state
@@ -156,3 +156,63 @@ def test_a_gis_sees_where_a_phone_stood_and_nothing_where_it_did_not_know(season
     points = pyogrio.read_dataframe(season.path, layer="tellings").geometry
     seen = [None if one is None else (one.x, one.y) for one in points]
     assert seen == [at[plant] for plant in sorted(at)]
+
+
+def test_each_field_of_a_telling_is_read_by_a_gis_as_it_was_told(season, key):
+    told = [
+        a_telling(3, FOUND, count=7.0, stage="eggs", leaves=12.0, accuracy_m=4.5, off_route=True,
+                  notes="underside", lonlat=(35.15, 30.36)),
+        a_telling(4, CLEAN, count=2.0),
+        a_telling(5, SKIPPED),
+        a_telling(9999, FOUND),
+    ]  # fmt: skip
+    told.append(a_telling(None, None, undoes=told[1].id))
+    sent = NOW + timedelta(seconds=30)
+    take(season, key, told, sent)
+    table = pyogrio.read_dataframe(season.path, layer="tellings").astype(object)
+    rows = table.where(table.notna(), None).set_index("id")
+    assert rows.index.tolist() == [one.id for one in told]
+    inspections = pyogrio.read_dataframe(season.path, layer="inspections", fid_as_index=True)
+    for one in told:
+        row = rows.loc[one.id]
+        assert (row["scout"], row["undoes"] or "") == ("Ann", one.undoes)
+        assert (row["stage"] or "", row["leaves"]) == (one.stage, one.leaves)
+        assert (row["accuracy_m"], bool(row["off_route"])) == (one.accuracy_m, one.off_route)
+        assert (row["at_phone"], row["sent_phone"]) == (one.at.isoformat(), sent.isoformat())
+        assert row["content"] == one.content()
+        if one.plant in (3, 4, 5):
+            kept = inspections.loc[int(row["inspection"])]
+            assert (kept["plant"], kept["result"]) == (one.plant, RESULT_NAMES[one.result])
+            assert (kept["who"], kept["notes"] or "") == ("Ann", one.notes)
+            assert kept["count"] == 7.0 if one.plant == 3 else np.isnan(kept["count"])
+            assert kept["undone"] == (one.plant == 4)
+            assert row["problem"] is None
+        else:
+            assert row["inspection"] is None
+    assert "A plant's number must be" in rows.loc[told[3].id]["problem"]
+    (batch,) = [one for one in season.batches() if one.source == "phone"]
+    assert (batch.rows, batch.who) == (3, "Ann")
+
+
+def test_a_day_later_as_much_may_be_told_again_but_not_a_moment_sooner(season, key, monkeypatch):
+    monkeypatch.setattr(tellings, "MOST_A_DAY", 2)
+    clock = [NOW]
+    monkeypatch.setattr(tellings, "utc_now", lambda: clock[0])
+    take(season, key, [a_telling(0), a_telling(1)], NOW)
+    clock[0] = NOW + timedelta(hours=24, seconds=-1)
+    with pytest.raises(LimitError, match="but this makes 3"):
+        take(season, key, [a_telling(2)], clock[0])
+    clock[0] = NOW + timedelta(hours=24, seconds=1)
+    take(season, key, [a_telling(2), a_telling(3)], clock[0])
+    assert len(told(season)[0]) == 4
+
+
+@pytest.mark.parametrize(("fast_s", "shifted"), [(119.0, False), (121.0, True), (-121.0, True)])
+def test_a_clock_is_put_right_if_it_is_two_minutes_wrong_and_else_believed(
+    season, key, monkeypatch, fast_s, shifted
+):
+    monkeypatch.setattr(tellings, "utc_now", lambda: NOW)
+    fast = timedelta(seconds=fast_s)
+    take(season, key, [a_telling(0, at=NOW + fast)], NOW + fast)
+    second = season.history.inspections.second
+    assert second[~np.isnan(second)].tolist() == [9 * 3600.0 + (0.0 if shifted else fast_s)]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import integrate, stats
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.applications import Application
@@ -128,3 +129,101 @@ def test_it_is_said_in_words():
     )
     assert "Elsewhere 100 % (1 of 1" in said
     assert date(2026, 4, 9) == BEGINS + timedelta(3)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_who_is_compared_is_told_by_asking_each_plant_alone(seed):
+    """The rule read out, plant by plant: the last look before, the first after, none between."""
+    rng = np.random.default_rng(seed)
+    plants = np.arange(12)
+    treatments = [
+        treated(
+            int(day), np.isin(np.arange(len(GRID)), rng.permutation(plants)[:7]), product=str(k)
+        )
+        for k, day in enumerate(sorted(rng.integers(0, 40, 5)))
+    ]
+    treatments.append(treated(treatments[2].day, np.arange(len(GRID)) == 3))
+    days = sorted(rng.integers(0, 64, 30).tolist())
+    looks = [(day, rng.permutation(plants)[:5], rng.integers(0, 3, 5)) for day in days]
+    on = int(rng.integers(20, 64))
+    told = effect(history(*looks), treatments, on)
+    assert len(told) == sum(one.day <= on for one in treatments)
+    for one, said in zip([t for t in treatments if t.day <= on], told, strict=True):
+        rows = {"here": [], "elsewhere": []}
+        for plant in plants:
+            others = [t.day for t in treatments if t is not one and t.place.plants[plant]]
+            seen = [
+                (day, result)
+                for day, some, results in looks
+                for p, result in zip(some.tolist(), results.tolist(), strict=True)
+                if p == plant and result != SKIPPED
+            ]
+            before = [
+                result for day, result in seen
+                if one.day - 21 <= day <= one.day
+                and not any(day <= other < one.day for other in others)
+            ]  # fmt: skip
+            after = [
+                result for day, result in seen
+                if one.day < day <= min(one.day + 21, on)
+                and not any(one.day < other < day for other in others)
+            ]  # fmt: skip
+            if not before or not after:
+                continue
+            if one.place.plants[plant]:
+                rows["here"].append((before[-1], after[0]))
+            elif one.day not in others:
+                rows["elsewhere"].append((before[-1], after[0]))
+        pairs = [
+            tuple(
+                FoundShare(sum(row[k] == FOUND for row in rows[of]), len(rows[of])) for k in (0, 1)
+            )
+            for of in ("here", "elsewhere")
+        ]
+        assert ((said.before, said.after), said.elsewhere) == (pairs[0], pairs[1])
+        assert said.cured_of == said.before.found
+
+
+@pytest.mark.parametrize(("said", "still", "n"), [(0.8, 0, 3), (0.6, 4, 9), (0.95, 12, 20)])
+@pytest.mark.parametrize("detection", [1.0, 0.84, 0.5])
+def test_what_is_learnt_is_the_integral_over_how_well_it_may_work(said, still, n, detection):
+    plants = list(range(n))
+    past = history(
+        (1, plants, [FOUND] * n), (5, plants, [FOUND] * still + [CLEAN] * (n - still)),
+        detection=detection,
+    )  # fmt: skip
+    (one,) = effect(past, [treated(3, said=said)])
+    prior = stats.beta(PRIOR_PLANTS * said, PRIOR_PLANTS * (1 - said))
+
+    def weight(works):
+        return prior.pdf(works) * stats.binom.pmf(still, n, (1 - works) * detection)
+
+    def integral(of, to=1.0):
+        return integrate.quad(of, 0.0, to, limit=200)[0]
+
+    whole = integral(weight)
+    assert one.efficacy == pytest.approx(integral(lambda x: x * weight(x)) / whole, abs=3e-3)
+    for end, share in ((one.low, 0.05), (one.high, 0.95)):
+        assert integral(weight, end) / whole == pytest.approx(share, abs=0.01)
+
+
+def test_only_the_last_effect_of_a_product_that_a_plant_tells_of_is_learnt():
+    past = history((1, [0, 1], [FOUND] * 2), (5, [0, 1], [FOUND] * 2), (8, [1], [FOUND]),
+                   (11, [1], [CLEAN]))  # fmt: skip
+    days = {3: "soap", 6: "Soap", 9: "oil", 12: "soap"}
+    told = effect(past, [treated(day, product=name) for day, name in days.items()])
+    assert [one.cured_of for one in told] == [2, 1, 1, 0]
+    assert learnt_efficacy(told, "SOAP") is told[1]
+    assert learnt_efficacy(told, "oil") is told[2]
+    assert learnt_efficacy(told, "") is None
+    assert learnt_efficacy(effect(past, [treated(3, product="")]), "") is None
+
+
+def test_a_place_where_nothing_was_found_before_says_that_it_is_not_known_how_well_it_works():
+    past = history((1, [0, 1], [CLEAN] * 2), (5, [0, 1], [CLEAN] * 2))
+    said = effect(past, [treated(3, product="")])[0].sentence()
+    assert said.startswith("After a product that nobody named on 2026-04-09: of 2 plants")
+    assert said.endswith("None of those found infested before was inspected again: how well it "
+                         "works is not known yet.")  # fmt: skip
+    assert "Elsewhere" not in said
+    assert np.isnan(FoundShare(0, 0).share)

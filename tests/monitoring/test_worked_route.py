@@ -6,10 +6,11 @@ import pytest
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import worked_route
 from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.worked_route import day_was_worked
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, driven_s
-from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.seasons import BEGINS, a_season, on
 
 PLANTS = np.array([90, 5, 40])
 
@@ -61,3 +62,19 @@ def test_of_a_team_each_ones_clock_begins_when_it_starts(tmp_path):
 def test_a_day_of_which_nothing_was_recorded_has_no_route(tmp_path):
     season, _ = worked(tmp_path, [25_200.0] * 3)
     assert len(worked_route(season, BEGINS.replace(day=BEGINS.day + 1))) == 0
+
+
+def test_a_day_is_over_when_nothing_is_left_or_a_later_one_was_worked_and_never_before_it_began(
+    tmp_path,
+):
+    season, _ = worked(tmp_path, [21_700.0, 21_660.0, 21_800.0])
+    ahead, nothing = season.plan(BEGINS, keep=False).route, worked_route(season, on(3))
+    assert (len(ahead) > 0, len(nothing)) == (True, 0)
+    assert day_was_worked(season, BEGINS, nothing)
+    assert not day_was_worked(season, BEGINS, ahead)
+    assert not day_was_worked(season, on(1), nothing)
+    season.record(Inspections.of(PLANTS, np.ones(3, np.int8), np.datetime64(on(2))), "later")
+    assert day_was_worked(season, BEGINS, ahead)
+    assert not day_was_worked(season, on(1), ahead)
+    assert not day_was_worked(season, on(2), ahead)
+    assert day_was_worked(season, on(2), nothing)

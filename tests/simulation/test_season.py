@@ -10,8 +10,9 @@ from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
-from fieldmon.plot.travel import Aisles
+from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import NEVER
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
@@ -191,3 +192,38 @@ def test_plants_visited_on_the_first_day_are_visited():
         seen[day.work.plant] = True
         assert day.ever_visited_pct == pytest.approx(100 * seen.mean())
     assert days[0].ever_visited_pct == days[0].visited_pct > 0
+
+
+class _Watched:
+    """A sampler that notes the scene in which each day begins."""
+
+    def __init__(self, name):
+        self.own, self.scenes = sampler(name), []
+
+    def __getattr__(self, name):
+        return getattr(self.own, name)
+
+    def walk(self, scene, would_find):
+        self.scenes.append(scene)
+        return self.own.walk(scene, would_find)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize(("name", "hours"), [("naive", 1.0), ("dynamic", 1.0), ("naive", 0.004)])
+def test_each_morning_begins_with_what_the_days_before_it_left(name, hours, returns):
+    watched, robot = _Watched(name), Robot(hours=hours, returns=returns)
+    settings = SeasonSettings(n_days=4, spread=Spread(0.2))
+    days = list(simulated_days(AISLES, robot, watched, start(), settings, RandomStreams(3)))
+    keys = RandomStreams(3).keys("sampler")
+    trail, last = [], np.full(N, NEVER)
+    for number, (scene, day, key) in enumerate(zip(watched.scenes, days, keys, strict=False)):
+        assert (scene.day, day.number, scene.key) == (number, number, key)
+        assert scene.trail.tolist() == trail
+        assert scene.at == (trail[-1] if trail and not returns else GATE)
+        assert scene.seconds_left == robot.day_s
+        assert scene.last_inspected.tolist() == last.tolist()
+        trail = day.work.plant.tolist() or trail
+        last[day.work.plant] = number
+        assert day.last_inspected.tolist() == last.tolist()
+    assert len(watched.scenes) == len(days) == 4
+    assert bool(trail) == (hours > 0.01)

@@ -1,7 +1,9 @@
 """Days to hand off, for the tests of every format."""
 
+from dataclasses import replace
 from datetime import datetime
 from functools import cache
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import shapely
@@ -11,9 +13,12 @@ from fieldmon.io.writers import HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
+from fieldmon.plot.block_cutting import blocks_from_outline
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
 from fieldmon.samplers import sampler
 from tests.scenes import scene_on
 
@@ -58,6 +63,38 @@ def crooked():
     there = shapely.transform(shape, lambda xy: np.array([34.99, 29.95]) + xy / METRES)
     field = Field("L", MultiPolygon([there]))
     return day(lay(field, Planting(faces=2, plant_spacing_m=2.0)), hours=1.75)
+
+
+@cache
+def in_blocks():
+    """Return a day on a plot of two blocks, each with rows of its own."""
+    shape = Polygon([(0, 0), (60, 0), (60, 15), (15, 15), (15, 70), (0, 70)])
+    there = shapely.transform(shape, lambda xy: np.array([8.0, 47.0]) + xy / (76_000, 111_200))
+    field = Field("L", MultiPolygon([there]))
+    whole = replace(field, blocks=blocks_from_outline(field))
+    return day(lay(whole, Planting(row_spacing_m=3.0, plant_spacing_m=1.5)), hours=3.0)
+
+
+@cache
+def among_trees():
+    """Return a day among trees that stand in no rows."""
+    places = np.random.default_rng(0).permutation(np.indices((7, 7)).reshape(2, -1).T)[:40] * 6.0
+    places += np.random.default_rng(1).uniform(-1.5, 1.5, places.shape)
+    return day(Plot.among("park", Frame(8.0, 47.0).lonlat(places)).grid)
+
+
+@cache
+def of_team():
+    """Return the day of one of a team, with a time zone and what no other route can exceed."""
+    plan = day(rectangle(6, 9), start=START.replace(tzinfo=ZoneInfo("Asia/Kathmandu")))
+    route = replace(plan.route, found_bound=plan.route.expected_found + 0.123456)
+    return HandoffPlan(route, replace(plan.notes, who="Дана & =1"))
+
+
+@cache
+def without_start():
+    """Return a day of which nobody said when it begins."""
+    return day(rectangle(4, 6), start=None)
 
 
 DAYS = {"usual": usual, "long": long, "empty": empty, "crooked": crooked}

@@ -107,7 +107,7 @@ def test_pieces_of_a_line_are_short_and_each_begins_where_the_last_one_ended(n, 
 def test_degrees_have_as_many_decimals_as_mean_anything():
     stop = usual().stops[3]
     assert round(stop.lon, DECIMALS) == stop.lon
-    assert 111_320 * 10.0**-DECIMALS < 0.002
+    assert 0.001 < 111_320 * 10.0**-DECIMALS < 0.002  # a millimetre, and nothing below it
 
 
 def test_a_block_is_written_where_there_are_several(plan, tmp_path):

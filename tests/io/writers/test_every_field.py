@@ -8,12 +8,24 @@ from datetime import timedelta
 from xml.etree import ElementTree as ET
 
 import numpy as np
+import pandas as pd
 import pyogrio
 import pytest
 import yaml
 
 from fieldmon.io.writers import write_handoff
-from tests.io.writers.handed import START, crooked, long, usual
+from fieldmon.plot.grid import row_label
+from tests.io.writers.handed import (
+    START,
+    among_trees,
+    crooked,
+    in_blocks,
+    long,
+    of_team,
+    usual,
+    without_start,
+)
+from tests.pages import Page
 
 KML = "{http://www.opengis.net/kml/2.2}"
 GPX = "{http://www.topografix.com/GPX/1/1}"
@@ -162,3 +174,126 @@ def test_the_line_of_a_geojson_says_when_the_robot_is_where(tmp_path):
     assert figures["start"] == START.isoformat()
     ends = START + timedelta(seconds=round(figures["seconds"]))
     assert figures["end"] == ends.isoformat()
+
+
+# --- whatever the plot, the start and whoever drives ----------------------------------------------
+
+
+def said_of(plan):
+    """Return all that a format of a table says of each stop, by name: these fields and no more."""
+    route, grid, notes = plan.route, plan.grid, plan.notes
+    told = {name: values for name, values in wanted(plan).items() if name not in ("number", "face")}
+    told["number"] = [int(row_label(grid, np.array([p])).number[0]) for p in route.plant]
+    told["arrive"] = [
+        "" if notes.start is None else (notes.start + timedelta(seconds=round(s))).isoformat()
+        for s in route.arrive_s.tolist()
+    ]
+    if not grid.in_rows:
+        del told["row"]
+    if grid.block is not None:
+        told["block"] = (grid.block[grid.row[route.plant]] + 1).tolist()
+    if (grid.twin >= 0).any():
+        told["face"] = np.where(route.plant < grid.twin[route.plant], 1, 2).tolist()
+    return told | {name: [""] * len(route) for name in ("found", "count", "notes")} | {
+        "who": [notes.who or ""] * len(route)
+    }  # fmt: skip
+
+
+#: what each has besides, and what it does not say
+ODD = {
+    "route.csv": ({"plot"}, set()),
+    "route.geojson": ({"kind", "order", "line_vertex"}, {"face"}),
+    "route.gpkg": ({"time"}, set()),
+    "route.shp.zip": (set(), set()),
+    "route.kml": (set(), set()),
+}
+
+
+@pytest.mark.parametrize("make", [in_blocks, among_trees, of_team, without_start, crooked])
+@pytest.mark.parametrize("name", ODD)
+def test_a_format_of_a_table_says_what_there_is_to_say_and_no_more(tmp_path, name, make):
+    plan = make()
+    (path,) = write_handoff(plan, tmp_path / name)
+    (tmp_path / "read").mkdir()
+    told = FORMATS[name][0](path.read_bytes(), tmp_path / "read")
+    more, less = ODD[name]
+    said = {one: values for one, values in said_of(plan).items() if one not in less}
+    if name == "route.geojson" and plan.notes.start is None:
+        del said["arrive"]
+    assert set(told) == set(said) | more
+    for field, values in said.items():
+        read = ["" if pd.isna(one) else one for one in told[field]]
+        if field in ("found", "count", "notes"):
+            assert set(read) == {""}, field
+        elif field == "who":
+            assert [str(one).removeprefix("'") for one in read] == values
+        elif field == "arrive":
+            assert read == values
+        else:
+            np.testing.assert_allclose(np.array(read, float), values, atol=1e-7, rtol=0)
+
+
+@pytest.mark.parametrize("make", [in_blocks, among_trees, of_team, without_start])
+def test_the_sheet_and_waypoints_have_rows_where_there_are_rows(tmp_path, make):
+    plan = make()
+    sheet, *_ = write_handoff(plan, tmp_path / "sheet.html")
+    ((heads, *rows),) = Page(sheet.read_text("utf-8")).tables
+    assert ("row" in heads) == plan.grid.in_rows
+    assert {len(row) for row in rows} == {len(heads)}
+    (points,) = write_handoff(plan, tmp_path / "day.waypoints.yaml")
+    for point in yaml.safe_load(points.read_text("utf-8"))["waypoints"].values():
+        assert ("row" in point) == plan.grid.in_rows
+
+
+@pytest.mark.parametrize("make", [usual, of_team, without_start])
+def test_the_line_says_the_figures_of_the_day_and_its_bound_where_it_is_known(tmp_path, make):
+    plan = make()
+    route, notes = plan.route, plan.notes
+    (geojson,) = write_handoff(plan, tmp_path / "route.geojson")
+    said = json.loads(geojson.read_text("utf-8"))["features"][0]["properties"]
+    pause_s = float((route.leave_s - route.arrive_s).sum())
+    figures = {
+        "kind": "route", "plot": notes.plot, "sampler": notes.sampler, "stops": len(route.plant),
+        "seconds": round(route.end_s, 3), "drive_m": round(route.drive_m, 3),
+        "inspect_s": round(pause_s, 3), "infested_expected": round(float(route.chance.sum()), 3),
+    }  # fmt: skip
+    if notes.who:
+        figures["who"] = notes.who
+    if notes.start:
+        ends = notes.start + timedelta(seconds=round(route.end_s))
+        figures |= {"start": notes.start.isoformat(), "end": ends.isoformat()}
+    if route.found_bound is not None:
+        figures["finds_expected"] = round(float((route.chance * route.detects).sum()), 3)
+        figures["bound"] = route.bound_sentence
+        assert route.found_bound <= said.pop("finds_bound") < route.found_bound + 0.001
+    assert said.pop("vertex_s") == route.line_s.round(3).tolist()
+    assert said == figures
+    (gpkg,) = write_handoff(plan, tmp_path / "route.gpkg")
+    (line,) = (
+        pyogrio.read_dataframe(gpkg, layer="route").drop(columns="geometry").to_dict("records")
+    )
+    shared = ("plot", "sampler", "stops", "seconds", "drive_m", "bound")
+    assert line == {name: figures[name] for name in shared if name in figures} | {
+        "start": figures.get("start", "")
+    }
+    told = f"{len(route)} stops, {route.drive_m:.0f} m"
+    more = f". {route.bound_sentence}" if route.bound_sentence else ""
+    for name, where, expected in (
+        ("route.kml", f"{KML}Document/{KML}description", f"{told}{more}"),
+        ("route.gpx", f"{GPX}metadata/{GPX}desc", f"{told}, {route.end_s:.0f} s{more}"),
+    ):
+        (path,) = write_handoff(plan, tmp_path / name)
+        assert ET.parse(path).getroot().findtext(where) == expected  # noqa: S314 - written above
+    assert plan.title == " ".join(
+        part for part in (notes.plot, notes.start and f"{notes.start:%Y-%m-%d}", notes.who) if part
+    )
+
+
+def test_without_a_start_gpx_says_seconds_and_kml_no_time(tmp_path):
+    plan = without_start()
+    (gpx,), (kml,) = (write_handoff(plan, tmp_path / f"route.{end}") for end in ("gpx", "kml"))
+    points = ET.parse(gpx).getroot().findall(f"{GPX}wpt")  # noqa: S314 - written above
+    for point, arrive_s in zip(points, plan.route.arrive_s.tolist(), strict=True):
+        assert f"; after {arrive_s:.0f} s; " in point.findtext(f"{GPX}desc")
+        assert (point.findtext(f"{GPX}sym"), point.findtext(f"{GPX}type")) == ("Flag, Blue", "stop")
+    assert "TimeStamp" not in kml.read_text("utf-8")

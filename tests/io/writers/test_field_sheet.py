@@ -1,13 +1,15 @@
 """The field sheet for paper: every plant in order with its boxes, a map true to scale."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fieldmon.io.writers import write_handoff
-from fieldmon.io.writers.field_sheet import _scale_bar
+from fieldmon.io.writers.field_sheet import _map_of, _marks, _row_numbers, _scale_bar
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from tests.io.writers.handed import DAYS, START, crooked, day, long, usual
 from tests.pages import HOSTILE, Page, held
 
@@ -202,3 +204,34 @@ def test_each_stop_is_drawn_on_the_page(tmp_path, plan):
     circles = [(float(c["cx"]), float(c["cy"])) for c in sheet.all("circle")]
     assert len(circles) == len(plan.stops)
     assert all(0.0 <= x <= wide and 0.0 <= y <= high for x, y in circles)
+
+
+@pytest.mark.parametrize("rows", [1, 12, 40, 70, 100, 170, 400, 900])
+@pytest.mark.parametrize("faces", [1, 2])
+def test_row_numbers_are_round_and_as_many_as_have_room(rows, faces):
+    plan = SimpleNamespace(grid=rectangle(rows, 3, Planting(faces=faces)))
+    plan.route = SimpleNamespace(line_m=plan.grid.xy_m[:1])
+    placed, size = _map_of(plan)
+    words = re.findall(r'x="([\d.]+)" y="([\d.]+)"[^>]*>(\d+)<', str(_row_numbers(plan, placed)))
+    at = {int(number): np.array([float(x), float(y)]) for x, y, number in words}
+    lines, first = np.unique(plan.grid.row_line, return_index=True)
+    starts = placed(plan.grid.xy_m[plan.grid.row_start[first]])
+    gap_mm = np.hypot(*(starts[1] - starts[0])) if rows > 1 else np.inf
+    # the least round step at which two numbers stand two and a half millimetres apart
+    step = next(k for k in (1, 2, 5, 10, 20, 50, 100) if k * gap_mm >= 2.5)
+    assert sorted(at) == [k for k in lines + 1 if k == 1 or k % step == 0]
+    for number, place in at.items():
+        beside = np.hypot(*(starts - place).T).argmin()
+        assert lines[beside] + 1 == number
+        assert (place >= 0.0).all()
+        assert (place <= size).all()
+
+
+@pytest.mark.parametrize("hours", [0.6, 1.2, 3.0, 9.0])
+def test_numbers_of_stops_are_round_and_sixty_at_most(hours):
+    plan = day(rectangle(16, 30), hours=hours, by="naive")
+    placed, _ = _map_of(plan)
+    n = len(plan.stops)
+    said = [int(k) for k in re.findall(r">(\d+)</text>", str(_marks(plan, placed)))]
+    step = next(k for k in (1, 5, 10, 20, 50, 100) if n / k <= 60)
+    assert said == [k for k in range(1, n + 1) if k == 1 or k % step == 0]

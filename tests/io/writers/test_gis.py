@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pyogrio
+import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.io.options import Upload
@@ -98,6 +99,19 @@ def test_stops_of_a_geopackage_carry_their_order_and_a_list_to_choose_findings_f
     assert read.result.tolist() == [FOUND, CLEAN, SKIPPED]
 
 
+def test_in_the_form_of_a_stop_only_what_is_filled_in_stands_beside_what_names_it(tmp_path):
+    """Numbers that nobody needs in the field, and may not change, are hidden."""
+    (path,) = write_handoff(crooked(), tmp_path / "route.gpkg")
+    form = ET.fromstring(styles_of(path)["stops"]).find("fieldConfiguration")  # noqa: S314 - ours
+    widgets = {one.get("name"): one.find("editWidget").get("type") for one in form}
+    columns = set(pyogrio.read_info(path, layer="stops")["fields"])
+    hidden = {name for name, kind in widgets.items() if kind == "Hidden"}
+    assert hidden == {"plant", "arrive_s", "inspect_s", "chance"}
+    assert widgets.keys() - hidden == {"found", "count"}
+    assert hidden < columns
+    assert {"who", "notes", "time", "stop", "row", "number", "face"} <= columns - hidden
+
+
 # --- zipped shapefile --------------------------------------------------------------------------
 
 
@@ -142,8 +156,9 @@ def dbf_fields(table):
     return names, [field[16] for field in fields]
 
 
-def test_a_long_name_is_cut_between_letters(tmp_path):
-    plan = day(rectangle(3, 4), plot="חלקה " * 60)
+@pytest.mark.parametrize("first", ["", "a"])  # a letter that ends at an odd byte, or an even one
+def test_a_long_name_is_cut_between_letters(tmp_path, first):
+    plan = day(rectangle(3, 4), plot=first + "חלקה " * 30 + "ח" * 60)
     (path,) = write_handoff(plan, tmp_path / "route.zip")
     name = pyogrio.read_dataframe(f"zip://{path}!route.shp")["plot"][0]
     assert len(name.encode()) > 240

@@ -273,6 +273,7 @@ def test_pauses_are_operations_only_where_they_are_asked_for(tmp_path):
 
 
 def test_a_day_of_more_nodes_and_edges_than_feedback_can_name_is_refused(monkeypatch):
+    assert np.iinfo(np.uint16).max == nav2._MOST_IDS  # as nav2_msgs/Route numbers edges
     graph = graph_of(usual())
     monkeypatch.setattr(nav2, "_MOST_IDS", len(graph.xy_m) + len(graph.pair))
     graph_of(usual())

@@ -5,6 +5,7 @@ import pytest
 import rasterio
 import shapely
 import shapely.affinity
+from pyproj import Geod
 from rasterio.io import MemoryFile
 from shapely import MultiPolygon
 
@@ -64,3 +65,59 @@ def test_the_narrowest_of_a_rectangle_is_half_its_shorter_side_however_it_lies(
 
 def test_a_cell_larger_than_the_plot_is_the_only_one():
     assert zone_cells(PLOT, ZONES, 10_000.0).sprayed.shape == (1, 1)
+
+
+def scattered(seed):
+    """Return a plot of two pieces, and zones in it and beyond its rim."""
+    rng = np.random.default_rng(seed)
+    at = rng.uniform([-60.0, -60.0], [60.0, 60.0])
+    lon, lat = rng.uniform(-179, 179), rng.uniform(-65, 65)
+    degrees = 111_320.0 * np.array([np.cos(np.radians(lat)), 1.0])
+
+    def there(*boxes):
+        turned = [shapely.affinity.rotate(shapely.box(*one), rng.uniform(0, 90)) for one in boxes]
+        return MultiPolygon([*shapely.transform(turned, lambda xy: xy / degrees + [lon, lat])])
+
+    plot = there((-70, -40, -20, 30), (10, -30, 60, 30))
+    zones = [there((at[0], at[1], at[0] + 25, at[1] + 9)), there((40, 35, 90, 45))]
+    return plot, zones
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_cells_cover_all_and_each_is_sprayed_where_its_middle_lies_in_a_zone(seed):
+    plot, zones = scattered(seed)
+    cells = zone_cells(plot, zones, 4.0)
+    rows, columns = cells.sprayed.shape
+    west, south, east, north = shapely.total_bounds([plot, *zones])
+    assert (cells.west, cells.south) == (west, south)
+    # as far as the last cell that holds anything
+    assert 0.0 <= cells.west + columns * cells.east_size - east < cells.east_size
+    assert 0.0 <= cells.south + rows * cells.north_size - north < cells.north_size
+    earth = Geod(ellps="WGS84")
+    wide_m, high_m = (
+        earth.inv(west, south, west + step[0], south + step[1])[2]
+        for step in ((cells.east_size, 0.0), (0.0, cells.north_size))
+    )
+    assert (wide_m, high_m) == pytest.approx((4.0, 4.0), rel=0.01)
+    for r, c in np.ndindex(rows, columns):
+        lon, lat = west + (c + 0.5) * cells.east_size, south + (r + 0.5) * cells.north_size
+        middle = shapely.Point(lon, lat)
+        in_zone = any(zone.contains(middle) for zone in zones)
+        assert cells.sprayed[r, c] == in_zone
+        assert cells.within[r, c] == (in_zone or plot.contains(middle))
+    assert repr(cells) == f"<ZoneCells: {rows} x {columns}, {cells.sprayed.sum()} sprayed>"
+
+
+def test_each_pixel_of_the_picture_is_its_cell_north_up():
+    plot, zones = scattered(1)
+    cells = zone_cells(plot, zones, 6.0)
+    with MemoryFile(rates_geotiff(cells, 90.0)) as memory, memory.open() as tif:
+        picture, shape = tif.read(1), tif.shape
+        assert (tif.dtypes, shape) == (("float32",), cells.sprayed.shape)
+        for r, c in np.ndindex(shape):
+            said = 90.0 if cells.sprayed[r, c] else 0.0 if cells.within[r, c] else NODATA
+            lon = cells.west + (c + 0.5) * cells.east_size
+            lat = cells.south + (r + 0.5) * cells.north_size
+            assert tif.index(lon, lat) == (shape[0] - 1 - r, c)
+            assert picture[shape[0] - 1 - r, c] == said
+    assert {90.0, 0.0, NODATA} == set(np.unique(picture).tolist())

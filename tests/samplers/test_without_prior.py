@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
 
-from fieldmon.errors import SettingError
+from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.workday import plan_work
-from fieldmon.plot.layout import rectangle
+from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import travel_s
@@ -18,7 +19,9 @@ from fieldmon.samplers.without_prior import (
     RandomShare,
     Snake,
     SnakeRandom,
+    _face_to_face,
 )
+from tests.crooked import crooked_fields
 from tests.scenes import charged_s, scene_on
 
 # the thesis's vineyard in small: 4 vine rows, outer faces not inspected, so 6 sides of 8 plants
@@ -259,3 +262,26 @@ def test_the_share_drawn_is_one_nth_and_ends_with_the_plot():
         last[work.plant[:1]] = scene.day
         later = replace(scene, last_inspected=last, at=int(work.plant[0]), trail=work.plant[:1])
         assert plan_work(later, RandomShare(every)).plant.tolist() == work.plant[1:].tolist()
+
+
+@given(field=crooked_fields())
+def test_a_station_is_who_faces_one_place_of_an_aisle_and_aisles_go_up_and_down_in_turn(field):
+    try:
+        grid = lay(field, Planting(faces=2))
+    except PlotError:
+        return
+    lanes = np.unique(np.round(grid.lane_y_m, 3)).tolist()
+    stations = {}
+    for plant in np.argsort(grid.side[grid.row], kind="stable").tolist():
+        row = grid.row[plant]
+        aisle = lanes.index(round(float(grid.lane_y_m[row]), 3))
+        way = -1 if aisle % 2 else 1
+        nth = np.floor((grid.along_m[plant] - grid.along_m.min()) / grid.plant_spacing_m + 0.5)
+        begins_m = grid.lane_x_m[grid.corridor == grid.corridor[row], 0].min()
+        at = aisle, way * begins_m, grid.corridor[row], way * nth
+        stations.setdefault(at, []).append(plant)
+    told = [stations[at] for at in sorted(stations)]
+    found = _face_to_face(grid)
+    parts = np.split(found.plant, found.start[1:-1])
+    assert [sorted(one.tolist()) for one in parts] == [sorted(one) for one in told]
+    assert found.of[found.plant].tolist() == np.repeat(range(len(told)), [*map(len, told)]).tolist()

@@ -16,7 +16,7 @@ from fieldmon.infestation.clustering import (
 )
 from fieldmon.infestation.pairs import Neighbourhood, PairApproximation
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.tracing import rescale_traced
+from fieldmon.infestation.tracing import Traces, rescale_traced
 from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
@@ -340,19 +340,21 @@ def believed_of(belief):
 
 
 @pytest.mark.parametrize("finds", [2.0, 2.8, 3.2, 4.5])
-def test_finds_beyond_what_was_expected_raise_the_odds_of_all_plants_alike(finds):
+@pytest.mark.parametrize("before", [1.0, 1.3])
+def test_finds_beyond_what_was_expected_raise_the_odds_of_all_plants_alike(finds, before):
     _, (belief, rows, *_) = traced_work(3)
     belief.clusters.finds[:] = 3.0
-    belief.level[0], rows.stale[:] = finds, False
+    belief.level[:], rows.stale[:] = [finds, 3.0, before], False
     was, share = believed_of(belief), belief.scale[4]
     learn_clustering(SMALL.linked, belief, rows)
     told = was[0].copy(), was[1].copy()
-    if abs(finds / 3.0 - 1.0) < 0.1:
-        assert belief.level[2] == 1.0
+    ratio = finds / 3.0 / before
+    if abs(ratio - 1.0) < 0.1:
+        assert belief.level[2] == before
         assert not rows.stale.any()
         assert belief.scale[4] == share
     else:
-        times_odds_of_all(told, SMALL.linked, finds / 3.0, (np.empty(20), np.empty(20)))
+        times_odds_of_all(told, SMALL.linked, ratio, (np.empty(20), np.empty(20)))
         assert belief.level[2] == pytest.approx(finds / 3.0)
         assert rows.stale.all()
         assert (rows.most == -1.0).all()
@@ -361,7 +363,32 @@ def test_finds_beyond_what_was_expected_raise_the_odds_of_all_plants_alike(finds
     assert belief.pair_chance == pytest.approx(told[1])
 
 
-@pytest.mark.parametrize("evidence", [0.02, 0.2, 1.5, -1.5])
+def test_where_nothing_is_believed_of_jumps_only_pairs_are_learnt():
+    _, (belief, rows, *_) = traced_work(3)
+    belief = belief._replace(traces=Traces.none(len(SMALL)))
+    belief.level[0], belief.scale[4] = 9.0, 0.5
+    belief.clusters.evidence[3] += 3.0
+    was, before = believed_of(belief), belief.scale.copy()
+    belief.scale[2] = before[2] = 0.5
+    belief.clusters.finds[0] = 1.5
+    learn_clustering(SMALL.linked, belief, rows)
+    assert belief.level[2] == 1.0
+    assert belief.scale.tolist() == [0.5, *before[1:]]
+    scaled(was, SMALL.linked, (0.5, 0.5))
+    assert belief.chance.tolist() == was[0].tolist()
+    assert belief.pair_chance == pytest.approx(was[1])
+
+
+def test_trust_lies_between_what_few_infested_earn_and_what_came_true():
+    proved = np.array([400.0, -400.0, 160.0, 1200.0, 80.0, 0.0])
+    slope = trust(1e3, proved)  # where all are infested nothing else counts
+    for share in (0.05, 0.1, 0.2):
+        few = trust(share, no_inspections())
+        assert few == pytest.approx(1.0 / (1.0 + (share / 0.1) ** 4), abs=1e-3)
+        assert trust(share, proved) == pytest.approx(few + (1.0 - few) * slope)
+
+
+@pytest.mark.parametrize("evidence", [0.02, 0.07, 0.2, 1.5, -1.5])
 def test_evidence_of_jumps_scales_what_jumps_brought_and_what_goes_together(evidence):
     _, (belief, rows, *_) = traced_work(3)
     belief.clusters.evidence[3] += evidence

@@ -69,3 +69,10 @@ def test_on_a_first_day_it_is_wide_for_nothing_is_known_of_the_level():
 def test_no_chance_is_no_interval():
     with pytest.raises(SettingError, match="'sure' must be a chance between 0 and 1"):
         level_range(CHANCE, 0.4, sure=1.0)
+
+
+def test_however_few_there_may_be_what_is_certain_is_and_the_others_keep_a_thousandth():
+    chance = np.concatenate([np.ones(30), np.full(10, 0.02)])
+    low, _ = level_range(chance, 5.0).of(chance)
+    assert (low[:30] == 1.0).all()
+    assert low[30:] == pytest.approx(2e-5, rel=1e-3)

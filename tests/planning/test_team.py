@@ -262,3 +262,20 @@ def test_routes_are_looked_for_where_the_others_are_not_and_never_get_worse():
     assert _of(tasks[0], shared[0], there) == pytest.approx(value)
     untaken = search._untaken(shared, 1)
     assert np.flatnonzero(~untaken).tolist() == sorted(shared[0].tolist())
+
+
+def test_where_two_would_meet_the_poorer_looks_elsewhere_and_the_other_stays():
+    plot = plot_of(6, 10)
+    tasks = two_tasks(plot, 0.3)
+    search = _Search(plot, tasks, lambda *_: None)
+    value = tasks[0].value
+    by_row = np.argsort([value[plot.grid.row == row].sum() for row in range(6)])
+    here = np.flatnonzero(plot.grid.row == by_row[-1])
+    both = here[np.argsort(value[here])[::-1]]  # the best plants of one row, and the others
+    known = [np.sort(both[:4]), np.sort(both[4:8])]
+    assert meetings([day.route for day in search.turned(known)], np.zeros(2))
+    rich, poor = search.apart(known)
+    assert rich.tolist() == known[0].tolist()
+    assert not set(poor.tolist()) & set(here.tolist())
+    assert len(poor) > 0
+    assert meetings([day.route for day in search.turned([rich, poor])], np.zeros(2)) == []

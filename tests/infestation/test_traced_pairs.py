@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.infestation.belief import Learning, bounded_pair_chance
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.chance_bounds import bounded_pair_chance
 from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.origins import (
     ANYWHERE,

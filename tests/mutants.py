@@ -334,7 +334,7 @@ class Nearest:
 
 def copied_tree(folder):
     """Copy the tree; what was compiled in an older copy is kept."""
-    tree, left_out = folder / "tree", [".git", "node_modules", "_build"]
+    tree, left_out = folder / "tree", [".git", ".venv", "node_modules", "_build"]
     left_out += ["*.nbi", "*.nbc"] if tree.exists() else []
     shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(*left_out), dirs_exist_ok=True)
     shared = folder / "shared"

@@ -1,6 +1,7 @@
 """All small faults of some functions, tried at once: loops as plain Python, in this very process.
 
     python tests/mutants_plain.py
+    python tests/mutants_plain.py planning/meetings samplers/decide
 
 For functions that have an oracle of their own (`HELD`), on tiny plots: nothing is compiled, so a
 mutant takes milliseconds. `tests/mutants.py` draws from all the others.
@@ -10,8 +11,11 @@ import ast
 import importlib
 import itertools
 import os
+import signal
 import sys
+import warnings
 from pathlib import Path
+from types import FunctionType
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"
 ROOT = Path(__file__).resolve().parents[1]
@@ -22,7 +26,9 @@ import pytest  # noqa: E402
 from tests.mutants import mutant_function, mutants_of, mutated  # noqa: E402
 from tests.mutants_warm import changed_functions, code_of, fault, functions_within  # noqa: E402
 
-#: a module, the functions that are changed, and which tests of its file are to notice it
+# seconds of work after which a fault counts as noticed: a loop without an end
+_MOST_S = 20.0
+#: a module, the functions that are changed, and how tests of its file begin that are to notice
 HELD = (
     ("planning/meetings", ("meetings", "_presences", "_with_stops", "_joined"), "test_"),
     ("io/writers/chance_raster", ("_paint",), "test_each_pixel"),
@@ -30,7 +36,30 @@ HELD = (
     ("planning/routes/binned", ("_sweep",), "test_the_sweep"),
     ("planning/routes/blocks", ("blockings",), "test_two_aisles"),
     ("samplers/adaptive/tours", ("measure_ways",), "test_the_ways_measured"),
-)
+    ("samplers/adaptive/day", ("_value_finds", "_next_in", "_best_left", "_least_s", "_fits"),
+     ("test_a_find_is_worth", "test_the_next", "test_what_is_left", "test_no_plant_of_a_row")),
+    ("samplers/adaptive/day",
+     ("_inspect", "_learn", "_trace", "_learn_clustering", "_learn_level", "_learn_jumps"),
+     ("test_an_inspection", "test_finds_beyond", "test_evidence", "test_pairs", "test_where_noth")),
+    ("samplers/decide", ("_walk", "_choose", "_weigh", "_drive_rows", "_turn"), "test_every_look"),
+    ("samplers/sweeps", ("_walk", "_first", "_place"), "test_every_stop"),
+    ("samplers/without_prior", ("_walk", "_next_here", "_turned", "_sweep"), "test_every_stop"),
+    ("infestation/latency", ("likely", "nights", "hides", "hidden", "inspected", "_said",
+                             "overnight", "treated"),
+     ("test_candidates", "test_a_day_s", "test_what_results", "test_each_cand", "test_however")),
+    ("infestation/tracing", ("trace", "_raise", "rescale_traced"),
+     ("test_each_plant", "test_what_jumps_brought_counts")),
+    ("infestation/traced_pairs", ("_count", "_share", "_share_traced", "_of_late", "times",
+                                  "counting", "_lowered", "without_arrivals", "_brought",
+                                  "_shares_after", "_overnight", "doubt"),
+     ("test_a_night_brings", "test_known_finds_keep", "test_the_number", "test_finds_are",
+      "test_what_a", "test_the_wind", "test_counts", "test_without", "test_what_was_found")),
+    ("planning/headlands", ("_nearest", "meet", "_width_m"), ("test_who_drive", "test_a_headland")),
+    ("planning/routes/priced", ("_once",), "test_one_pass"),
+    ("planning/routes/improve", ("_leave_out", "_detour_s", "_find_place", "_try_place", "_fill",
+                                 "_shorten", "_move", "_turn", "_same_aisle"),
+     ("test_no_stretch", "test_what_is")),
+)  # fmt: skip
 
 
 def calls_in(tests, begins):
@@ -51,14 +80,34 @@ def told_by(mark, one):
     return dict(zip(names, one, strict=True))
 
 
+class _EndlessError(Exception):
+    """A loop did not end."""
+
+
+def _stop(*_):
+    raise _EndlessError
+
+
 def is_noticed(calls):
-    """Tell whether any test fails."""
+    """Tell whether any test fails, or has no end."""
+    signal.setitimer(signal.ITIMER_VIRTUAL, _MOST_S)
     try:
         for test, values in calls:
             test(**values)
     except (Exception, pytest.fail.Exception):  # noqa: BLE001 - whatever it is, it was noticed
         return True
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
     return False
+
+
+def as_loops():
+    """Let functions that tests ask for as Python be themselves: none is compiled here."""
+    for name, module in [*sys.modules.items()]:
+        if name.startswith("fieldmon"):
+            for one in vars(module).values():
+                if isinstance(one, FunctionType):
+                    one.py_func = one
 
 
 def tried(path, functions, begins):
@@ -67,6 +116,7 @@ def tried(path, functions, begins):
     folder, _, name = dotted.rpartition(".")
     importlib.import_module(f"fieldmon.{dotted}")
     tests = importlib.import_module(f"tests.{folder}.test_{name}")
+    as_loops()
     calls, file = [*calls_in(tests, begins)], ROOT / "fieldmon" / f"{path}.py"
     assert not is_noticed(calls), f"the tests of {path} fail without a fault"
     source, standing = file.read_text("utf-8"), functions_within(file)
@@ -84,8 +134,11 @@ def tried(path, functions, begins):
 
 
 def main():
-    """Try all of them; say how many were noticed."""
-    for path, functions, begins in HELD:
+    """Try all of them, or those of the modules named; say how many were noticed."""
+    warnings.simplefilter("ignore")  # coins overflow, as they are meant to
+    signal.signal(signal.SIGVTALRM, _stop)
+    named = sys.argv[1:] or [path for path, *_ in HELD]
+    for path, functions, begins in (one for one in HELD if one[0] in named):
         n_noticed, n = tried(path, functions, begins)
         print(f"{path}: {n_noticed} of {n} noticed ({', '.join(functions)})", flush=True)  # noqa: T201
 

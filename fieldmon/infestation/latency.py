@@ -32,8 +32,8 @@ _PRIOR_FINDS = 5.0
 # finds of one colony share their fate, so each counts half; and nothing is settled for good: what
 # hides is not looked for, so that little speaks for it once it is taken to be unlikely
 _TEMPER, _SETTLED = 0.5, 2.5
-# no find is less likely than this; nothing hides where that is less likely
-_LEAST_SHOWN, _LEAST = 1e-4, 1e-3
+# no find is less likely than this; and no plant so many times as likely to be infested by news
+_LEAST_SHOWN, _MOST_NEWS = 1e-4, 1e3
 _NOTHING, _MOST = 1e-12, 0.9
 
 
@@ -89,12 +89,12 @@ class Latency:
     def hides(self) -> Floats:
         """Chance that what came so many nights ago is hidden, ``(NIGHTS,)``."""
         hides: Floats = self.likely @ _HIDES
-        return np.where(hides < _LEAST, 0.0, hides)
+        return hides
 
     @property
     def matters(self) -> bool:
-        """Tell whether anything may hide at all."""
-        return bool(self.hides.any() and self.came.any())
+        """Tell whether anything may hide at all: each of `HIDDEN_NIGHTS` stays possible."""
+        return bool(self.came.any())
 
     def hidden(self, chance: Floats, plants: NDArray[np.int32] | None = None) -> Floats:
         """Return the share of plants' chances ``(k,)`` that no inspection can see; None: of all."""
@@ -123,7 +123,7 @@ class Latency:
         """
         which = self.told[plants] > 0
         evidence = self.evidence + _TEMPER * self._said(plants[which], found[which], detects[which])
-        factor = np.minimum(news, 1.0 / _LEAST).astype(np.float32)
+        factor = np.minimum(news, _MOST_NEWS).astype(np.float32)
         factor[plants] = 1.0
         came = np.minimum(self.came * factor, np.float32(_MOST))
         shows = np.minimum(self.shows * factor, np.float32(_MOST))

@@ -164,7 +164,10 @@ def _face_to_face(grid: PlantGrid) -> Stations:
     corridor = grid.corridor[grid.row]
     place = np.floor((grid.along_m - grid.along_m.min()) / grid.plant_spacing_m + 0.5)
     up = np.where(aisle % 2 == 0, 1, -1)
-    order = np.lexsort((grid.side[grid.row], up * place, up * grid.lane_x_m[grid.row, 0], aisle))
+    # rows on both sides of an aisle may begin at different places
+    begin_m = np.full(grid.corridor.max() + 1, np.inf)
+    np.minimum.at(begin_m, grid.corridor, grid.lane_x_m[:, 0])
+    order = np.lexsort((grid.side[grid.row], up * place, up * begin_m[corridor], aisle))
     keys = np.stack([aisle[order], corridor[order], place[order]], axis=1)
     new = np.append(True, (np.diff(keys, axis=0) != 0).any(axis=1))
     start = np.append(np.flatnonzero(new), n).astype(np.int32)

@@ -6,9 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.infestation.clustering import (
+    _BESIDE,
+    _LIKELY,
+    CLUSTERING,
     ClusterEstimate,
+    chance_apart,
     clustering_scale,
+    kept_evidence,
     leaning,
+    learn_clustering,
     no_evidence,
     scale_clustering,
     update_clusters,
@@ -88,3 +94,71 @@ def test_finds_along_the_row_lean_neighbours_that_way_and_finds_across_the_other
     assert at_first == pytest.approx(0.5, abs=0.03)
     assert leaning.py_func(in_rows.evidence) > 0.8
     assert leaning.py_func(across.evidence) < 0.2
+
+
+def evidence_told(inspections, lean):
+    """Return half the logarithm of how likely all seen beside finds is, by each way to stand."""
+    known = {plant: (found, detects) for plant, found, detects in inspections}
+    fresh = 2 * CLUSTERING * np.array([lean, 1 - lean])
+    told = np.zeros(4)
+    for i, j, both in zip(OWN.tolist(), NEIGHBOUR.tolist(), MORNING.pair_chance, strict=True):
+        if i in known and j in known and known[i][0]:
+            found, detects = known[j]
+            across = int(GRID.row[i] != GRID.row[j])
+            p, q = MORNING.chance[i], MORNING.chance[j]
+            beyond_chance = min(max((both / p - q) / fresh[across], 0.0), 1.0)
+            finds = detects * (q + (1 - q) * _BESIDE[:, across] * beyond_chance)
+            told += 0.5 * np.log(finds if found else 1.0 - finds)
+    return told
+
+
+@given(some_inspections, st.sampled_from((0.3, 0.5, 0.8)))
+def test_evidence_is_how_likely_what_was_seen_beside_finds_is_by_each_way_to_stand(given_, lean):
+    clusters = ClusterEstimate.none(N, np.array([0.1, 0.0, 0.3, -0.2]), lean)
+    believed = MORNING.chance, MORNING.pair_chance
+    for one in given_:
+        update_clusters.py_func(believed, GRID.linked, one, clusters)
+    told = evidence_told(given_, lean)
+    assert clusters.evidence - [0.1, 0.0, 0.3, -0.2] == pytest.approx(told)
+
+
+@given(st.lists(st.floats(-6.0, 3.0), min_size=4, max_size=4).map(np.array))
+def test_ways_to_stand_are_weighed_by_bayes_rule(evidence):
+    likely = np.exp(_LIKELY + evidence)
+    likely /= likely.sum()
+    assert chance_apart.py_func(evidence) == pytest.approx(likely[3])
+    lean = likely @ (_BESIDE[:, 0] / _BESIDE.sum(axis=1))
+    assert leaning.py_func(evidence) == pytest.approx(lean)
+    kept = kept_evidence(evidence)
+    assert kept.max() == 0.0
+    near = evidence > evidence.max() - 6.0
+    assert kept[near] == pytest.approx((evidence - evidence.max())[near])
+    assert (kept >= -6.0).all()
+
+
+def test_ways_to_stand_at_first_are_chances_and_rows_are_the_mirror_of_columns():
+    assert np.exp(_LIKELY).sum() == pytest.approx(1.0)
+    assert _BESIDE[1].tolist() == _BESIDE[2, ::-1].tolist()
+    assert _BESIDE[[0, 3], 0].tolist() == _BESIDE[[0, 3], 1].tolist()
+
+
+@given(some_inspections, st.sampled_from((0.0, 0.4, 0.7)))
+def test_a_day_s_inspections_scale_pairs_by_all_of_them_together(inspections, lean):
+    plants, found, detects = (
+        (np.array(each) for each in zip(*inspections, strict=True))
+        if (inspections)
+        else (np.empty(0), np.empty(0), np.empty(0))
+    )
+    given_ = plants.astype(np.int32), found.astype(np.bool_), detects.astype(float)
+    clusters, told = (ClusterEstimate.none(N, None, lean or 0.5) for _ in "ab")
+    pair_chance, scaled = MORNING.pair_chance.copy(), MORNING.pair_chance.copy()
+    learn_clustering((MORNING.chance, pair_chance), GRID.linked, given_, clusters, lean)
+    for one in inspections:
+        update_clusters.py_func((MORNING.chance, MORNING.pair_chance), GRID.linked, one, told)
+    there, expected = told.finds
+    both_ways = min(max(there, 0.0) / max(expected, 3.0), 1.5)
+    now = leaning.py_func(told.evidence)
+    each = (now / lean, (1 - now) / (1 - lean)) if lean else (1.0, 1.0)
+    ratios = both_ways * each[0], both_ways * each[1]
+    scale_clustering.py_func((MORNING.chance, scaled), GRID.linked, ratios)
+    assert pair_chance == pytest.approx(scaled)

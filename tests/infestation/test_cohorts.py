@@ -63,3 +63,17 @@ def test_a_disease_ages_by_days():
     assert age.mobile(disease)
     assert not age.visible(disease)
     assert age.older(disease, (), 1.0).visible(disease)
+
+
+@pytest.mark.parametrize(
+    ("latency_days", "hidden_days"), [(3.0, 0.0), (0.0, 3.0), (2.0, 3.0), (0.0, 0.0)]
+)
+def test_what_a_night_brought_is_young_as_long_as_it_hides_or_stays(latency_days, hidden_days):
+    pest = Pest("disease", latency_days=latency_days, hidden_days=hidden_days)
+    cohorts, chance = Cohorts.none(pest, 1), np.array([0.2])
+    for night in range(5):
+        gain = np.array([0.1]) if night == 0 else np.zeros(1)
+        cohorts = cohorts.overnight(chance, gain, chance + gain, PestSpread(days=1.0))
+        chance = chance + gain
+        told = [1 / 3 if night < days else 0.0 for days in (hidden_days, latency_days)]
+        assert [cohorts.hidden[0], cohorts.still[0]] == pytest.approx(told, abs=1e-6)

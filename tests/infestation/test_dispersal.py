@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import poisson
 
-from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.infestation.cells import Cells
-from fieldmon.infestation.dispersal import Dispersal, ToAdjacent, settle
+from fieldmon.infestation.dispersal import Dispersal, ToAdjacent, _jumps, cells_of, settle
 from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.plot.layout import rectangle
 from tests.crooked import crooked_grids
@@ -124,3 +126,73 @@ def test_hours_have_coins_of_their_own():
     landed, key = np.full(2000, 0.5), RandomStreams(1).key("spread")
     first, second = (settle(np.zeros(2000, bool), landed, key, turn) for turn in (0, 1))
     assert 0.1 < (first & second).mean() < 0.22
+
+
+@given(st.integers(1, 9), st.integers(1, 9), st.integers(0, 1000))
+def test_a_cell_is_drawn_by_one_coin_as_often_as_its_share_says(across, along, seed):
+    """The alias table read back: what each entry keeps, and whose the rest of it is."""
+    a, b = 2 * across - 1, 2 * along - 1
+    shares = np.random.default_rng(seed).random((a, b)) ** 6
+    shares[0, 0] = 0.0
+    shares /= max(shares.sum(), 1e-9)
+    own, to, to_other = Dispersal(cells_of(rectangle(3, 3)), shares)._dealt
+    drawn = np.zeros((a, b))
+    for k, each in enumerate(own):
+        drawn[tuple(to[k] + [a // 2, b // 2])] += each / own.size
+        drawn[tuple(to_other[k] + [a // 2, b // 2])] += (1.0 - each) / own.size
+    assert ((own >= 0.0) & (own <= 1.0)).all()
+    if a * b > 1:
+        assert drawn == pytest.approx(shares, abs=1e-12)
+
+
+@pytest.mark.parametrize("mean", [0.05, 0.7, 4.0, 29.0, 30.0])
+def test_by_one_coin_a_number_is_drawn_as_poisson_s_chances_add_up(mean):
+    coins = (np.arange(400) + 0.5) / 400
+    drawn = [_jumps.py_func(coin, mean, np.exp(-mean), np.uint64(3)) for coin in coins]
+    assert drawn == poisson.ppf(coins, mean).tolist()
+
+
+@pytest.mark.parametrize("mean", [31.0, 75.0])
+def test_of_many_jumps_each_part_has_a_coin_of_its_own(mean):
+    keys = np.random.default_rng(1).integers(0, 2**62, 3000).astype(np.uint64)
+    first = np.random.default_rng(2).random(3000)
+    drawn = np.array([_jumps(coin, mean, np.exp(-30.0), key)
+                      for coin, key in zip(first, keys, strict=True)])  # fmt: skip
+    assert drawn.mean() == pytest.approx(mean, abs=4.5 * np.sqrt(mean / 3000))
+    assert drawn.var() == pytest.approx(mean, rel=0.15)
+    # the first thirty by the first coin, the rest by others
+    rest = drawn - poisson.ppf(first, 30.0)
+    assert rest.min() >= 0
+    assert rest.mean() == pytest.approx(mean - 30.0, abs=4.5 * np.sqrt(mean / 3000))
+
+
+def test_jumps_of_any_length_land_as_often_on_each_plant_and_the_others_by_the_kernel():
+    grid = rectangle(4, 5)
+    sent = np.linspace(0.0, 2.0, 20)
+    near = Dispersal.of(grid, DistanceKernel("exponential", 2.0))
+    far = Dispersal(near.cells, near.shares, 0.3)
+    assert far.landed(sent) == pytest.approx(0.7 * near.by_sum(sent) + 0.3 * sent.sum() / 20)
+    lone = Dispersal(near.cells, near.shares, 1.0)
+    assert lone.landed(sent) == pytest.approx(sent.mean())
+    found = np.array([lone.reached(np.array([0]), 0.5, np.uint64(key)) for key in range(3000)])
+    # a twentieth of a half each
+    chance = -np.expm1(-0.025)
+    assert found.mean(axis=0) == pytest.approx(chance, abs=4.5 * np.sqrt(chance / 3000))
+
+
+def test_a_kernel_reaches_a_plant_at_least_and_no_farther_than_the_plot():
+    short = DistanceKernel("exponential", 0.01)
+    wide = DistanceKernel("exponential", 500.0)
+    grid = rectangle(4, 7)
+    across, along = (int(side) for side in cells_of(grid).shape)
+    assert Dispersal.of(grid, short).shares.shape == (3, 3)
+    assert Dispersal.of(grid, wide).shares.shape == (2 * across - 1, 2 * along - 1)
+
+
+def test_a_plant_settled_is_one_that_was_or_on_which_its_own_coin_says_something_lands():
+    n, key = 500, RandomStreams(6).key("spread")
+    landed, infested = np.linspace(0.0, 3.0, n), np.arange(n) % 7 == 0
+    for turn in (0, 3):
+        coins = coin_table(key, (turn + 1) * n)[turn * n :]
+        wanted = infested | (coins < 1.0 - np.exp(-landed))
+        assert (settle(infested, landed, key, turn) == wanted).all()

@@ -1,5 +1,7 @@
 """For how many nights infestations hide, learnt from inspections of made-up seasons."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -101,3 +103,102 @@ def test_it_matters_once_anything_came_that_may_hide():
     came = np.where(EVERY == 7, 0.1, 0.0)
     assert (fresh.hides > 0).any()
     assert fresh.overnight(np.zeros(N), came).matters
+
+
+def known(seed, n=6, evidence=(0.0, -0.4, -1.1, -2.0)):
+    """Return some days into a season: what came in which night, and what shows."""
+    rng = np.random.default_rng(seed)
+    came = rng.uniform(0.0, 0.2, (NIGHTS, n)).astype(np.float32)
+    shows = rng.uniform(0.01, 0.5, (len(HIDDEN_NIGHTS), n)).astype(np.float32)
+    told = rng.integers(0, 3, n).astype(np.int8)
+    return Latency(came, shows, np.array(evidence), told)
+
+
+def test_candidates_are_weighed_by_bayes_rule_and_hide_what_came_within_their_nights():
+    first = np.array([0.85, 0.05, 0.065, 0.035])
+    assert first.sum() == pytest.approx(1.0)
+    latency = known(1)
+    likely = first * np.exp(latency.evidence)
+    likely /= likely.sum()
+    assert latency.likely == pytest.approx(likely)
+    assert latency.nights == pytest.approx(likely @ [0, 2, 4, 7])
+    for ago in range(NIGHTS):
+        hiding = sum(p for p, nights in zip(likely, (0, 2, 4, 7), strict=True) if ago < nights)
+        assert latency.hides[ago] == pytest.approx(hiding)
+    hidden = latency.hidden(np.full(6, 2.0))
+    assert hidden == pytest.approx(latency.hides @ latency.came / 2.0, rel=1e-5)
+    assert latency.hidden(np.full(6, 0.01)) == pytest.approx(0.9), "some of it can be seen"
+
+
+def likely_of(finds, found):
+    """Return how likely results are of plants with these shares of a rate that is not known.
+
+    Finds come by Poisson. The rate is taken to be 1, as if five finds had told so: a gamma
+    distribution, summed here over all rates.
+    """
+    rates = np.linspace(1e-3, 40.0, 40_000)
+    weight = rates**4 * np.exp(-5.0 * rates)
+    each = finds[found].prod() * rates ** np.count_nonzero(found) * np.exp(-rates * finds.sum())
+    return (weight * each).sum() / weight.sum()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_day_s_results_at_plants_that_seemed_clean_weigh_the_candidates_by_bayes_rule(seed):
+    rng, latency = np.random.default_rng(seed), known(seed)
+    plants = rng.permutation(6)[:5].astype(np.int32)
+    found, detects = rng.random(5) < 0.5, rng.uniform(0.5, 0.9, 5)
+    after = latency.inspected(plants, found, detects, np.ones(6))
+    told = latency.told[plants] > 0
+    shown = detects * latency.shows[:, plants]
+    said = np.log([likely_of(one[told], found[told]) for one in shown])
+    evidence = latency.evidence + 0.5 * said  # finds of one colony count half
+    evidence = np.maximum(evidence - evidence.max(), -2.5)
+    assert after.evidence == pytest.approx(evidence, abs=1e-3)
+    # the next night tells for seven more, of a plant that seemed clean
+    now = latency.told.copy()
+    now[plants] = np.where(found, 0, NIGHTS)
+    assert after.told.tolist() == now.tolist()
+    assert (
+        after.overnight(np.zeros(6), np.zeros(6)).told.tolist() == np.maximum(now - 1, 0).tolist()
+    )
+
+
+def test_what_results_say_of_others_raises_what_came_to_them_and_what_shows():
+    latency = known(2)
+    news = np.array([1.0, 2.0, 0.5, 9999.0, 1.5, 1.0])
+    plants, found = np.array([0, 4], np.int32), np.array([False, True])
+    after = latency.inspected(plants, found, np.full(2, 0.8), news)
+    for k in (1, 2, 3, 5):
+        for was, now in ((latency.came, after.came), (latency.shows, after.shows)):
+            assert now[:, k] == pytest.approx(np.minimum(was[:, k] * news[k], 0.9))
+    shows = latency.shows[:, 0]
+    assert after.came[:, 0] == pytest.approx(latency.came[:, 0])
+    assert after.shows[:, 0] == pytest.approx(0.2 * shows / (1.0 - 0.8 * shows))
+    assert (after.came[:, 4] == 0.0).all()
+    assert (after.shows[:, 4] == 0.0).all()
+
+
+def test_each_candidate_shows_what_came_so_many_nights_ago():
+    latency = known(3)
+    before, after = np.linspace(0.0, 0.5, 6), np.linspace(0.2, 0.4, 6)
+    gain = np.clip(after - before, 0.0, 1.0)
+    morning = latency.overnight(before, after)
+    assert morning.came[0] == pytest.approx(gain, abs=1e-7)
+    assert (morning.came[1:] == latency.came[:-1]).all()
+    for k, nights in enumerate(HIDDEN_NIGHTS):
+        more = gain if nights == 0 else latency.came[nights - 1]
+        either = 1.0 - (1.0 - latency.shows[k]) * (1.0 - more)
+        assert morning.shows[k] == pytest.approx(either, abs=1e-6)
+    left = latency.treated(np.linspace(0.0, 1.0, 6))
+    assert left.came == pytest.approx(latency.came * np.linspace(0.0, 1.0, 6), rel=1e-6)
+    assert left.shows == pytest.approx(latency.shows * np.linspace(0.0, 1.0, 6), rel=1e-6)
+
+
+def test_however_sure_it_is_that_nothing_hides_what_came_to_a_plant_is_reckoned_with():
+    for evidence in ((0.0, -2.5, -2.5, -2.5), (-2.5, -2.5, -2.5, 0.0)):
+        latency = known(4, evidence=evidence)
+        assert (latency.hides > 0.002).all()
+        one = np.zeros_like(latency.came)
+        one[NIGHTS - 1, 2] = 0.1
+        assert replace(latency, came=one).matters
+        assert not replace(latency, came=np.zeros_like(one)).matters

@@ -7,7 +7,7 @@ from scipy.special import expit, logit
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.level_range import LevelRange, first_level_range, level_range
-from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.plot_estimate import doubted_level, estimate_plot
 from fieldmon.infestation.prior import scaled
 from fieldmon.plot.layout import rectangle
 
@@ -69,3 +69,17 @@ def test_on_a_first_day_it_is_wide_for_nothing_is_known_of_the_level():
 def test_no_chance_is_no_interval():
     with pytest.raises(SettingError, match="'sure' must be a chance between 0 and 1"):
         level_range(CHANCE, 0.4, sure=1.0)
+
+
+def test_however_few_there_may_be_what_is_certain_is_and_the_others_keep_a_thousandth():
+    chance = np.concatenate([np.ones(30), np.full(10, 0.02)])
+    low, _ = level_range(chance, 5.0).of(chance)
+    assert (low[:30] == 1.0).all()
+    assert low[30:] == pytest.approx(2e-5, rel=1e-3)
+
+
+@pytest.mark.parametrize("share", [0.02, 0.4, 0.9])
+def test_of_a_flat_map_the_odds_are_doubted_as_much_whatever_share_it_has(share):
+    found = level_range(np.full(400, share), 0.4, 0.8, named=True)
+    told = np.quantile(doubted_level(0.4, named=True), [0.1, 0.9])
+    assert [found.low, found.high] == pytest.approx(told)

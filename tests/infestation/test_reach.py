@@ -111,3 +111,72 @@ def test_a_pest_may_jump_half_or_twice_as_far_and_farther_along_or_across_the_ro
     assert along[3] == pytest.approx(along[0], rel=0.1)
     assert along[3] / across[3] == pytest.approx(3.0, rel=0.25)
     assert 1.5 < across[4] / along[4] < 3.0
+
+
+def test_wind_carries_one_way_along_or_across_and_nothing_back():
+    size_m = np.array([4.0, 3.0])
+    _, right, up, left, down, _ = kernels(size_m)
+    ahead = np.arange(-RADIUS, RADIUS + 1)
+    for kernel, axis, way in ((right, 1, 1), (left, 1, -1), (up, 0, 1), (down, 0, -1)):
+        beside = kernel.sum(axis=1 - axis)
+        assert (beside[ahead * way <= 0] == 0.0).all()
+        assert beside[ahead * way > 0].sum() == pytest.approx(1.0)
+    # straight on, the cosine is 1; at 45 degrees its square is a half
+    size_m = np.array([3.0, 3.0])
+    right = kernels(size_m)[1]
+    straight, aslant = right[RADIUS, RADIUS + 5], right[RADIUS + 3, RADIUS + 4]
+    assert aslant / straight == pytest.approx((4 / 5) ** 2)
+
+
+def test_chances_of_a_jump_fall_as_each_kernel_is_named():
+    near, right, *_, far = kernels(np.array([3.0, 3.0]))
+    plants = np.array([2.0, 5.0, 11.0])
+    at = RADIUS + plants.astype(int)
+    for kernel, mean in ((near, 2.0), (right, 4.0)):
+        falls = np.log(kernel[RADIUS, at] * plants)
+        assert np.diff(falls) == pytest.approx(-np.diff(plants) / mean)
+    # two-dimensional Cauchy
+    falls = (1.0 + (plants / 3.0) ** 2) ** -1.5
+    assert far[RADIUS, at] / falls == pytest.approx(far[RADIUS, at[0]] / falls[0])
+
+
+def test_a_plant_is_the_square_root_of_the_ground_that_it_has():
+    long, square = kernels(np.array([8.0, 2.0])), kernels(np.array([4.0, 4.0]))
+    # 16 m away: two cells across and eight along, or four either way
+    for one, other in ((long[0], square[0]), (long[5], square[5])):
+        ratio = one[RADIUS + 1, RADIUS] / one[RADIUS, RADIUS + 4]
+        assert ratio == pytest.approx(1.0)
+        falls = one[RADIUS + 1, RADIUS] / one[RADIUS, RADIUS + 8]
+        assert falls == pytest.approx(other[RADIUS, RADIUS + 2] / other[RADIUS, RADIUS + 4])
+
+
+@pytest.mark.parametrize("wind_m_s", [(0.0, 0.0), (2.0, -1.0)])
+def test_what_a_pest_brings_to_the_plants_beside_and_beyond_is_its_kernels_own(wind_m_s):
+    grid = rectangle(6, 9)
+    kernel = DistanceKernel("exponential", 6.0, long_share=0.2)
+    reach = pest_reach_of(grid, kernel, wind_m_s)
+    made = pest_kernels(reach.cells.size_m, kernel, wind_m_s)
+    h = made.shape[1] // 2
+    first = 0.8 * np.array([0.6, 0.1, 0.1, 0.05, 0.05, 0.1])
+    whole = np.einsum("k,kij->ij", first, made)
+    cross = [(h - 1, h), (h + 1, h), (h, h - 1), (h, h + 1)]
+    assert reach.beside == pytest.approx(sum(whole[at] for at in cross))
+    left = np.einsum("k,kij->ij", reach.beyond, reach.kernels)
+    for at in cross:
+        whole[at] = 0.0
+    assert left == pytest.approx(whole)
+    assert reach.kernels.sum(axis=(1, 2)) == pytest.approx(1.0)
+
+
+def test_what_arrives_by_the_edge_is_one_plant_s_share_on_average_and_falls_inwards():
+    at_edge = reach_of(rectangle(15, 15)).at_edge.reshape(15, 15)
+    assert at_edge.mean() == pytest.approx(1.0)
+    assert at_edge[0, 0] > 1.0 > at_edge[7, 7]
+    assert (np.diff(at_edge[7, :8]) <= 0.0).all()
+
+
+def test_the_mean_of_a_kernel_is_measured_in_plants_however_long_they_are():
+    size_m, one = np.array([8.0, 2.0]), np.zeros((1, 5, 5))
+    one[0, 2, 4], one[0, 1, 2], one[0, 3, 3] = 0.5, 0.25, 0.25
+    metres = 0.5 * 4.0 + 0.25 * 8.0 + 0.25 * np.hypot(8.0, 2.0)
+    assert kernel_means(size_m, one) == pytest.approx([metres / 4.0])

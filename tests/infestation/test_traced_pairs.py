@@ -6,11 +6,26 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.origins import ANYWHERE, AT_START, BY_EDGE, JUMPED
+from fieldmon.infestation.chance_bounds import bounded_pair_chance
+from fieldmon.infestation.clustering import leaning
+from fieldmon.infestation.origins import (
+    ANYWHERE,
+    AT_START,
+    BESIDE_IT,
+    BY_EDGE,
+    JUMPED,
+    N_ORIGINS,
+    OVERLOOKED,
+    OriginCounts,
+)
+from fieldmon.infestation.pair_changes import pairs_after_arrivals
+from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.traced_day import KernelRoom, TracedDay, _count, _share, _share_traced
+from fieldmon.infestation.traced_pairs import TracedPairs, _of_late
+from fieldmon.infestation.tracing import Raised
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
 
@@ -154,3 +169,182 @@ def test_without_arrivals_is_left_what_did_not_come_from_outside():
     left = replace(belief, shares=shares).without_arrivals
     assert left.chance[:200] == pytest.approx(0.25 * FLAT[:200], rel=1e-6)
     assert left.chance[200:] == pytest.approx(FLAT[200:], rel=1e-6)
+
+
+FEW = rectangle(3, 4)
+
+
+def mid_season(seed=0):
+    """Return what may be believed some days into a season on a dozen plants."""
+    rng = np.random.default_rng(seed)
+    belief = TracedPairs.of(FEW, rng.uniform(0.02, 0.4, 12))
+    shares = rng.random((12, N_ORIGINS)).astype(np.float32)
+    counts = OriginCounts(rng.uniform(0.0, 4.0, N_ORIGINS), rng.uniform(0.0, 4.0, N_ORIGINS))
+    return replace(
+        belief, shares=shares / shares.sum(axis=1, keepdims=True), counts=counts,
+        unseen=rng.uniform(0.0, 7.0, 12), evidence=np.array([0.0, -1.0, 0.4, -0.3]),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("to", ["one", "each"])
+@pytest.mark.parametrize("arrivals", [0.0, 0.01])
+def test_a_night_brings_each_plant_what_each_origin_sends_it(to, arrivals):
+    belief, spread = mid_season(), Spread(0.2, to, arrivals_per_day=arrivals)
+    reach, scale, jumps = belief.reach, belief.counts.scale, belief.jumps
+    n_beside = np.diff(FEW.adjacent.start).mean()
+    sends = 0.2 if to == "one" else 0.2 * n_beside  # of a plant, in a night
+    # half of what jumpers send goes beside; others send all of it there
+    beside = jumps * 0.5 + (1.0 - jumps)
+    near = Spread(0.2 * min(1.0, beside * scale[BESIDE_IT]), to)
+    pairs, lean = (belief.chance, belief.pair_chance), leaning(belief.evidence)
+    chance, pair_chance = night_of_pairs(pairs, FEW.linked, near, lean)
+    brought = np.zeros((N_ORIGINS, 12))
+    for k in range(6):
+        sent = sends * jumps * reach.beyond[k] * scale[JUMPED + k]
+        brought[JUMPED + k] = sent * reach.brought(belief.chance, np.eye(6)[k])
+    brought[ANYWHERE] = max(arrivals, 0.0002) * scale[ANYWHERE]
+    brought[BY_EDGE] = 0.0001 * scale[BY_EDGE] * reach.at_edge
+    arrives = 1.0 - np.exp(-brought.sum(axis=0))
+    morning = belief.overnight(spread)
+    assert morning.chance == pytest.approx(1.0 - (1.0 - chance) * (1.0 - arrives))
+    both = pairs_after_arrivals((chance, pair_chance), FEW.adjacent, arrives, morning.chance)
+    assert morning.pair_chance == pytest.approx(both)
+    assert morning.unseen == pytest.approx(np.minimum(belief.unseen + sends, 7.0))
+    parts = belief.shares * belief.chance[:, None]
+    parts[:, BESIDE_IT] += chance - belief.chance
+    parts += (brought / brought.sum(axis=0) * (morning.chance - chance)).T
+    assert morning.shares == pytest.approx(parts / morning.chance[:, None], abs=1e-6)
+
+
+def test_known_finds_keep_their_chance_and_others_are_scaled_up_to_what_is_unknown():
+    belief = mid_season()
+    chance = belief.chance.copy()
+    chance[[3, 7]] = 0.995, 0.985
+    scale = np.linspace(0.2, 9.0, 12)
+    after = replace(belief, chance=chance).times(scale)
+    for i in range(12):
+        most = max(chance[i], 0.95)
+        wanted = 0.995 if i == 3 else min(chance[i] * scale[i], most)
+        assert after.chance[i] == pytest.approx(wanted)
+    start, other = FEW.adjacent
+    own = np.repeat(np.arange(12), np.diff(start))
+    scale[3] = 1.0
+    both = belief.pair_chance * np.sqrt(scale[own] * scale[other])
+    # as far as two such chances allow
+    each = zip(both, after.chance[own], after.chance[other], strict=True)
+    assert after.pair_chance == pytest.approx([bounded_pair_chance(*one) for one in each])
+
+
+def test_the_number_infested_is_as_sure_as_what_origins_bring_and_as_groups_are_large():
+    belief = mid_season()
+    brought = belief.chance @ belief.shares
+    origins = np.sqrt(((brought * belief.counts.doubt) ** 2).sum()) / brought.sum()
+    sent = belief.unseen @ belief.chance / brought.sum()
+    group = 2.0 * belief.jumps * belief.beyond.sum() * sent / brought.sum()
+    assert belief.doubt == pytest.approx(np.hypot(origins, np.sqrt(group)), rel=1e-5)
+    # twelve plots of the like are as sure as one by its origins, and groups matter less
+    assert belief.doubt > origins
+
+
+def day_of(belief):
+    n, none = len(belief.chance), np.zeros((2, N_ORIGINS))
+    zeros = np.zeros((2, n))
+    return TracedDay(belief.shares.astype(np.float64), belief.chance.copy(), *zeros, *none)
+
+
+@pytest.mark.parametrize("found", [False, True])
+def test_finds_are_counted_by_origin_and_known_ones_tell_what_is_overlooked(found):
+    day = day_of(mid_season())
+    _count.py_func(day, 5, found, 0.3)
+    assert day.found == pytest.approx(found * day.shares[5])
+    assert day.expected == pytest.approx(0.3 * day.shares[5])
+    day = day_of(mid_season())
+    day.before[5] = 0.995
+    _count.py_func(day, 5, found, 0.8)
+    wanted = np.zeros((2, N_ORIGINS))
+    wanted[:, OVERLOOKED] = 1.0 - found, 0.2
+    assert np.array([day.found, day.expected]) == pytest.approx(wanted)
+
+
+def test_what_a_chance_rises_by_came_from_the_plant_beside_and_what_falls_tells_no_origin():
+    belief = mid_season()
+    for now in (1.5, 0.5):
+        day, chance = day_of(belief), belief.chance * now
+        _share.py_func(day, chance, 5)
+        parts = belief.shares[5] * belief.chance[5]
+        if now > 1.0:
+            parts[BESIDE_IT] += 0.5 * belief.chance[5]
+            assert day.shares[5] == pytest.approx(parts / chance[5], rel=1e-5)
+        else:
+            assert day.shares[5] == pytest.approx(belief.shares[5])
+        assert day.before[5] == chance[5]
+
+
+@pytest.mark.parametrize(("i", "j"), [(5, 6), (5, 8), (0, 11), (11, 0), (2, 4)])
+def test_what_a_find_raises_a_plant_by_is_shared_among_the_kernels_that_reach_it(i, j):
+    belief = mid_season()
+    rng, n_kernels = np.random.default_rng(1), 6
+    day, traces = day_of(belief), belief.traces.own()
+    each = rng.random((n_kernels, 7, 7))
+    room = KernelRoom(each, None, Raised.of(12))
+    room.raised.plant[3], room.raised.by[3] = j, 0.07
+    p, unseen, q = 0.1, 1.3, belief.chance[j]
+    _share_traced.py_func(day, traces, room, (i, p, unseen), 3)
+    (y, x), (to_y, to_x) = np.transpose(np.divmod([i, j], 4))
+    away = np.array([to_y - y, to_x - x])
+    to, back = each[:, 3 + away[0], 3 + away[1]], each[:, 3 - away[0], 3 - away[1]]
+    ways = belief.unseen[j] * to + min(q / p, 1.0) * unseen * back
+    parts = belief.shares[j] * q
+    parts[JUMPED:] += 0.07 * ways / ways.sum()
+    assert day.shares[j] == pytest.approx(parts / (q + 0.07), rel=1e-5)
+
+
+def test_the_wind_of_late_is_half_that_of_the_night_and_told_by_metres_a_second():
+    assert _of_late((4.0, -2.0), (2.2, 3.0)) == (3.0, 0.0)
+    assert _of_late((0.0, 0.0), (0.9, -0.9)) == (0.0, 0.0)
+    assert _of_late((1.0, -7.0), (2.0, -6.0)) == (2.0, -6.0)
+
+
+def test_counts_of_a_day_change_what_each_origin_is_believed_to_have_brought():
+    before = mid_season()
+    day = day_of(before)
+    day.found[:], day.expected[:] = np.linspace(0, 3, N_ORIGINS), np.linspace(2, 0.5, N_ORIGINS)
+    after = before.counting(before, day)
+    # expected as before the season, of jumps as if insects were known to jump
+    expected = day.expected / before.counts.scale
+    expected[JUMPED:] /= before.jumps
+    assert after.counts.found == pytest.approx(before.counts.found + day.found)
+    assert after.counts.expected == pytest.approx(before.counts.expected + expected)
+    parts = before.shares * before.chance[:, None] * (after.counts.scale / before.counts.scale)
+    assert after.chance == pytest.approx(parts.sum(axis=1), rel=1e-5)
+    assert after.shares == pytest.approx(parts / parts.sum(axis=1, keepdims=True), rel=1e-4)
+
+
+def test_without_arrivals_their_offspring_is_left_out_in_the_same_share():
+    belief = mid_season()
+    left = belief.without_arrivals
+    brought = belief.chance @ belief.shares
+    outside = brought[[ANYWHERE, BY_EDGE]].sum() / (brought.sum() - brought[BESIDE_IT])
+    inside = 1.0 - belief.shares[:, [ANYWHERE, BY_EDGE]].sum(axis=1)
+    inside -= belief.shares[:, BESIDE_IT] * outside
+    assert left.chance == pytest.approx(belief.chance * inside, rel=1e-5)
+    assert left.counts.scale[[ANYWHERE, BY_EDGE]] == pytest.approx(0.0, abs=1e-9)
+    others = np.setdiff1d(range(N_ORIGINS), [ANYWHERE, BY_EDGE])
+    assert left.counts.scale[others] == pytest.approx(belief.counts.scale[others])
+    found = belief.counts.found
+    assert belief.arrivals_found == pytest.approx(found[ANYWHERE] + found[BY_EDGE])
+
+
+def test_what_was_found_clean_about_a_plant_lowers_it_by_the_relatives_it_would_have():
+    belief, day = mid_season(), day_of(mid_season())
+    rng = np.random.default_rng(2)
+    day.dropped[:], day.cleared[:] = rng.uniform(0, 0.3, 12), rng.uniform(0, 0.9, 12)
+    after = replace(belief, unseen=belief.unseen * 0.5, chance=belief.chance * 0.8)
+    beyond = 1.5 * np.array([0.2, 0.1, 0.05, 0.3, 0.02, 0.1])
+    to = belief.reach.brought(day.dropped, beyond)
+    back = belief.reach.brought(day.cleared * belief.unseen, beyond, back=True)
+    relatives = to * after.unseen / after.chance + back
+    lowered = belief._lowered(after, day, beyond)
+    assert lowered == pytest.approx(np.exp(-np.minimum(relatives, 3.0)))
+    assert (relatives > 3.0).any()
+    assert (relatives < 3.0).any()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.planning.headlands import head_on, headlands_of
+from fieldmon.planning.headlands import Steps, _nearest, head_on, headlands_of
 from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.planning.team import plan_team
 from fieldmon.plot.field import Field
@@ -106,3 +106,52 @@ def test_a_line_straight_through_an_aisle_is_in_the_headlands_before_it_and_afte
     assert took_s == pytest.approx(length_m[straight])
     x = np.stack([steps.from_m[straight, 0], steps.to_m[straight, 0]])
     assert ((x <= low + 1e-9).all(axis=0) | (x >= high - 1e-9).all(axis=0)).all()
+
+
+def drawn_steps(rng, n):
+    """Return steps of a line that is driven one after the other, with pauses."""
+    at = rng.uniform(0.0, 12.0, (n + 1, 2))
+    took_s, pause_s = rng.uniform(2.0, 9.0, n), rng.uniform(0.0, 2.0, n)
+    until_s = np.cumsum(took_s + pause_s)
+    return Steps(at[:-1], at[1:], until_s - took_s, until_s)
+
+
+def place_at(steps, k, clock):
+    share = (clock - steps.since_s[k]) / (steps.until_s[k] - steps.since_s[k])
+    return steps.from_m[k] + share[:, None] * (steps.to_m[k] - steps.from_m[k])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_who_drive_towards_each_other_are_nearest_when_a_clock_of_a_hundredth_has_them_so(seed):
+    rng, within_m, told = np.random.default_rng(seed), 2.5, []
+    one, other = drawn_steps(rng, 6), drawn_steps(rng, 5)
+    found = _nearest(one, other, within_m)
+    for i, j in np.ndindex(6, 5):
+        begin, end = max(one.since_s[i], other.since_s[j]), min(one.until_s[i], other.until_s[j])
+        if begin >= end:
+            continue
+        clock = np.linspace(begin, end, 2 + int((end - begin) / 0.005))
+        here, there = place_at(one, i, clock), place_at(other, j, clock)
+        gap_m = np.hypot(*(here - there).T)
+        against = ((here[-1] - here[0]) * (there[-1] - there[0])).sum() < 0.0
+        least = int(np.argmin(gap_m))
+        # who have met before drive away from each other from the first on
+        if against and least > 0 and gap_m[least] < within_m:
+            told.append([clock[least], *here[least]])
+    assert len(found) == len(told)
+    assert np.array(sorted(found.tolist())) == pytest.approx(np.array(sorted(told)), abs=0.05)
+
+
+def test_a_headland_is_as_wide_as_from_the_nearest_row_to_the_edge_of_the_plot():
+    grid = rectangle(4, 10)
+    headlands = headlands_of(grid)
+    left_m = grid.drivable_m.bounds[0]
+    first_m, y = grid.xy_m[:, 0].min(), grid.xy_m[15, 1]
+    for x in (left_m + 0.5, left_m + 1.5):
+        width_m = headlands._width_m(np.array([[x, y]]))
+        assert width_m == pytest.approx([first_m - left_m], abs=1e-6)
+    steps = [Steps(*(np.array([[x, y + s]]) for s in way), np.zeros(1), np.full(1, 9.0))
+             for x, way in ((left_m + 1.0, (-2.0, 2.0)), (left_m + 1.2, (2.0, -2.0)))]  # fmt: skip
+    needs_m = first_m - left_m
+    assert len(headlands.meet(*steps, needs_m + 0.01)) == 1
+    assert len(headlands.meet(*steps, needs_m - 0.01)) == 0

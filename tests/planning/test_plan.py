@@ -64,6 +64,9 @@ def test_a_sampler_is_named_or_brought(plot):
 
 def test_plants_tell_chance_and_place_on_the_route(day):
     plants = day.plants
+    said = ["plant", "row", "number", "chance", "order", "arrive_s", "geometry"]
+    assert plants.columns.tolist() == said
+    assert plants["order"].min() == 1
     assert plants["chance"].tolist() == day.chance.tolist()
     route = plants.dropna(subset="order").sort_values("order")
     assert route["plant"].tolist() == day.route.plant.tolist()

@@ -1,6 +1,7 @@
 """A day of several: no plant twice, no two in one aisle at once, and a bound for all together."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -8,14 +9,28 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
+from fieldmon.planning.meetings import meetings
 from fieldmon.planning.members import TeamMember, team_of
-from fieldmon.planning.team import _day, _Task, bound_of_days, plan_team, team_bound
+from fieldmon.planning.team import (
+    _day,
+    _first_wait,
+    _held,
+    _kept_apart,
+    _met_s,
+    _of,
+    _Search,
+    _shortened,
+    _Task,
+    bound_of_days,
+    plan_team,
+    team_bound,
+)
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot, scout
-from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
+from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock, travel_s
 from tests.crooked import crooked_fields
 from tests.second_by_second import nobody_together
 
@@ -165,3 +180,102 @@ def test_a_bound_of_two_gates_holds_what_only_the_farther_gate_can_reach():
     robot = Robot(hours=0.04)
     assert team_bound([_Task(at_high, robot, worth)]) == pytest.approx(1.0)
     assert team_bound([_Task(at_low, robot, worth), _Task(at_high, robot, worth)]) >= 1.0 - 1e-9
+
+
+def two_tasks(plot, hours=0.4, starts_s=0.0):
+    value = chances(plot)
+    return [_Task(plot.aisles, Robot(hours=hours), value * 0.84, at) for at in (0.0, starts_s)]
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_member_s_day_is_charged_leg_by_leg_and_stop_by_stop(returns):
+    plot, robot = plot_of(), Robot(hours=0.5, returns=returns)
+    stops = np.array([3, 40, 4])
+    day = _day(_Task(plot.aisles, robot, chances(plot)), stops)
+    at_s = 0.0
+    for k, (one, other) in enumerate(pairwise([GATE, *stops.tolist()])):
+        at_s += travel_s(plot.aisles.travel, day.scene.clock, one, other)
+        assert day.work.arrive_s[k] == pytest.approx(at_s)
+        at_s += robot.visit_s
+    home_s = travel_s(plot.aisles.travel, day.scene.clock, 4, GATE) if returns else 0.0
+    assert day.work.end_s == pytest.approx(at_s + home_s)
+    assert _day(_Task(plot.aisles, robot, chances(plot)), stops[:0]).work.end_s == 0.0
+
+
+def test_a_day_is_shortened_by_its_poorest_stops_and_by_no_more_than_must_be():
+    plot = plot_of()
+    task, stops = two_tasks(plot)[0], np.array([3, 4, 9, 40, 44, 80])
+    whole = _day(task, stops)
+    assert _shortened(task, whole, whole.work.end_s).work.plant.tolist() == stops.tolist()
+    poorest = stops[np.argsort(task.value[stops])]
+    for n_gone in range(1, 7):
+        left = [plant for plant in stops.tolist() if plant in poorest[n_gone:].tolist()]
+        seconds = _day(task, np.array(left, np.int64)).work.end_s
+        shorter = _shortened(task, whole, seconds)
+        assert shorter.work.end_s <= seconds
+        assert shorter.work.plant.tolist() == left
+
+
+def test_of_two_who_meet_the_later_in_the_team_waits_until_the_first_has_left():
+    plot = plot_of()
+    task = two_tasks(plot)[0]
+    days = [_day(task, np.array(stops)) for stops in ([20, 25], [21, 27])]
+    (first, *_) = meetings([day.route for day in days], np.zeros(2))
+    assert _first_wait(days, np.zeros(2), 0.0) == (1, first.until_s - first.since_s + 1.0)
+    assert _met_s(days, np.zeros(2)) == pytest.approx(
+        sum(met.until_s - met.since_s for met in meetings([d.route for d in days], np.zeros(2)))
+    )
+    tasks = two_tasks(plot)
+    apart = _kept_apart(tasks, days, 0.0)
+    assert apart.late_s[0] == 0.0
+    assert apart.late_s[1] > 0.0
+    assert meetings([day.route for day in apart.days], apart.late_s) == []
+    assert _first_wait(apart.days, apart.late_s, 0.0) is None
+    alone = [days[0], _day(task, np.array([100, 110]))]
+    head = [_day(task, np.array([15, 165])), _day(task, np.array([166, 16]))]
+    assert _first_wait(alone, np.array([0.0, 1e5]), 30.0) is None
+    until = (_first_wait(head, np.array([0.0, s]), 30.0) for s in range(0, 200, 5))
+    assert (1, 20.0) in until
+
+
+def test_routes_are_looked_for_where_the_others_are_not_and_never_get_worse():
+    plot, told = plot_of(8, 8), []
+    tasks = two_tasks(plot, 0.15)
+    search = _Search(plot, tasks, lambda done, of: told.append((done, of)))
+    in_turn = search.in_turn()
+    exclusive = search.aisle_by_aisle(in_turn)
+    shared = search.plant_by_plant(exclusive)
+    aisle = plot.grid.corridor[plot.grid.row]
+    for stops in (in_turn, exclusive):
+        assert not set(aisle[stops[0]]) & set(aisle[stops[1]])
+    assert not set(shared[0].tolist()) & set(shared[1].tolist())
+    held = [sum(tasks[k].value[own].sum() for k, own in enumerate(stops))
+            for stops in (in_turn, exclusive, shared)]  # fmt: skip
+    assert held[0] <= held[1] <= held[2]
+    assert _held(tasks, shared) == pytest.approx(held[2])
+    # the first has the plot to itself
+    assert in_turn[0].tolist() == search.look(0, np.ones(64, np.bool_)).tolist()
+    assert [done for done, _ in told] == [*range(1, len(told) + 1)]
+    assert all(of == 10 for done, of in told if done <= 10)
+    there = aisle == aisle[shared[0][0]]
+    value = sum(tasks[0].value[plant] for plant in shared[0] if there[plant])
+    assert _of(tasks[0], shared[0], there) == pytest.approx(value)
+    untaken = search._untaken(shared, 1)
+    assert np.flatnonzero(~untaken).tolist() == sorted(shared[0].tolist())
+
+
+def test_where_two_would_meet_the_poorer_looks_elsewhere_and_the_other_stays():
+    plot = plot_of(6, 10)
+    tasks = two_tasks(plot, 0.3)
+    search = _Search(plot, tasks, lambda *_: None)
+    value = tasks[0].value
+    by_row = np.argsort([value[plot.grid.row == row].sum() for row in range(6)])
+    here = np.flatnonzero(plot.grid.row == by_row[-1])
+    both = here[np.argsort(value[here])[::-1]]  # the best plants of one row, and the others
+    known = [np.sort(both[:4]), np.sort(both[4:8])]
+    assert meetings([day.route for day in search.turned(known)], np.zeros(2))
+    rich, poor = search.apart(known)
+    assert rich.tolist() == known[0].tolist()
+    assert not set(poor.tolist()) & set(here.tolist())
+    assert len(poor) > 0
+    assert meetings([day.route for day in search.turned([rich, poor])], np.zeros(2)) == []

@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import SettingError
 from fieldmon.planning.workday import plan_work, work_day
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.base import NEVER
 from fieldmon.samplers.sweeps import Bouncy, Naive
 from tests.scenes import GRIDS, scene_on
@@ -113,3 +115,48 @@ def test_steps_longer_than_the_plot_still_see_every_plant(name):
 def test_a_step_that_leads_nowhere_is_refused(every):
     with pytest.raises(SettingError, match=f"'every' is {every}"):
         Bouncy(every)
+
+
+def sweep_told(scene, every):
+    """Return the stops of a day as the sampler's words have them: plants and arrivals."""
+    order, last = scene.grid.snake.tolist(), scene.last_inspected.tolist()
+    travel, robot, stops = scene.aisles.travel, scene.robot, []
+    place, n_before, ahead, at, now_s = 0, -1, [], scene.at, 0.0
+    if scene.resume >= 0:
+        ahead = order[order.index(scene.resume) + every :: every]
+    while any(day != scene.day for day in last):
+        ahead = [plant for plant in ahead if last[plant] != scene.day]
+        if not ahead:
+            if len(stops) > n_before:  # a new pass begins at whom nobody saw for longest
+                first = order[:every]
+                place = min(range(len(first)), key=lambda place: last[first[place]])
+            else:  # all of the last one had been seen today: the next plants
+                place = (place + 1) % every
+            ahead, n_before = order[place::every], len(stops)
+            continue
+        plant = ahead.pop(0)
+        arrive_s = now_s + travel_s(travel, scene.clock, at, plant)
+        end_s = arrive_s + robot.visit_s
+        home_s = travel_s(travel, scene.clock, plant, -1) if robot.returns else 0.0
+        if end_s + home_s > scene.seconds_left:
+            break
+        stops.append((plant, arrive_s))
+        last[plant], at, now_s = scene.day, plant, end_s
+    return stops
+
+
+@pytest.mark.parametrize("every", [1, 2, 3, 4, 9])
+@pytest.mark.parametrize("seed", range(12))
+def test_every_stop_of_a_sweep_follows_from_its_words(every, seed):
+    """Begun anew or resumed, some inspected today or earlier, with too little time or enough."""
+    rng, grid = np.random.default_rng([seed, every]), rectangle(2 + seed % 3, 3)
+    n = len(grid)
+    scene = scene_on(grid, hours=float(rng.choice([0.06, 0.15, 2.0])), seed=seed)
+    last = rng.choice([NEVER, 0, 1, 2, 3], n).astype(np.int32)
+    trail = rng.permutation(n)[: rng.integers(0, 3)].astype(np.int32)
+    at = int(rng.choice([-1, rng.integers(n)]))
+    scene = replace(scene, last_inspected=last, day=3, trail=trail, at=at)
+    work = plan_work(scene, Bouncy(every))
+    stops = sweep_told(scene, every)
+    assert work.plant.tolist() == [plant for plant, _ in stops]
+    assert work.arrive_s == pytest.approx([arrive_s for _, arrive_s in stops])

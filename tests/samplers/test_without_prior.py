@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
 
-from fieldmon.errors import SettingError
+from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.workday import plan_work
-from fieldmon.plot.layout import rectangle
+from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.base import NEVER
 from fieldmon.samplers.without_prior import (
     Neighbor,
@@ -17,7 +19,9 @@ from fieldmon.samplers.without_prior import (
     RandomShare,
     Snake,
     SnakeRandom,
+    _face_to_face,
 )
+from tests.crooked import crooked_fields
 from tests.scenes import charged_s, scene_on
 
 # the thesis's vineyard in small: 4 vine rows, outer faces not inspected, so 6 sides of 8 plants
@@ -162,3 +166,122 @@ def test_every_must_be_one_or_more(sampler):
 
 def test_never_is_no_day():
     assert NEVER < 0
+
+
+def stations_told(grid, *, both_sides):
+    """Return the stations of a plot without gaps, each as its plants, in the order of a sweep."""
+    if not both_sides:
+        return [[plant] for plant in grid.snake.tolist()]
+    stations = {}
+    for plant, row in enumerate(grid.row.tolist()):
+        aisle = int(np.searchsorted(np.unique(grid.lane_y_m), grid.lane_y_m[row]))
+        place = grid.along_m[plant] if aisle % 2 == 0 else -grid.along_m[plant]
+        stations.setdefault((aisle, round(float(place), 3)), []).append((grid.side[row], plant))
+    return [[plant for _, plant in sorted(stations[at])] for at in sorted(stations)]
+
+
+def sweep_told(scene, stations, every):
+    """Return the stops of a day as algorithms 1, 2, 4 and 6 have them: plants and arrivals."""
+    travel, robot, stops = scene.aisles.travel, scene.robot, []
+    last, side = scene.last_inspected.tolist(), scene.grid.side[scene.grid.row]
+    of = {plant: k for k, station in enumerate(stations) for plant in station}
+    position, ahead, at, now_s, skipped = 0, 1, scene.at, 0.0, 0
+    if scene.resume >= 0:
+        here = of[scene.resume]
+        passed = [of[plant] for plant in scene.trail.tolist() if of[plant] != here]
+        ahead = -1 if passed and passed[-1] > here else 1
+        position = here + ahead * every
+    while skipped < 4 * len(stations):
+        if not 0 <= position < len(stations):
+            # of the last N the least recently visited, else the nearest to the end
+            places = range(len(stations))[::-1] if ahead > 0 else range(len(stations))
+            position = min(places[:every], key=lambda place: last[stations[place][0]])
+            ahead = -ahead
+        wanted = [plant for plant in stations[position] if last[plant] != scene.day]
+        skipped = 0 if wanted else skipped + 1
+        while wanted:  # who stands on the robot's side first
+            plant = min(wanted, key=lambda one: at < 0 or side[one] != side[at])
+            wanted.remove(plant)
+            arrive_s = now_s + travel_s(travel, scene.clock, at, plant)
+            home_s = travel_s(travel, scene.clock, plant, -1) if robot.returns else 0.0
+            if arrive_s + robot.visit_s + home_s > scene.seconds_left:
+                return stops
+            stops.append((plant, arrive_s))
+            last[plant], at, now_s = scene.day, plant, arrive_s + robot.visit_s
+        position += ahead * every
+    return stops
+
+
+@pytest.mark.parametrize("sampler", [Snake, Neighbor])
+@pytest.mark.parametrize("every", [1, 2, 3, 11])
+@pytest.mark.parametrize("seed", range(8))
+def test_every_stop_of_a_sweep_follows_from_its_words(sampler, every, seed):
+    """Begun anew or resumed either way, some inspected today, with too little time or enough."""
+    rng = np.random.default_rng([seed, every])
+    grid = rectangle(2 + seed % 2, 3, Planting(faces=2, outer_faces=seed % 3 > 0))
+    n = len(grid)
+    scene = scene_on(grid, hours=float(rng.choice([0.06, 0.15, 2.0])), seed=seed)
+    last = rng.choice([NEVER, 0, 1, 2, 3], n).astype(np.int32)
+    trail = rng.permutation(n)[: rng.integers(0, 4)].astype(np.int32)
+    at = int(rng.choice([-1, rng.integers(n)]))
+    scene = replace(scene, last_inspected=last, day=3, trail=trail, at=at)
+    work = plan_work(scene, sampler(every))
+    stations = stations_told(grid, both_sides=sampler is Neighbor)
+    stops = sweep_told(scene, stations, every)
+    assert work.plant.tolist() == [plant for plant, _ in stops]
+    assert work.arrive_s == pytest.approx([arrive_s for _, arrive_s in stops])
+
+
+@pytest.mark.parametrize("sampler", [SnakeRandom(), NeighborRandom()])
+def test_steps_drawn_go_ahead_to_the_end_of_the_plot_and_back(sampler):
+    """Each station is one to four beyond the last in the direction of the sweep, until it turns."""
+    grid = rectangle(3, 6, Planting(faces=2))
+    stations = stations_told(grid, both_sides=isinstance(sampler, NeighborRandom))
+    of = {plant: k for k, station in enumerate(stations) for plant in station}
+    taken = set()
+    for key in range(20):
+        _, work = day(sampler, hours=0.3, grid=grid, key=np.uint64(key))
+        places = list(dict.fromkeys(of[plant] for plant in work.plant.tolist()))
+        steps = np.diff(places)
+        ahead = steps[: np.argmax(steps < 0)] if (steps < 0).any() else steps
+        assert places[0] == 0
+        assert set(ahead.tolist()) <= {1, 2, 3, 4}
+        taken |= set(ahead.tolist())
+    assert taken == {1, 2, 3, 4}
+
+
+def test_the_share_drawn_is_one_nth_and_ends_with_the_plot():
+    grid = rectangle(3, 5)
+    for every, n_drawn in ((1, 15), (4, 3), (40, 1)):
+        scene, work = day(RandomShare(every), grid=grid, key=np.uint64(every))
+        assert len(work) == n_drawn
+        places = [grid.snake.tolist().index(plant) for plant in work.plant]
+        assert places == sorted(places)
+        # what was drawn and seen already is not replaced, and what begins late begins anew
+        last = scene.last_inspected.copy()
+        last[work.plant[:1]] = scene.day
+        later = replace(scene, last_inspected=last, at=int(work.plant[0]), trail=work.plant[:1])
+        assert plan_work(later, RandomShare(every)).plant.tolist() == work.plant[1:].tolist()
+
+
+@given(field=crooked_fields())
+def test_a_station_is_who_faces_one_place_of_an_aisle_and_aisles_go_up_and_down_in_turn(field):
+    try:
+        grid = lay(field, Planting(faces=2))
+    except PlotError:
+        return
+    lanes = np.unique(np.round(grid.lane_y_m, 3)).tolist()
+    stations = {}
+    for plant in np.argsort(grid.side[grid.row], kind="stable").tolist():
+        row = grid.row[plant]
+        aisle = lanes.index(round(float(grid.lane_y_m[row]), 3))
+        way = -1 if aisle % 2 else 1
+        nth = np.floor((grid.along_m[plant] - grid.along_m.min()) / grid.plant_spacing_m + 0.5)
+        begins_m = grid.lane_x_m[grid.corridor == grid.corridor[row], 0].min()
+        at = aisle, way * begins_m, grid.corridor[row], way * nth
+        stations.setdefault(at, []).append(plant)
+    told = [stations[at] for at in sorted(stations)]
+    found = _face_to_face(grid)
+    parts = np.split(found.plant, found.start[1:-1])
+    assert [sorted(one.tolist()) for one in parts] == [sorted(one) for one in told]
+    assert found.of[found.plant].tolist() == np.repeat(range(len(told)), [*map(len, told)]).tolist()

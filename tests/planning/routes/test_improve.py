@@ -1,8 +1,12 @@
 """Mending stops: they fit, none is made twice, and nothing that fits is left out."""
 
+from itertools import combinations, pairwise
+
 import numpy as np
 import pytest
 
+from fieldmon.compute.jit import loop
+from fieldmon.planning.routes import improve
 from fieldmon.planning.routes.improve import Tour, fit, ruin
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -56,3 +60,117 @@ def test_ruin_leaves_the_poorest_out():
     clock = robot_clock(Robot(), 1e6)
     ruin(aisles.travel, clock, tour, reward, used_s(aisles, Robot(), np.arange(10)) - 1.0)
     assert tour.stops.tolist() == list(range(9))
+
+
+_leave_out, _fill = improve._leave_out, improve._fill
+
+
+@loop
+def left_out(travel, clock, tour, reward, seconds):
+    _leave_out(travel, clock, tour, reward, seconds)
+
+
+@loop
+def filled(travel, clock, tour, reward, least):
+    _fill(travel, clock, tour, reward, least)
+
+
+def runs_of(aisles, stops):
+    """Return where stops in one aisle begin, and where all end."""
+    aisle = aisles.grid.corridor[aisles.grid.row[stops]]
+    return [0, *(np.flatnonzero(np.diff(aisle)) + 1).tolist(), len(stops)]
+
+
+@pytest.mark.parametrize("faces", [1, 2])
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("seed", range(4))
+def test_no_stretch_turned_round_and_no_aisle_s_stops_elsewhere_would_shorten_the_drive(
+    faces, returns, seed
+):
+    """Stretches between changes of aisle; stops in one aisle before any others, turned or not."""
+    aisles = Aisles.of(rectangle(5, 4, Planting(faces=faces)))
+    robot, rng, n = Robot(returns=returns), np.random.default_rng(seed), len(aisles.grid)
+    stops = rng.permutation(n)[:10]
+    tour = Tour.of(stops, n)
+    held = fit(aisles.travel, robot_clock(robot, used_s(aisles, robot, stops)), tour,
+               np.where(np.isin(np.arange(n), stops), 1.0, 0.0), 0.5)  # fmt: skip
+    best = tour.stops
+    assert held == 10.0
+    assert sorted(best.tolist()) == sorted(stops.tolist())
+    took_s, cuts = used_s(aisles, robot, best), runs_of(aisles, best)
+    assert took_s <= used_s(aisles, robot, stops) + 1e-9
+    assert tour.used[0] == pytest.approx(took_s)
+    for a, b in combinations(cuts, 2):
+        turned = np.concatenate([best[:a], best[a:b][::-1], best[b:]])
+        assert used_s(aisles, robot, turned) >= took_s - 1e-6
+    for a, b in pairwise(cuts):
+        rest, own = np.delete(best, range(a, b)), best[a:b]
+        for k in {cut if cut <= a else cut - (b - a) for cut in cuts}:
+            for way in (own, own[::-1]):
+                assert used_s(aisles, robot, np.insert(rest, k, way)) >= took_s - 1e-6
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_left_out_is_always_the_stop_that_holds_least_for_the_seconds_it_saves(
+    returns, seed
+):
+    aisles = Aisles.of(rectangle(4, 5, Planting(faces=2)))
+    robot, rng, n = Robot(returns=returns), np.random.default_rng(seed), len(aisles.grid)
+    stops, reward = rng.permutation(n)[:9], rng.uniform(0.1, 1.0, n)
+    seconds = rng.uniform(0.2, 0.8) * used_s(aisles, robot, stops)
+    tour = Tour.of(stops, n)
+    tour.used[0] = used_s(aisles, robot, stops)
+    left_out(aisles.travel, robot_clock(robot, 1.0), tour, reward, seconds)
+    while used_s(aisles, robot, stops) > seconds:
+        less_s = [used_s(aisles, robot, np.delete(stops, k)) for k in range(len(stops))]
+        saved_s = used_s(aisles, robot, stops) - np.array(less_s)
+        stops = np.delete(stops, np.argmin(reward[stops] / saved_s))
+    assert tour.stops.tolist() == stops.tolist()
+    assert np.flatnonzero(tour.visited).tolist() == sorted(stops.tolist())
+    assert tour.used[0] == pytest.approx(used_s(aisles, robot, stops))
+
+
+def places_of(aisles, robot, stops, plant):
+    """Return the least seconds that a plant adds, and all places where it adds no more."""
+    aisle, own_s = aisles.grid.corridor[aisles.grid.row], used_s(aisles, robot, stops)
+    found = []
+    for k in range(len(stops) + 1):
+        amid = 0 < k < len(stops) and aisle[stops[k - 1]] == aisle[stops[k]] != aisle[plant]
+        if not amid:  # of another aisle's stops
+            found.append((used_s(aisles, robot, np.insert(stops, k, plant)) - own_s, k))
+    return min(found)[0], [k for more_s, k in found if more_s < min(found)[0] + 1e-6]
+
+
+def ends_of(aisles, robot, stops, reward, seconds):
+    """Yield all tours that may come of it, plant by plant: the most for the seconds it adds."""
+    used, rates = used_s(aisles, robot, stops), []
+    for plant in np.setdiff1d(np.flatnonzero(reward > 0.15), stops).tolist():
+        more_s, places = places_of(aisles, robot, stops, plant)
+        if used + more_s <= seconds:
+            rates.append((reward[plant] / more_s, plant, places))
+    if not rates:
+        yield stops.tolist()
+        return
+    _, plant, places = max(rates)
+    for place in places:
+        longer = np.insert(stops, place, plant).astype(np.int64)
+        yield from ends_of(aisles, robot, longer, reward, seconds)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("seed", range(8))
+def test_what_is_put_in_is_always_the_plant_that_holds_most_for_the_seconds_it_adds(returns, seed):
+    aisles = Aisles.of(rectangle(4, 4))
+    rng, n = np.random.default_rng(seed), len(aisles.grid)
+    # stops so long that three or four fit
+    robot = Robot(returns=returns, stop_s=400.0)
+    reward, stops = rng.uniform(0.0, 1.0, n), rng.permutation(n)[: rng.integers(0, 4)]
+    seconds = used_s(aisles, robot, stops) + rng.uniform(3.2, 4.0) * robot.visit_s
+    tour = Tour.of(stops, n)
+    tour.used[0] = used_s(aisles, robot, stops)
+    filled(aisles.travel, robot_clock(robot, seconds), tour, reward, 0.15)
+    assert len(tour.stops) > len(stops)
+    assert tour.stops.tolist() in [*ends_of(aisles, robot, stops, reward, seconds)]
+    assert np.flatnonzero(tour.visited).tolist() == sorted(tour.stops.tolist())
+    assert tour.used[0] == pytest.approx(used_s(aisles, robot, tour.stops))

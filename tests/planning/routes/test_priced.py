@@ -102,3 +102,48 @@ def test_a_kind_of_drive_begins_and_ends_in_its_own_stretches(row, returns):
     # nor does it take what lies out of its stretches
     assert (worth[at[0] + 1 :] < worth[at]).all()
     assert (worth[:, : at[1]] < worth[at]).all()
+
+
+def most_in_a_pass(places, costs):
+    """Return the most that a pass by some places can gain: every way to take each is tried.
+
+    A place ``(metres, lower, upper)`` gives what one side gains, what both do in either order, or
+    all of it on a stretch that is driven three times: "T", and "S" where another stretch begins.
+    """
+    turn, least, twice_m = costs
+    best = -np.inf
+    for ways in product(("", "L", "U", "LU", "UL", "T", "S"), repeat=len(places)):
+        gain, side, last = 0.0, "", None
+        for way, (at, lower, upper) in zip(ways, places, strict=True):
+            if way == "":
+                last = None
+            elif way in "TS":
+                begins = way == "S" or last is None
+                gain += lower + upper - (least if begins else twice_m * (at - last))
+                last, side = at, ""
+            else:
+                gain += lower * ("L" in way) + upper * ("U" in way)
+                gain -= turn * sum(one != other for one, other in pairwise(side + way))
+                last, side = None, way[-1]
+        best = max(best, gain)
+    return best
+
+
+@pytest.mark.parametrize(("turn", "twice_m"), [(0.05, 5.0), (0.3, 0.1), (0.5, 0.02), (0.8, 0.1)])
+@pytest.mark.parametrize("seed", range(2))
+def test_one_pass_is_worth_the_most_of_all_ways_to_stop_turn_and_drive_stretches_three_times(
+    turn, twice_m, seed
+):
+    ladder = ladder_below(Aisles.of(rectangle(3, 4, Planting(faces=2))))
+    k, stop, least = int(np.argmax(np.diff(ladder.start))), 0.2, 0.6 * turn
+    inside = np.arange(ladder.start[k], ladder.start[k + 1])
+    reward = np.random.default_rng(seed).random(len(ladder.plant))
+    gain = np.maximum(reward - stop, 0.0)
+    places = []
+    for here in np.unique(ladder.in_m[inside]):
+        upper = (ladder.in_m == here) & ladder.upper
+        lower = (ladder.in_m == here) & ~ladder.upper
+        sides = (gain[inside][each[inside]].sum() for each in (lower, upper))
+        places.append((here, *sides))
+    found = once(ladder, reward, (k, stop, twice_m / 2), (turn, least))
+    assert found == pytest.approx(most_in_a_pass(places, (turn, least, twice_m)))

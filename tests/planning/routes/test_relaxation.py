@@ -128,3 +128,18 @@ def test_ladders_are_made_once_for_a_plot_and_gone_with_it():
     del aisles
     gc.collect()
     assert gone() is None
+
+
+def test_the_ends_of_some_aisles_and_a_gate_of_their_own_are_as_far_apart_as_told():
+    rungs = Ladders(Aisles.of(rectangle(5, 4))).rungs
+    members, to_gate_m = np.array([3, 0, 4]), np.arange(6.0).reshape(2, 3) + 1.0
+    apart_m = relaxation._apart(rungs, members, to_gate_m)
+    assert apart_m.shape == (2, 2, 4, 4)
+    for side, other, a, b in np.ndindex(2, 2, 3, 3):
+        told_m = rungs.apart_m[side, other, members[a], members[b]]
+        assert apart_m[side, other, a, b] == told_m
+    for side, other, a in np.ndindex(2, 2, 3):
+        # the gate is one place, whichever of its ends is asked for
+        assert apart_m[side, other, a, 3] == to_gate_m[side, a]
+        assert apart_m[other, side, 3, a] == to_gate_m[side, a]
+    assert np.isinf(apart_m[:, :, 3, 3]).all()

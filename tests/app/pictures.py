@@ -37,12 +37,13 @@ STILL = "[data-testid=stApp][data-test-script-state=notRunning]"
 
 
 @contextmanager
-def served():
-    """Start the app with seasons of its own; give its address."""
+def served(begin=lambda folder: None):  # noqa: ARG005 - none is begun
+    """Start the app with seasons of its own, which `begin` may put there; give its address."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     with tempfile.TemporaryDirectory() as seasons:
+        begin(Path(seasons))
         command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser",
                    "--port", str(port), "--seasons", seasons]  # fmt: skip
         server = subprocess.Popen(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)})

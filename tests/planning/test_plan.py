@@ -4,6 +4,8 @@ from datetime import date, datetime
 
 import numpy as np
 import pytest
+import shapely
+import shapely.affinity
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT, Observations
@@ -13,6 +15,7 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.sweeps import Naive
@@ -112,3 +115,17 @@ def test_a_map_for_notebooks_asks_no_map_provider_and_shows_every_plant(day):
 def test_what_cannot_be_planned_is_said(plot, wrong, sentence):
     with pytest.raises(SettingError, match=sentence):
         plan_day(plot, **({"robot": ROBOT} | wrong))
+
+
+@pytest.mark.parametrize(
+    "place", [(5.0, 45.0, 30.0), (35.0, 30.0, 0.0), (-70.0, -33.0, 179.0), (20.0, 68.0, 90.0)]
+)
+def test_a_plot_is_planned_alike_wherever_it_lies_and_however_it_is_turned(place):
+    def planned(lon, lat, turned_deg):
+        ground = shapely.affinity.rotate(shapely.box(-30, -25, 30, 25), turned_deg, origin=(0, 0))
+        area = Frame(lon, lat).geometry_lonlat(shapely.MultiPolygon([ground]))
+        return plan_day(Plot.of(Field("p", area)), on="2026-11-18", robot=ROBOT).route
+
+    here, there = planned(5.0, 45.0, 0.0), planned(*place)
+    assert there.plant.tolist() == here.plant.tolist()
+    assert there.arrive_s == pytest.approx(here.arrive_s, abs=0.01)

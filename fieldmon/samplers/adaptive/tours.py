@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
 
 
+# tours alike but for rounding: the one that begins nearest leaves least for a day cut short
+_ALIKE = 1e-9
+
+
 @loop
 def measure_ways(travel: TravelTable, clock: Clock, next_s: Float, home_s: Float) -> None:
     """Find the seconds from every lane end to the next lanes in line, and to the gate.
@@ -106,6 +110,7 @@ def best_from(
     gate = travel.between_m.shape[0] - 1
     best_s = travel.between_m[here, gate] / clock.speed_m_s if clock.returns else 0.0
     best, onto = -price * best_s, (0, NOWHERE, 0)
+    first_s = best_s
     for row in range(tours.net.shape[1]):
         for end in range(2):
             if tours.way[0, row, end] < 0 and tours.way[1, row, end] < 0:
@@ -115,7 +120,8 @@ def best_from(
                 if tours.way[down, row, end] < 0:
                     continue
                 net = tours.net[down, row, end] - price * way_s
-                if net > best:
-                    best, onto = net, (down, row, end)
+                least = _ALIKE * abs(best)
+                if net > best + least or (net > best - least and way_s < first_s):
+                    best, onto, first_s = net, (down, row, end), way_s
                     best_s = way_s + tours.seconds[down, row, end]
     return best, best_s, onto

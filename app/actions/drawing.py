@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 import shapely
 import streamlit as st
 
-from fieldmon.errors import FieldmonError
+from fieldmon.errors import FieldmonError, PlotError
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.planting import Planting
 
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
 from ..show.maps import colours, deck, legends, marks, plant_layers
-from ..state import cached, notices, widget_memory
+from ..state import cached, notices, row_settings, widget_memory
 from ..state.chosen_units import units
 from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
-from ..state.plot_files import draw, drawn, laid
+from ..state.plot_files import draw, drawn, laid, laying
 from ..words import texts
 from ..words.language import of_error
 from . import bending, turning_rows
@@ -59,6 +59,14 @@ def rows(plot_key: str, *, measured: bool = False) -> None:
             help=texts.HALF_CANOPY_HELP.format(usual=now.metres(USUAL_HALF_CANOPY_M, 2)),
         )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
+
+
+def within_reach(problem: FieldmonError) -> None:
+    """Show what was set or drawn by hand where no plot could be laid: it may be what is wrong."""
+    if isinstance(problem, PlotError):
+        if row_settings.is_said(laying()):
+            rows(laying())
+        undo_last(laying())
 
 
 def spacings(plot_key: str) -> None:

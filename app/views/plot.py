@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.errors import PlotError
-
 from ..actions import (
     answering,
     bringing_files,
@@ -19,7 +17,7 @@ from ..actions import (
 )
 from ..show import assumed, field_map, plot_figures
 from ..show import records as records_shown
-from ..state import chosen_day, plot_before, plot_files, plot_source, rooms, row_settings
+from ..state import chosen_day, plot_before, plot_source, rooms
 from ..words import texts
 from ..words.language import in_words
 
@@ -43,12 +41,7 @@ def bring(problem: FieldmonError | None) -> None:
         return
     with said:
         answering.show(problem)
-        laying = plot_files.laying()
-        # what was set by hand may be what is wrong: it must stay within reach
-        if isinstance(problem, PlotError) and row_settings.is_said(laying):
-            drawing.rows(laying)
-        if isinstance(problem, PlotError):
-            drawing.undo_last(laying)
+        drawing.within_reach(problem)
 
 
 def show(choices: Choices) -> None:

@@ -60,8 +60,7 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
 
 def _again(progress: Progress) -> None:
     """Say why the days' finds are more than the plants found, where they are."""
-    if progress.finds > progress.found:
-        finds, plants = progress.finds, progress.found
+    if (finds := progress.finds) > (plants := progress.found):
         st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
 

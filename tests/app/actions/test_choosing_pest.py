@@ -59,7 +59,7 @@ def test_a_season_begun_with_a_pest_says_when_its_next_generation_is_due(app):
     assert not app.exception
     said = texts_of(app)
     # 146.48 degree-days of 10 a day, today's the first
-    assert "Next generation around 2026-11-30." in said
+    assert "Next generation around 30 Nov." in said
     assert "Those of that day: egg." in said
     go(app, "plot")
     assert "Pest of this season: Two-spotted spider mite, by degree-days." in texts_of(app)

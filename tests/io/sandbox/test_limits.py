@@ -27,7 +27,7 @@ def test_the_pages_state_every_limit_as_it_is():
     memory = limits.size(limits.MEMORY_BYTES)
     seconds, patience_s = limits.READ_SECONDS, limits.READ_SECONDS * limits.PATIENCE
     assert row("reading:") == f"{seconds:g} s; {memory}"
-    assert f"a far backstop: {patience_s:g} s, or {seconds:g} s without any work" in PAGE
+    assert f"after {patience_s:g} s of real time, or after {seconds:g} s without any work" in PAGE
 
 
 def test_a_limit_says_what_may_be_and_what_to_do():

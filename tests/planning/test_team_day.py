@@ -200,7 +200,7 @@ def test_who_passes_through_an_aisle_waits_until_it_is_free():
 def test_in_narrow_headlands_nobody_meets_head_on():
     """Without the setting one who goes home meets one who sets out: 4 m are too narrow for 20."""
     day = Day(n=4, robot=Robot(hours=0.5, detection=1.0), infested=0.1)
-    day.starts_s = [1500.0 * k for k in range(4)]
+    day.starts_s = [1700.0 * k for k in range(4)]
     careless = [route_of(day.scene(), work) for work in day.work()]
     assert not nobody_head_on(careless, day.starts_s, 20.0)
     careful = day.work(Teamwork(passing_m=20.0))

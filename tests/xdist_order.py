@@ -15,12 +15,12 @@ WORKER_BYTES = 1.5e9
 
 
 def workers(cores, free_bytes):
-    """Return how many workers there should be: four more than cores, where memory allows.
+    """Return how many workers there should be: one more than cores, where memory allows.
 
-    Each waits now and then, for a browser, a server or the disk. And beside a program that takes
-    all cores two workers would get half of them, six get more.
+    One waits for its browser. Each further worker imports and loads what the others have, too:
+    six on two cores need a quarter more processor time than three.
     """
-    return max(1, min(cores + 4, int(free_bytes // WORKER_BYTES)))
+    return max(1, min(cores + 1, int(free_bytes // WORKER_BYTES)))
 
 
 def in_order(items):

@@ -15,7 +15,8 @@ from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
-from fieldmon.planning.team_day import Posted, team_day
+from fieldmon.planning.team_day import team_day
+from fieldmon.planning.team_worker import Posted
 
 if TYPE_CHECKING:
     from datetime import date, time

@@ -343,7 +343,7 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
 
 
 def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str) -> None:
-    from fieldmon.drive.account import day_table, in_words, stop_table, stops_beside  # noqa: PLC0415
+    from fieldmon.drive.account import day_table, in_words, stop_table, stops_path  # noqa: PLC0415
 
     who = f"{name}, {on}" if options.serial == name else f"{on}"
     typer.echo(f"{who}: {in_words(driven)}")
@@ -352,8 +352,8 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str) -> Non
     from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
 
     write_whole(options.output, day_table(driven, on, name))
-    write_whole(stops_beside(options.output), stop_table(driven))
-    typer.echo(f"Written to {options.output} and {stops_beside(options.output)}")
+    write_whole(stops_path(options.output), stop_table(driven))
+    typer.echo(f"Written to {options.output} and {stops_path(options.output)}")
 
 
 def _robot_name(options: DriveOptions) -> RobotName:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
-from fieldmon.plot.strands import beside_their_rows
+from fieldmon.plot.strands import row_deviations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -199,7 +199,7 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     first = grid.side == grid.side[0]
     faces = np.flatnonzero(first[grid.row])
     xy_m, row = grid.xy_m[faces], grid.row_line[grid.row[faces]]
-    left_m, alone_m, free = beside_their_rows(xy_m, row)
+    left_m, alone_m, free = row_deviations(xy_m, row)
     decided = said.bearing or said.label is not None or grid.aisles_m is not None
     typical_m = float(np.sqrt(np.sum(left_m**2) / free)) if free > 0 else 0.0
     # what bends was only taken since plants stand in it; of straight lines that is not known

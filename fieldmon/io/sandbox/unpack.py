@@ -250,18 +250,18 @@ def _entries(source: Source) -> list[FileEntry]:
 def _belongings(path: Path) -> list[Path]:
     """Return the other files that lie beside a data set's main file and belong to it."""
     if path.name.lower() == "taskdata.xml":
-        return [other for other in _beside(path) if _TASK_FILE.fullmatch(other.name)]
+        return [other for other in _siblings(path) if _TASK_FILE.fullmatch(other.name)]
     wanted = _PARTS.get(path.suffix.lower(), ())
     if not wanted:
         return []
     return [
         other
-        for other in _beside(path)
+        for other in _siblings(path)
         if other.stem == path.stem and other.suffix.lower() in wanted
     ]
 
 
-def _beside(path: Path) -> list[Path]:
+def _siblings(path: Path) -> list[Path]:
     try:
         return sorted(other for other in path.parent.iterdir() if other != path)
     except OSError:

@@ -501,10 +501,10 @@ def simulated_season(
     """
     n_days, share, rate, seed = numbers
     streams = RandomStreams(seed)
-    plot, chance, living = _laid
-    robot = robot if living is None else living.pest.seen_by(robot)
+    plot, chance, pest_in_weather = _laid
+    robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
     start = season_start(plot.grid, chance, share, streams)
-    settings = SeasonSettings(n_days=n_days, spread=Spread(rate), pest=living)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(rate), pest=pest_in_weather)
     decides = sampler(sampler_name)
     walk = list(simulated_days(plot.aisles, robot, decides, start, settings, streams))
     return walk, season_metrics(walk)

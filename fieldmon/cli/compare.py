@@ -86,7 +86,7 @@ class CompareOptions:
     ] = None
     on: WorkDate = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
 
@@ -140,21 +140,21 @@ def _scenarios(options: CompareOptions) -> list[TeamScenario]:
 
     if options.hectares and options.plot is not None:
         raise SettingError("Give a plot file or --hectares, but not both.")
-    options.living.check_alone(spread=options.spread, to=options.to)
-    robot = options.living.seen(options.worker.robot())
+    options.pest_options.check_alone(spread=options.spread, to=options.to)
+    robot = options.pest_options.seen(options.worker.robot())
     plots = [square_plot(hectares) for hectares in options.hectares or ()]
     known = [(plot, unknown_chance(plot)) for plot in plots]
     if plots:  # all of them lie in one place
         field = plots[0].field
-        living = options.living.living(field, day_on(field, day(options.on)))
+        pest_in_weather = options.pest_options.in_weather(field, day_on(field, day(options.on)))
     else:
-        own, living = _own(options)
+        own, pest_in_weather = _own(options)
         known = [own]
     return [
         TeamScenario(
             plot, chance,
             Spread(rate, options.to or "each"),  # type: ignore[arg-type]
-            robot, options.infested, options.days, living,
+            robot, options.infested, options.days, pest_in_weather,
         )
         for plot, chance in known
         for rate in options.spread or [0.1]
@@ -173,11 +173,12 @@ def _own(
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
     plot = known.plot
     begins = day_on(plot.field, told)
-    on, living = np.datetime64(begins, "D"), options.living.living(plot.field, begins)
-    prior = prior_of(living, begins)
+    on = np.datetime64(begins, "D")
+    pest_in_weather = options.pest_options.in_weather(plot.field, begins)
+    prior = prior_of(pest_in_weather, begins)
     tell_unusable(known.records, on, prior)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
-    return (plot, chance), living
+    return (plot, chance), pest_in_weather
 
 
 def _settings(

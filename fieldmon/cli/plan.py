@@ -92,13 +92,14 @@ def _plan_one(options: PlanOptions) -> None:
     from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
     from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
 
-    robot, starts = options.living.seen(options.worker.robot()), options.starts()
+    robot, starts = options.pest_options.seen(options.worker.robot()), options.starts()
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = starts.on_plot(known.plot.field)
     on = np.datetime64(begins.date(), "D")
-    living = options.living.living(known.plot.field, begins.date())
-    sampler, prior = sampler_of(options.sampler, options.every), prior_of(living, begins.date())
+    pest_in_weather = options.pest_options.in_weather(known.plot.field, begins.date())
+    sampler = sampler_of(options.sampler, options.every)
+    prior = prior_of(pest_in_weather, begins.date())
     settings = PlanSettings(robot, sampler, prior)
     tell_unusable(known.records, on, prior)
     today = first_day(known.plot, known.records, on, settings, known.risk)
@@ -135,7 +136,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
     request, folder = _request_of_all(options), _folder(options.output)
     plots = estate(request)
     begins = starts.on_plot(plots.fields[0])
-    living = options.living.living(plots.fields[0], begins.date())
+    pest_in_weather = options.pest_options.in_weather(plots.fields[0], begins.date())
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
         sampler=options.sampler.value,
@@ -144,8 +145,8 @@ def _plan_every_plot(options: PlanOptions) -> None:
         robot=worker.given(),
         planting=request.planting.given(),
         bound=options.bound,
-        prior=prior_of(living, begins.date()),
-        pest=None if living is None else living.pest,
+        prior=prior_of(pest_in_weather, begins.date()),
+        pest=None if pest_in_weather is None else pest_in_weather.pest,
         rover=worker.rover,
         robot_times=worker.robot_times,
         at=starts.at,

@@ -73,18 +73,18 @@ class SimulateOptions:
     ] = "zones"
     on: WorkDate = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
-    def season(self, living: PestInWeather | None) -> SeasonSettings:
+    def season(self, pest_in_weather: PestInWeather | None) -> SeasonSettings:
         """Return what happens in the season."""
         from fieldmon.infestation.spread import Spread  # noqa: PLC0415
         from fieldmon.simulation.season import SeasonSettings  # noqa: PLC0415
 
-        self.living.check_alone(spread=self.spread)
+        self.pest_options.check_alone(spread=self.spread)
         rate = 0.1 if self.spread is None else self.spread
         return SeasonSettings(
-            n_days=self.days, spread=Spread(rate), pest=living, treating=_treating(self)
+            n_days=self.days, spread=Spread(rate), pest=pest_in_weather, treating=_treating(self)
         )
 
 
@@ -108,12 +108,13 @@ def simulate(options: SimulateOptions) -> None:
 
     names = options.sampler or COMPARED_SAMPLERS
     refuse_idle_every([name.value for name in names], options.every)
-    robot, told = options.living.seen(options.worker.robot()), day(options.on)
+    robot, told = options.pest_options.seen(options.worker.robot()), day(options.on)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = day_on(known.plot.field, told)
-    on, living = np.datetime64(begins, "D"), options.living.living(known.plot.field, begins)
-    season, prior = options.season(living), prior_of(living, begins)
+    on = np.datetime64(begins, "D")
+    pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)
+    season, prior = options.season(pest_in_weather), prior_of(pest_in_weather, begins)
     tell_unusable(known.records, on, prior)
     plot, records = known.plot, known.records
     chance = prior_chance(plot.grid, plot.field, records, on, prior, known.risk)

@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
@@ -60,7 +60,7 @@ class PriorOptions:
             return CALIBRATED
         if self.maps is not None:
             raise SettingError("--pest goes without --maps: on mapped plants nothing spreads.")
-        return replace(CALIBRATED, pest=living_of(self.pest))
+        return replace(CALIBRATED, pest=pest_in_weather_of(self.pest))
 
 
 @with_options

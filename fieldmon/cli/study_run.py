@@ -62,13 +62,13 @@ class StudyOptions:
     scheduler: Annotated[
         str | None, typer.Option(help="Scheduler of a Dask cluster: tcp://host:8786.")
     ] = None
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
 
     def design(self) -> Design:
         """Return what is compared."""
         from fieldmon.simulation.design import Design  # noqa: PLC0415
 
-        self.living.check_alone(spread=self.spread or None)
+        self.pest_options.check_alone(spread=self.spread or None)
         told = {
             "samplers": self.sampler,
             "hours": self.hours,
@@ -93,9 +93,10 @@ class StudyOptions:
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         known = estate(PlotRequest(sources, records=records), Terminal(flags={}))
         begins = day_on(known.fields[0], told)
-        on, living = np.datetime64(begins, "D"), self.living.living(known.fields[0], begins)
+        on = np.datetime64(begins, "D")
+        pest_in_weather = self.pest_options.in_weather(known.fields[0], begins)
         return tuple(
-            StudyPlot(one, planting_of(one), known.records.on(one), on, living)
+            StudyPlot(one, planting_of(one), known.records.on(one), on, pest_in_weather)
             for one in known.fields
         )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
@@ -88,7 +88,7 @@ def samplers(options: SamplersOptions) -> None:
         _tune()
         return
     table = options.output / "samplers.csv"
-    meant = _scenarios(options.scenario, living_of(options.pest), full=options.full)
+    meant = _scenarios(options.scenario, pest_in_weather_of(options.pest), full=options.full)
     shown = _outcomes(meant, options.seeds, table)
     for sentence in (*ratio_lines(shown), *sentences(shown)):
         typer.echo(sentence)
@@ -97,7 +97,7 @@ def samplers(options: SamplersOptions) -> None:
 
 
 def _scenarios(
-    beginnings: list[str] | None, living: PestInWeather | None, *, full: bool
+    beginnings: list[str] | None, pest_in_weather: PestInWeather | None, *, full: bool
 ) -> list[Scenario]:
     """Return the scenarios that are meant."""
     from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
@@ -108,11 +108,11 @@ def _scenarios(
     )
 
     scenarios = all_scenarios() if full else usual_scenarios()
-    if living is not None:
-        scenarios = with_pest(scenarios, living)
+    if pest_in_weather is not None:
+        scenarios = with_pest(scenarios, pest_in_weather)
     if not beginnings:
         return scenarios
-    if living is None:
+    if pest_in_weather is None:
         scenarios = [*scenarios, *in_worlds()]
     meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
     if not meant:

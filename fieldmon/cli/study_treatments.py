@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.waiting import counting
 
@@ -54,7 +54,7 @@ def treatments(
     names = tuple(sampler or known_samplers())
     for name in names:
         kind_of(name)
-    scenarios = treated_scenarios(living_of(pest))
+    scenarios = treated_scenarios(pest_in_weather_of(pest))
     study = study_of_treatments(scenarios, range(seeds), names)
     file = output / "treatments.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TreatedSeason)

@@ -324,7 +324,7 @@ def nothing_yet(
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
         detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
-        living=settings.living(),
+        pest_in_weather=settings.pest_in_weather(),
     )
 
 

@@ -132,9 +132,9 @@ class MonitoringSettings:
                 )
             )
 
-    def living(self) -> PestInWeather | None:
+    def pest_in_weather(self) -> PestInWeather | None:
         """Return the pest in its weather, day by day; None: no pest was named."""
-        return None if self.pest is None else _living(self.pest, self.weather, self.begins)
+        return None if self.pest is None else _pest_in_weather(self.pest, self.weather, self.begins)
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
@@ -187,7 +187,7 @@ class MonitoringSettings:
 
 
 @lru_cache(maxsize=4)
-def _living(pest: Pest, weather: Weather | None, begins: date) -> PestInWeather:
+def _pest_in_weather(pest: Pest, weather: Weather | None, begins: date) -> PestInWeather:
     """Return a pest in its weather, made once: a year of hours takes half a second to lay out."""
     return PestInWeather(pest, weather, begins)
 

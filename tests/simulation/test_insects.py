@@ -174,9 +174,9 @@ def test_the_map_believes_of_the_pest_that_there_is_unless_told_of_another():
         kept = morning_beliefs(GRID, Robot(), start, SeasonSettings(**told), chooses_time=False)
         return kept.on(0).cohorts is not None
 
-    living = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
-    assert ages_of(pest=living)
-    assert ages_of(believed_pest=living)
+    pest_in_weather = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
+    assert ages_of(pest=pest_in_weather)
+    assert ages_of(believed_pest=pest_in_weather)
     assert not ages_of()
 
 
@@ -190,8 +190,8 @@ def test_without_hidden_nights_what_is_new_shows_the_next_morning():
 
 
 def test_a_map_that_is_told_no_rate_goes_by_the_pest_s_nights():
-    living = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
-    settings = SeasonSettings(pest=living)
-    assert settings.believed_night(GRID)(3) == living.spread(3, GRID.frame)
-    told = SeasonSettings(pest=living, believed_spread=Spread(0.3))
+    pest_in_weather = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
+    settings = SeasonSettings(pest=pest_in_weather)
+    assert settings.believed_night(GRID)(3) == pest_in_weather.spread(3, GRID.frame)
+    told = SeasonSettings(pest=pest_in_weather, believed_spread=Spread(0.3))
     assert told.believed_night(GRID)(3) == Spread(0.3)

@@ -74,22 +74,22 @@ class Question:
         believed to be as many as the threshold has it.
     real
         The real map; None: drawn.
-    living
+    pest_in_weather
         The pest, which is detected as its file says; None: as the thesis's table has it.
     """
 
     start: str
     prior: str = "none"
     real: DatedMap | None = None
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
     @property
     def name(self) -> str:
         """Return it in words, unique."""
         words = self.start if self.real is not None else f"{self.start}, prior {self.prior}"
-        if self.living is None:
+        if self.pest_in_weather is None:
             return words
-        return f"{words}, {self.living.pest.name}, {of_pest(self.living)}"
+        return f"{words}, {self.pest_in_weather.pest.name}, {of_pest(self.pest_in_weather)}"
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ def _drawn(question: Question, streams: RandomStreams) -> _Plot:
     else:
         aisles, infested = question.real.aisles, question.real.infested
         level = float(np.clip(infested.mean() / apart, 0.002, 0.45))
-    known = Scenario(prior=question.prior, living=question.living)
+    known = Scenario(prior=question.prior, pest_in_weather=question.pest_in_weather)
     robot = replace(known.believed_robot, returns=False, hours=24.0).with_times("thesis")
     shows = infested & (rng.random(len(infested)) < robot.detects)
     morning = known_chance(aisles.grid, known, infested, streams.of("records"), level)

@@ -54,11 +54,13 @@ def test_sums_are_means_over_seeds_and_over_the_whole_w(answered):
 
 def test_a_pest_is_asked_about_as_it_is_seen(answered):
     """One seen as by the thesis's table changes no answer; a whole W is longer for a shy one."""
-    alike = answers(Question("clusters", living=PestInWeather(Pest("alike"))), 1)
+    alike = answers(Question("clusters", pest_in_weather=PestInWeather(Pest("alike"))), 1)
     assert [(a.looks, a.verdict) for a in alike] == [
         (a.looks, a.verdict) for a in answered if a.seed == 1
     ]
-    (shy, *_) = answers(Question("clusters", living=PestInWeather(Pest("shy", detection=0.3))), 1)
+    (shy, *_) = answers(
+        Question("clusters", pest_in_weather=PestInWeather(Pest("shy", detection=0.3))), 1
+    )
     assert "shy" in shy.question
     assert shy.contender == alike[0].contender == W_FIXED
     assert shy.looks > alike[0].looks

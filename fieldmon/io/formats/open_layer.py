@@ -77,13 +77,13 @@ def _listed(staged: StagedMember) -> list[LayerInfo]:
     if kind in WORKBOOKS:
         names = sheet_names(staged.path, staged.name)
         return [LayerInfo(staged.name, sheet, None) for sheet in names]
-    if kind in {FileKind.GEOJSON, FileKind.PARQUET, FileKind.ISOXML}:
-        return [LayerInfo(staged.name, staged.member.stem, "Unknown")]
-    if kind is FileKind.TABLE:
-        return [LayerInfo(staged.name, staged.member.stem, None)]
-    listed = _gdal_layers(staged)
     if kind in {FileKind.SHAPEFILE, *_MAPINFO}:
-        return [LayerInfo(staged.name, staged.member.stem, listed[0].geometry_type)]
+        shapes = _gdal_layers(staged)[0].geometry_type
+        return [LayerInfo(staged.name, staged.member.stem, shapes)]
+    if kind in _READERS:
+        shapes = None if kind is FileKind.TABLE else "Unknown"
+        return [LayerInfo(staged.name, staged.member.stem, shapes)]
+    listed = _gdal_layers(staged)
     return [LayerInfo(staged.name, one.name, one.geometry_type) for one in listed]
 
 

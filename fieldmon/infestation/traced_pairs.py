@@ -123,7 +123,11 @@ class TracedPairs:
 
     @classmethod
     def of(cls, grid: PlantGrid, chance: Floats, clustering: float = CLUSTERING) -> TracedPairs:
-        """Begin with a chance map, see :func:`fieldmon.infestation.pairs.pair_chances`."""
+        """Begin with the `chance` ``(n,)`` of each plant of a `grid`.
+
+        `clustering` is the correlation of neighbours, see
+        :func:`fieldmon.infestation.pairs.pair_chances`.
+        """
         chance = np.clip(chance, LEAST_CHANCE, MOST_CHANCE)
         shares = np.zeros((len(chance), N_ORIGINS), np.float32)
         elsewhere = chance < chance.mean() * _AVERAGE

@@ -80,9 +80,9 @@ class BeliefSettings:
     def first_morning(
         self, grid: PlantGrid, chance: NDArray[np.float64], pest: Pest | None = None
     ) -> Belief:
-        """Return what is believed at first, from a chance map ``(n,)``, of a pest if one is named.
+        """Return what is believed at first, from the `chance` ``(n,)`` of each plant of a `grid`.
 
-        Only where finds are traced is anything made of the pest.
+        Only where finds are traced is anything made of a `pest`.
         """
         if not self.traces:
             return PairApproximation.of(grid, chance)
@@ -113,7 +113,7 @@ class BeliefSettings:
         return morning.learn(plants, found, Learning(detection, treated=self.treated))
 
     def overnight(self, evening: Belief) -> Belief:
-        """Return what is believed the next morning."""
+        """Return what is believed the morning after an `evening`."""
         return evening.overnight(self.spread)
 
 

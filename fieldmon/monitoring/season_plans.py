@@ -61,6 +61,7 @@ class SeasonPlans(OpenSeason):
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Plan what is left of a day for each of the team, or for the one who works.
 
+        `on`, `now`, `keep` and `wishes` are those of `plan`.
         In the order of the team. Aisles that the routes kept of this day gave to one stay its own
         unless another way to give them out gains enough, see `Teamwork`.
         """
@@ -81,9 +82,9 @@ class SeasonPlans(OpenSeason):
         return noted
 
     def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
-        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none.
+        """Return the plants ``(k,)`` of the latest route kept for the day `on`; empty without one.
 
-        Of a team it is that of the one named, or of the first.
+        Of a team it is that of `who` is named, or of the first.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             settings = self._read(db).settings

@@ -141,7 +141,7 @@ class MonitoringSettings:
         return sampler(self.sampler, **self.sampler_settings)
 
     def member(self, who: str) -> TeamMember:
-        """Return one of the team by its name; raise `SettingError` if there is none."""
+        """Return the one of the team whose name is `who`; raise `SettingError` if there is none."""
         for one in self.team:
             if one.name.casefold() == who.casefold():
                 return one
@@ -154,7 +154,7 @@ class MonitoringSettings:
         )
 
     def day(self, on: date) -> int:
-        """Return the number of a date, from 0; raise `SettingError` outside the season."""
+        """Return the number of the day `on`, from 0; raise `SettingError` outside the season."""
         what = "A day of a season must be a date"
         must_be(what, on, date, "Give date(2026, 11, 18).", but_no=(datetime,))
         number = (on - self.begins).days

@@ -119,7 +119,10 @@ class Field:
         return Frame((west + east) / 2, (south + north) / 2, bearing_deg)
 
     def drivable(self) -> MultiPolygon:
-        """Return the boundary without the no-go areas, lon/lat."""
+        """Return the boundary without the no-go areas, lon/lat.
+
+        Raise `PlotError` where nothing is left of it.
+        """
         if self.no_go.is_empty:
             return self.boundary
         left = shapely.difference(self.boundary, self.no_go)

@@ -189,7 +189,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     decides = sampler_of(options.sampler, options.every)
     monitor = Monitor(plot, decides, worker, chance, seed=options.seed)
     tell_assumed(assumed_by((), prior, worker, plot.grid))
-    if told := aisles.told_shut():
+    if told := aisles.shut_sentence():
         typer.echo(told)
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         begins = local_clock(plot.field).moment(on, time(6))
@@ -212,7 +212,7 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
     made_up = "" if options.robot is Drives.VDA5050 else ", finds made up"
     today = SeasonDay(season, on, f"{_name(options)}{made_up}")
     tell_assumed(season.assumed())
-    if told := aisles.told_shut():
+    if told := aisles.shut_sentence():
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")

@@ -91,5 +91,5 @@ def day_in_words(route: Route) -> str:
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
         f"about {route.expected_found:.1f} of these would be found."
     )
-    more = (route.bound_sentence, route.aisles.told_shut())
+    more = (route.bound_sentence, route.aisles.shut_sentence())
     return "\n".join([said, *(one for one in more if one)])

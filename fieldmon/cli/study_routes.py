@@ -63,7 +63,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
         run_teams,
         sentences,
         table,
-        told_of_teams,
+        team_sentences,
     )
 
     can_be_folder(output)
@@ -78,7 +78,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
             made += list(run(instance, shares, methods, solver_seconds))
             teams += list(run_teams(instance, shares, team or []))
             bar.update(1)
-    for sentence in (*sentences(made), *told_of_teams(teams)):
+    for sentence in (*sentences(made), *team_sentences(teams)):
         typer.echo(sentence)
     write_all(output, {"routes.csv": csv_text([*made, *teams]), "routes.md": table(made)})
 

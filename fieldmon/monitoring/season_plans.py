@@ -137,7 +137,7 @@ class SeasonPlans(OpenSeason):
         posts = []
         for member, scene in zip(settings.team, scenes, strict=True):
             begun_s = member.starts_s + member.robot.day_s - scene.seconds_left
-            told = scene if wishes is None else wishes.told(scene)
+            told = scene if wishes is None else wishes.applied_to(scene)
             posts.append(Posted(told, begun_s, np.zeros(len(scene.chance), np.bool_)))
         before = self._given_out(settings, day)
         works = team_day(posts, settings.decides(), settings.teamwork, before=before)

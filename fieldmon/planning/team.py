@@ -11,7 +11,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.planning.bound_wording import PROVED, told
+from fieldmon.planning.bound_wording import PROVED, bound_sentence
 from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
 from fieldmon.planning.members import must_differ
@@ -89,7 +89,7 @@ class TeamPlan:
     @property
     def sentence(self) -> str:
         """Return for people what is expected, and what no other routes can exceed."""
-        return told(self.expected_found, self.bound, routes="routes")
+        return bound_sentence(self.expected_found, self.bound, routes="routes")
 
     def meetings(self) -> list[Meeting]:
         """Return where two are in one aisle at once: nowhere, if the plan is right."""
@@ -210,7 +210,7 @@ def bound_of_days(days: Sequence[DayPlan]) -> str:
         return ""
     tasks = [_task_of(day.scene) for day in days]
     held = _expected(days)
-    return told(held, max(team_bound(tasks, held), held), routes="routes")
+    return bound_sentence(held, max(team_bound(tasks, held), held), routes="routes")
 
 
 def _task_of(scene: Scene) -> _Task:

@@ -49,9 +49,9 @@ class StudyPlot:
     @cached_property
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
-        parts = (*self.field.told, *vars(self.observations).values())
+        parts = (*self.field.content, *vars(self.observations).values())
         # unsaid, it leaves a plot what it was before pests could be named
-        pest = () if self.pest_in_weather is None else self.pest_in_weather.told
+        pest = () if self.pest_in_weather is None else self.pest_in_weather.content
         return digest(*parts, as_written(self.planting), str(self.day), *pest, length=DIGITS)
 
     @cached_property

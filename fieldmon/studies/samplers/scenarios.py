@@ -217,7 +217,7 @@ def with_pest(scenarios: Iterable[Scenario], pest_in_weather: PestInWeather) -> 
 
 def of_pest(pest_in_weather: PestInWeather) -> str:
     """Return digits that tell a pest in its weather from any other."""
-    return digest(*pest_in_weather.told, length=_DIGITS)
+    return digest(*pest_in_weather.content, length=_DIGITS)
 
 
 def infested_at_start(

@@ -80,7 +80,7 @@ class TeamScenario:
         settings = (self.robot, self.infested, self.n_days, self.spread)
         parts = (self.plot.grid.xy_m, self.chance, repr(settings).encode())
         # unsaid, it leaves a scenario what it was before pests could be named
-        pest = () if self.pest_in_weather is None else self.pest_in_weather.told
+        pest = () if self.pest_in_weather is None else self.pest_in_weather.content
         nights = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
         nights = nights if self.pest_in_weather is None else self.pest_in_weather.pest.name
         return f"{self.plot.field.name} {nights} {digest(*parts, *pest, length=_DIGITS)}"

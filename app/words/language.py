@@ -350,7 +350,7 @@ def for_reports(language: str) -> ReportLanguage:
 # -- numbers and dates
 
 
-class _Blanks(Formatter):
+class _BlanksInLanguage(Formatter):
     def __init__(self, language: str) -> None:
         self._language = language
 
@@ -363,7 +363,7 @@ class _Blanks(Formatter):
 def _filled(words: str, language: str, args: Any, values: Any) -> str:  # noqa: ANN401
     if language == ENGLISH and "%}" not in words:
         return str.format(words, *args, **values)
-    return _Blanks(language).vformat(str(words), args, values)
+    return _BlanksInLanguage(language).vformat(str(words), args, values)
 
 
 def number(value: float, form: str = "") -> str:

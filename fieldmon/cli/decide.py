@@ -141,7 +141,7 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     typer.echo("\n".join([f"{when}, after the day's work.", asked.sentence(), *said, *where]))
     kept.advise(when, " ".join([*said[:1], *where[:1]]))
     if output:
-        _write(_Asked(kept, when, advice, product), output)
+        _write(_AdviceAsked(kept, when, advice, product), output)
 
 
 def _refuse_idle(*each: tuple[object, str]) -> None:
@@ -158,7 +158,7 @@ def _own(path: Path | None) -> tuple[Threshold, ...] | None:
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
+class _AdviceAsked:
     kept: Season
     when: date
     advice: Advice
@@ -178,7 +178,7 @@ def _check_name(path: Path) -> None:
     require_place(path)
 
 
-def _write(asked: _Asked, paths: list[Path]) -> None:
+def _write(asked: _AdviceAsked, paths: list[Path]) -> None:
     from fieldmon.compute.units import Units  # noqa: PLC0415
     from fieldmon.io.writers.treatment_map import write_treatment_map  # noqa: PLC0415
     from fieldmon.reports.advice import advice_report  # noqa: PLC0415

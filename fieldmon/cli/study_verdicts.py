@@ -35,7 +35,7 @@ def verdicts(
     from fieldmon.simulation import executor  # noqa: PLC0415
     from fieldmon.simulation.experiment import run  # noqa: PLC0415
     from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.verdicts.looks import (  # noqa: PLC0415
+    from fieldmon.studies.verdicts.until_verdict import (  # noqa: PLC0415
         VerdictOutcome,
         real_questions,
         study_of_verdicts,

@@ -145,7 +145,7 @@ def take(
         clocks = received, sent
         for one in news.values():
             known[one.id] = one.content(), ""
-        letter = _Letter(list(news.values()), clocks, shift)
+        letter = _SentFindings(list(news.values()), clocks, shift)
         problems, batch, made = _write(season, change, scout, letter)
         taken_back = _take_back(change) if news else set()
         if made:
@@ -167,7 +167,7 @@ def take(
 
 
 @dataclass(frozen=True)
-class _Letter:
+class _SentFindings:
     """What came at once, and by how much the phone's clock is ahead."""
 
     findings: list[Finding]
@@ -202,7 +202,7 @@ def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> No
 
 
 def _write(
-    season: Season, change: SeasonChange, scout: Scout, letter: _Letter
+    season: Season, change: SeasonChange, scout: Scout, letter: _SentFindings
 ) -> tuple[dict[str, str], int, list[Inspections]]:
     """Write findings and their inspections.
 

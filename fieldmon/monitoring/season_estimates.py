@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-class _Asked(NamedTuple):
+class _MorningAsked(NamedTuple):
     """What the file says now; what is believed on the morning of a day; the day's number."""
 
     contents: SeasonContents
@@ -144,12 +144,12 @@ class SeasonEstimates(OpenSeason):
             return day_figures.kept(db)
 
     @contextmanager
-    def _asked(self, on: date) -> Iterator[_Asked]:
+    def _asked(self, on: date) -> Iterator[_MorningAsked]:
         """Give what a question about a day is answered from; others wait, or would do it again."""
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            yield _Asked(contents, contents.morning(day), day)
+            yield _MorningAsked(contents, contents.morning(day), day)
 
 
 def _development(now: SeasonContents, on: date) -> Development | None:

@@ -275,7 +275,7 @@ def simulated_days(
     insects, and would find the same ones on a plant.
     """
     check_start(aisles, start)
-    season = SeasonOnItsWay(aisles, robot, sampler, start, settings)
+    season = RunningSeason(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
         if season.moves_by_day:
@@ -286,7 +286,7 @@ def simulated_days(
         season.pass_night(day, overnight)
 
 
-class SeasonOnItsWay:
+class RunningSeason:
     """A season on its way: what a day changes, and how."""
 
     def __init__(

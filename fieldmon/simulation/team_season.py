@@ -14,7 +14,7 @@ from fieldmon.planning.team_day import merged, team_day
 from fieldmon.planning.team_worker import Posted
 from fieldmon.planning.workday import draw_detections
 from fieldmon.samplers.base import resting_place
-from fieldmon.simulation.season import SeasonOnItsWay, check_start, simulated_days
+from fieldmon.simulation.season import RunningSeason, check_start, simulated_days
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -95,7 +95,7 @@ def simulated_team_days(
         season.pass_night(day, overnight)
 
 
-class _TeamSeason(SeasonOnItsWay):
+class _TeamSeason(RunningSeason):
     """A season of a team on its way."""
 
     def __init__(

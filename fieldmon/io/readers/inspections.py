@@ -143,7 +143,7 @@ def look_up(
     return once, tuple(said)
 
 
-class _Placed(NamedTuple):
+class _PlantsFound(NamedTuple):
     """Plants ``(m,)``, -1 for none; why records cannot be placed, or are doubtful, by index.
 
     And what else there is to say.
@@ -155,7 +155,7 @@ class _Placed(NamedTuple):
     said: tuple[ImportMessage, ...] = ()
 
 
-def _by_number(rows: InspectionRows, grid: PlantGrid) -> _Placed:
+def _by_number(rows: InspectionRows, grid: PlantGrid) -> _PlantsFound:
     """Place records that name the plant's number, and hold it against whatever else they say."""
     stated = rows.plant
     plant = np.where((stated >= 0) & (stated < len(grid)), stated, -1)
@@ -180,7 +180,7 @@ def _by_number(rows: InspectionRows, grid: PlantGrid) -> _Placed:
             row=line[k],
             number=number[k],
         )
-    return _Placed(plant, problems, doubts)
+    return _PlantsFound(plant, problems, doubts)
 
 
 def _misplaced(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) -> dict[int, str]:
@@ -218,12 +218,12 @@ def _is_near(lonlat: NDArray[np.float64], grid: PlantGrid) -> NDArray[np.bool_]:
         return np.asarray((off < _FARTHEST_DEG).all(axis=1), dtype=bool)
 
 
-def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> _Placed:
+def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> _PlantsFound:
     """Place records that name a row and a number in it."""
     plant = np.full(len(rows), -1, np.int64)
     records = np.flatnonzero(wanted & (rows.line > 0) & (rows.number > 0))
     if not len(records):
-        return _Placed(plant, {}, {})
+        return _PlantsFound(plant, {}, {})
     first, said = _labelled(rows, grid, records)
     is_there = first >= 0
     second = (rows.face[records] == 2) & (grid.twin[first] >= 0)
@@ -237,7 +237,7 @@ def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) 
         )
         for i in records[~is_there].tolist()
     }
-    return _Placed(plant, problems, {}, said)
+    return _PlantsFound(plant, problems, {}, said)
 
 
 def _from_zero(rows: InspectionRows, plant: NDArray[np.int64]) -> dict[int, str]:
@@ -334,7 +334,7 @@ def _key(line: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64
 
 def _by_position(
     rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp], options: InspectionOptions
-) -> _Placed:
+) -> _PlantsFound:
     """Snap records to the nearest plant, and tell where that is doubtful.
 
     Another plant could be the nearest if the line halfway between the two is closer to the
@@ -346,7 +346,7 @@ def _by_position(
     problems: dict[int, str] = dict.fromkeys(records[~near].tolist(), far)
     records = records[near]
     if not len(records):
-        return _Placed(plant, problems, {})
+        return _PlantsFound(plant, problems, {})
     xy_m = grid.frame.xy_m(rows.lonlat[records])
     first, rival, margin_m = _nearest(grid, xy_m)
     plant[records] = first
@@ -370,7 +370,7 @@ def _by_position(
             away_m=np.hypot(*step[k]),
             plant=_label(grid, first[k]),
         )
-    return _Placed(plant, problems, doubts)
+    return _PlantsFound(plant, problems, doubts)
 
 
 def _along_and_across(

@@ -202,12 +202,12 @@ def _wald(plot: _Plot) -> WaldPlan:
     )
 
 
-def fixed_looks(plan: WaldPlan) -> int:
+def fixed_inspections(plan: WaldPlan) -> int:
     """Return how many looks tell the two levels of a plan apart if all are made (normal law).
 
     Examples
     --------
-    >>> fixed_looks(WaldPlan(0.025, 0.1))
+    >>> fixed_inspections(WaldPlan(0.025, 0.1))
     61
     """
     low, high = plan.low, plan.high
@@ -219,7 +219,7 @@ def fixed_looks(plan: WaldPlan) -> int:
 def _w_all(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
     """Walk one W with as many looks as the two levels need, and count."""
     plan = _wald(plot)
-    looks = min(fixed_looks(plan), MOST, len(plot.shows))
+    looks = min(fixed_inspections(plan), MOST, len(plot.shows))
     seen = plot.shows[w_walk(plot.aisles.grid, looks, looks)]
     # half way between the levels, as far as their spreads go
     spreads = [np.sqrt(level * (1 - level)) for level in (plan.low, plan.high)]
@@ -229,14 +229,14 @@ def _w_all(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
 
 def _w_wald(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
     plan = _wald(plot)
-    walk = w_walk(plot.aisles.grid, fixed_looks(plan), MOST)
+    walk = w_walk(plot.aisles.grid, fixed_inspections(plan), MOST)
     return decided(plan, plot.shows[walk])
 
 
 def _w_iwao(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
     # one side is wrong in a tenth
     plan = IwaoPlan(plot.level * plot.robot.detects, z=float(-ndtri(WRONG)))
-    walk = w_walk(plot.aisles.grid, fixed_looks(_wald(plot)), MOST)
+    walk = w_walk(plot.aisles.grid, fixed_inspections(_wald(plot)), MOST)
     return decided(plan, plot.shows[walk])
 
 

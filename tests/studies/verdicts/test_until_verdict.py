@@ -6,13 +6,13 @@ from fieldmon.decisions.sequential import WaldPlan
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.pests.pest import Pest
-from fieldmon.studies.verdicts.looks import (
+from fieldmon.studies.verdicts.until_verdict import (
     CONTENDERS,
     DECIDE,
     W_FIXED,
     Question,
     answers,
-    fixed_looks,
+    fixed_inspections,
     summaries,
 )
 
@@ -39,7 +39,7 @@ def test_a_verdict_is_right_where_the_truth_is_on_its_side(answered):
 
 def test_the_whole_w_is_as_long_as_its_two_levels_need(answered):
     """By the normal law: (z (s1 + s2) / (p2 - p1))^2."""
-    assert fixed_looks(WaldPlan(0.025, 0.1)) == 61
+    assert fixed_inspections(WaldPlan(0.025, 0.1)) == 61
     assert {one.looks for one in answered if one.contender == W_FIXED} == {74.0}
 
 

@@ -18,13 +18,15 @@ from fieldmon.io.formats.tables import read_sheet, read_text_table
 from fieldmon.io.formats.workbooks import sheet_names
 from fieldmon.io.import_report import seen
 from fieldmon.io.options import ReadOptions, Source, source_name
-from fieldmon.io.sandbox.unpack import Member, Workroom, choose_member, members
+from fieldmon.io.sandbox.unpack import choose_member, members
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
     from fieldmon.io.formats.gdal import GdalLayer
+    from fieldmon.io.sandbox.file_entries import Member
+    from fieldmon.io.sandbox.workroom import Workroom
 
 _MAPINFO = frozenset({FileKind.MAPINFO_TAB, FileKind.MAPINFO_MIF})
 _NOTES = (".txt", ".md", ".html", ".xml", ".json.txt")

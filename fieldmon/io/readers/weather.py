@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import Layer
     from fieldmon.io.options import Source
     from fieldmon.io.readers.weather_options import WeatherOptions
-    from fieldmon.io.sandbox.unpack import Workroom
+    from fieldmon.io.sandbox.workroom import Workroom
     from fieldmon.pests.weather import Floats, Weather
 
 # as a share of what was measured: more than so much nonsense is a wrong unit

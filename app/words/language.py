@@ -125,7 +125,7 @@ class Plural(Text):
         return found.npgettext(self.context, self.one, str(self), number) or str(self)
 
 
-class Late(str):  # noqa: SLOT000
+class Late(str):  # noqa: SLOT000 - it has one attribute
     """A text that is looked up when it is shown, for what is told its words before any session."""
 
     look_up: Callable[[], str]

@@ -70,7 +70,7 @@ class ChangeOptions:
 
     def changed(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
         """Return a season's settings as they are to be."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
         worker = WorkerOptions(self.hours, self.look, self.speed, robot_times=self.robot_times)
         team = tuple(replace(one, robot=worker.said_of(one.robot)) for one in settings.team)
@@ -107,7 +107,7 @@ class ChangeOptions:
 
     def _of_pest(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
         """Return settings with the pest and the weather told; ``none`` takes the pest out."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
         new, told = settings, self.pest_options
         if told.pest == "none":
@@ -127,9 +127,9 @@ class ChangeOptions:
 
     def _of_several(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return settings with the team of ``--robots``; one robot is no team."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
-        from fieldmon.planning.members import team_of  # noqa: PLC0415
+        from fieldmon.planning.members import team_of
 
         robots = self.robots or ""
         if robots.isdecimal():
@@ -148,7 +148,7 @@ def change(options: ChangeOptions) -> None:
     Example: fieldmon change season.gpkg --hours 6 --sampler naive
     Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv
     """
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import Season
 
     season = Season(options.season)
     seen = season.settings

@@ -91,11 +91,11 @@ class InitOptions:
         self, begins: datetime, team: tuple[TeamMember, ...], pest_in_weather: PestInWeather | None
     ) -> MonitoringSettings:
         """Return how the season is worked."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
-        from fieldmon.monitoring import MonitoringSettings  # noqa: PLC0415
-        from fieldmon.monitoring.history import BeliefSettings  # noqa: PLC0415
-        from fieldmon.planning.members import Teamwork  # noqa: PLC0415
+        from fieldmon.monitoring import MonitoringSettings
+        from fieldmon.monitoring.history import BeliefSettings
+        from fieldmon.planning.members import Teamwork
 
         if self.spread is not None and pest_in_weather is not None:
             raise SettingError("--spread goes without --pest, which says how it spreads.")
@@ -122,7 +122,7 @@ class InitOptions:
 
 
 def _spreading(belief: BeliefSettings, rate: float) -> BeliefSettings:
-    from dataclasses import replace  # noqa: PLC0415
+    from dataclasses import replace
 
     return replace(belief, spread=replace(belief.spread, rate_per_day=rate))
 
@@ -141,9 +141,9 @@ def init(options: InitOptions) -> None:
     Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     Example: fieldmon init season.gpkg estate.zip --feature Gate --pest spider-mite
     """
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.monitoring import KeptMessage, Season  # noqa: PLC0415
+    from fieldmon.monitoring import KeptMessage, Season
 
     path, (team, at) = options.season, options.team()
     starts = WorkStart(day(options.begins, "--begins"), at)

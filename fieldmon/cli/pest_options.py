@@ -57,7 +57,7 @@ class PestOptions:
 
     def named(self) -> Pest | None:
         """Return the pest that was named; None: none was."""
-        from fieldmon.io.readers.pest_file import pest_of  # noqa: PLC0415
+        from fieldmon.io.readers.pest_file import pest_of
 
         return None if self.pest is None else pest_of(self.pest)
 
@@ -76,9 +76,9 @@ class PestOptions:
             if self.weather_option:
                 raise SettingError("--weather-option goes with --weather. Give the file too.")
             return None
-        from fieldmon.io.read import read_weather  # noqa: PLC0415
-        from fieldmon.io.readers.weather_options import WeatherOptions  # noqa: PLC0415
-        from fieldmon.plot.local_clock import utc_now  # noqa: PLC0415
+        from fieldmon.io.read import read_weather
+        from fieldmon.io.readers.weather_options import WeatherOptions
+        from fieldmon.plot.local_clock import utc_now
 
         options = chosen(WeatherOptions(now=utc_now()), self.weather_option).on(field)
         with Terminal().answering():
@@ -97,7 +97,7 @@ class PestOptions:
 
     def in_weather(self, field: Field, begins: date) -> PestInWeather | None:
         """Return the pest in its weather from a day on; None: no pest was named."""
-        from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
+        from fieldmon.infestation.pest_in_weather import PestInWeather
 
         pest, weather = self.named(), self.met(field)
         if pest is None:
@@ -113,7 +113,7 @@ class PestOptions:
 
 def pest_in_weather_of(name: str | None) -> PestInWeather | None:
     """Return the pest that a study named, at the temperature of its figures; None: none was."""
-    from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
+    from fieldmon.infestation.pest_in_weather import PestInWeather
 
     pest = PestOptions(name).named()
     if pest is None:
@@ -133,8 +133,8 @@ def check_no_pest(name: str | None, study: str) -> None:
 
 def prior_of(pest_in_weather: PestInWeather | None, on: date) -> PriorSettings:
     """Return how records become chances for a day, as the pest and its weather have it."""
-    from fieldmon.infestation.pest_prior import prior_for  # noqa: PLC0415
-    from fieldmon.infestation.prior_settings import PriorSettings  # noqa: PLC0415
+    from fieldmon.infestation.pest_prior import prior_for
+    from fieldmon.infestation.prior_settings import PriorSettings
 
     usual = PriorSettings()
     if pest_in_weather is None:

@@ -59,7 +59,7 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
     who works on each plot. Options given here override them.
     """
-    from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
+    from fieldmon.monitoring.transactions import is_season
 
     if not options.every_plot:
         check_outputs(options.output, options.chance_map)
@@ -84,13 +84,13 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
 
 
 def _plan_one(options: PlanOptions) -> None:
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.io.writers.day_file import RouteNotes  # noqa: PLC0415
-    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
-    from fieldmon.planning.bound_wording import share_above  # noqa: PLC0415
-    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
-    from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
+    from fieldmon.io.writers.day_file import RouteNotes
+    from fieldmon.planning.assumptions import assumed_by
+    from fieldmon.planning.bound_wording import share_above
+    from fieldmon.planning.day_bound import with_bound
+    from fieldmon.planning.plan import PlanSettings, first_day
 
     robot, starts = options.pest_options.seen(options.worker.robot()), options.starts()
     request = options.files.request(options.plot, options.feature, options.observations)
@@ -124,10 +124,10 @@ def _plan_one(options: PlanOptions) -> None:
 
 def _plan_every_plot(options: PlanOptions) -> None:
     """Plan every plot of the file into a folder."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.cli.plan_all import Day, plan_all  # noqa: PLC0415
-    from fieldmon.planning.batch import Orders  # noqa: PLC0415
+    from fieldmon.cli.plan_all import Day, plan_all
+    from fieldmon.planning.batch import Orders
 
     worker, starts = options.worker, options.starts()
     # what cannot be is refused before any plot is read

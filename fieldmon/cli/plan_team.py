@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None:
     """Plan a day of a team on one plot, and write a file for each."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
-    from fieldmon.planning import team  # noqa: PLC0415
-    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance
+    from fieldmon.planning import team
+    from fieldmon.planning.assumptions import assumed_by
 
     for name in ("sampler", "every", "every_plot"):
         source = context.get_parameter_source(name)
@@ -66,7 +66,7 @@ def _tell(planned: TeamPlan, begins: datetime) -> None:
 
 
 def _write(planned: TeamPlan, begins: datetime, plot: str, files: list[list[Path]]) -> None:
-    from fieldmon.io.writers.day_file import RouteNotes  # noqa: PLC0415
+    from fieldmon.io.writers.day_file import RouteNotes
 
     parts = zip(planned.members, planned.days, planned.starts_s, files, strict=True)
     for member, day, starts_s, paths in parts:

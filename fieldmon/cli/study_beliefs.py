@@ -35,14 +35,14 @@ def beliefs(
 
     Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
     """
-    from fieldmon.samplers import sampler as named  # noqa: PLC0415
-    from fieldmon.studies.samplers.calibration import (  # noqa: PLC0415
+    from fieldmon.samplers import sampler as named
+    from fieldmon.studies.samplers.calibration import (
         BELIEFS,
         OF_PESTS,
         calibration,
         report_html,
     )
-    from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import (
         Scenario,
         all_scenarios,
         in_worlds,

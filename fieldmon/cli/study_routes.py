@@ -55,7 +55,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
 
     Example: fieldmon study routes rewards.csv --budget 0.1 --budget 0.5 -o study
     """
-    from fieldmon.studies.routes.study import (  # noqa: PLC0415
+    from fieldmon.studies.routes.study import (
         MILP,
         PYVRP,
         csv_text,
@@ -85,7 +85,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
 
 def _instances(files: list[Path] | None, seed: int | None, *, maps: bool) -> list[Instance]:
     """Return the reward matrices of files, and the families drawn from a seed."""
-    from fieldmon.studies.routes.instances import families, read_matrix  # noqa: PLC0415
+    from fieldmon.studies.routes.instances import families, read_matrix
 
     instances = [read_matrix(_text(file), file.name) for file in files or []]
     if seed is not None:

@@ -66,7 +66,7 @@ class StudyOptions:
 
     def design(self) -> Design:
         """Return what is compared."""
-        from fieldmon.simulation.design import Design  # noqa: PLC0415
+        from fieldmon.simulation.design import Design
 
         self.pest_options.check_alone(spread=self.spread or None)
         told = {
@@ -81,12 +81,12 @@ class StudyOptions:
 
     def plots(self) -> tuple[StudyPlot, ...]:
         """Return the plots with their records."""
-        import numpy as np  # noqa: PLC0415
+        import numpy as np
 
-        from fieldmon.io.options import PlotOptions  # noqa: PLC0415
-        from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource  # noqa: PLC0415
-        from fieldmon.plot.plot import planting_of  # noqa: PLC0415
-        from fieldmon.simulation.study_plot import StudyPlot  # noqa: PLC0415
+        from fieldmon.io.options import PlotOptions
+        from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+        from fieldmon.plot.plot import planting_of
+        from fieldmon.simulation.study_plot import StudyPlot
 
         told = day(self.on)
         records = None if self.observations is None else RecordSource(self.observations)
@@ -114,9 +114,9 @@ def study_run(options: StudyOptions) -> None:
 
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """
-    from fieldmon.simulation import executor, results  # noqa: PLC0415
-    from fieldmon.simulation.design import study_of  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
+    from fieldmon.simulation import executor, results
+    from fieldmon.simulation.design import study_of
+    from fieldmon.simulation.experiment import run
 
     design, plots, output = options.design(), options.plots(), options.output
     with executor.cluster(options.scheduler, options.workers) as workers:

@@ -72,8 +72,8 @@ def samplers(options: SamplersOptions) -> None:
 
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """
-    from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.samplers.summary import ratio_lines, sentences  # noqa: PLC0415
+    from fieldmon.studies.samplers.report import report_html
+    from fieldmon.studies.samplers.summary import ratio_lines, sentences
 
     can_be_folder(options.output)
     if options.pest is not None and (options.tune or options.maps is not None):
@@ -100,7 +100,7 @@ def _scenarios(
     beginnings: list[str] | None, pest_in_weather: PestInWeather | None, *, full: bool
 ) -> list[Scenario]:
     """Return the scenarios that are meant."""
-    from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import (
         all_scenarios,
         in_worlds,
         usual_scenarios,
@@ -122,10 +122,10 @@ def _scenarios(
 
 def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonOutcome]:
     """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
-    from fieldmon.simulation import executor  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of  # noqa: PLC0415
+    from fieldmon.simulation import executor
+    from fieldmon.simulation.experiment import run
+    from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of
 
     study = study_of(scenarios, range(seeds))
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome)
@@ -136,7 +136,7 @@ def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonO
 
 def _tune() -> None:
     """Print what each of Dynamic's open choices loses."""
-    from fieldmon.studies.samplers.tuning import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.tuning import (
         SEEDS,
         losses,
         tuning_scenarios,
@@ -150,7 +150,7 @@ def _tune() -> None:
 
 def _on_maps(folder: Path, output: Path) -> None:
     """Print and write how many infested plants an inspection finds on mapped plots."""
-    from fieldmon.studies.samplers.mapped_plots import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.mapped_plots import (
         SHARES,
         plots_in,
         table,

@@ -32,10 +32,10 @@ def verdicts(
 
     Example: fieldmon study verdicts --seeds 20 -o study
     """
-    from fieldmon.simulation import executor  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.verdicts.until_verdict import (  # noqa: PLC0415
+    from fieldmon.simulation import executor
+    from fieldmon.simulation.experiment import run
+    from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.verdicts.until_verdict import (
         VerdictOutcome,
         real_questions,
         study_of_verdicts,

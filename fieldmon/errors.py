@@ -21,7 +21,7 @@ class FieldmonError(Exception):
     """
 
 
-class FileProblem(FieldmonError):  # noqa: N818 - reads as what it is
+class FileProblem(FieldmonError):  # noqa: N818 - a question, not an error - reads as what it is
     """A file cannot be used as it is: choose or mend another file.
 
     Examples
@@ -35,7 +35,7 @@ class FileProblem(FieldmonError):  # noqa: N818 - reads as what it is
     """
 
 
-class ChoiceNeeded(FieldmonError):  # noqa: N818
+class ChoiceNeeded(FieldmonError):  # noqa: N818 - a question, not an error
     """The file holds more than one answer, or lacks one: the caller must choose.
 
     Parameters

@@ -1383,4 +1383,4 @@ def a_workbook_whose_sheet_breaks_off(folder):
     return zipped(parts | {sheet: parts[sheet][:300]}, "mites.xlsx")
 
 
-from tests import more_awkward  # noqa: E402, F401 - it adds to the cases above
+from tests import awkward_real_files  # noqa: E402, F401 - it adds to the cases above

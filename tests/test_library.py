@@ -90,6 +90,32 @@ def test_a_public_class_names_its_fields_and_shows_an_example(name):
     assert [field.name for field in fields if field.name not in text] == []
 
 
+def methods():
+    """Return the public methods of the library's classes, those of their bases included."""
+    bases = {
+        base
+        for name in CLASSES
+        for base in getattr(fm, name).__mro__
+        if base.__module__.startswith("fieldmon.")
+    }
+    found = {}
+    for base in bases:
+        for name, value in vars(base).items():
+            method = getattr(value, "__func__", value)
+            if inspect.isfunction(method) and not name.startswith("_"):
+                found[f"{base.__name__}.{name}"] = method
+    return found
+
+
+@pytest.mark.parametrize(("name", "method"), sorted(methods().items()))
+def test_a_public_method_says_what_it_takes_and_that_it_refuses(name, method):  # noqa: ARG001
+    text = inspect.getdoc(method)
+    takes = set(inspect.signature(method).parameters) - {"self", "cls"}
+    assert {one for one in takes if not re.search(rf"\b{one}\b", text)} == set()
+    if "raise " in inspect.getsource(method):
+        assert re.search(r"\b[Rr]aise", text)
+
+
 def test_samplers_say_in_a_line_who_they_are():
     assert repr(fm.SAMPLERS["naive"]) == "<Naive: every plant, row by row>"
     assert all(len(repr(kind)) < 100 for kind in fm.SAMPLERS.values())

@@ -8,7 +8,7 @@ import streamlit as st
 
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 
-from ..state import chosen_day, living, notices, plot_source, seasons_folder, work_day
+from ..state import chosen_day, chosen_pest, notices, plot_source, seasons_folder, work_day
 from ..words import language, texts
 from . import acting
 
@@ -37,7 +37,7 @@ def begin(choices: Choices) -> str:
     name = st.session_state.get("season_name", _proposed(choices)).strip()
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
-        pest=living.pest(), weather=living.met(choices) if living.pest() else None,
+        pest=chosen_pest.pest(), weather=chosen_pest.met(choices) if chosen_pest.pest() else None,
         language=language.current(),
     )  # fmt: skip
     said = [one.message for one in choices.messages]

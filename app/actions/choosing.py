@@ -20,9 +20,9 @@ from ..state import (
     browser,
     cached,
     chosen_language,
+    chosen_pest,
     chosen_units,
     kept_files,
-    living,
     plot_files,
     plot_source,
     sample_estate,
@@ -160,7 +160,7 @@ def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None
         day = _day(source, Calendar(today), clock)
     with foot:
         robot, sampler = _work()
-    pest, prior = living.pest(), living.prior(assumptions.prior(), made.plot, today, day)
+    pest, prior = chosen_pest.pest(), chosen_pest.prior(assumptions.prior(), made.plot, today, day)
     return Choices(
         made.key, made.plot, made.records, made.messages,
         robot if pest is None else pest.seen_by(robot), sampler, str(day),

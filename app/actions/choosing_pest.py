@@ -10,12 +10,14 @@ import streamlit as st
 from fieldmon.errors import SettingError
 
 from ..show import pest_figures
-from ..state import living, notices, widget_memory
+from ..state import chosen_pest, notices, widget_memory
 from ..state.brought_files import brought
 from ..words import texts
 from . import bringing_files
 
 if TYPE_CHECKING:
+    from fieldmon.pests.pest import Pest
+
     from ..state.choices import Choices
 
 
@@ -23,43 +25,50 @@ def show(choices: Choices) -> None:
     """Show the pest and the weather; in a season, with a button that lets it take them."""
     season = choices.season
     kept = None if season is None else season.settings.pest
-    with st.expander(texts.LIVING, expanded=bool(widget_memory.value(living.WHICH))):
-        st.caption(texts.LIVING_NOTE)
+    with st.expander(texts.PEST_AND_WEATHER, expanded=bool(widget_memory.value(chosen_pest.WHICH))):
+        st.caption(texts.PEST_NOTE)
         if season is not None:
             _say_kept(choices)
         widget_memory.show(
-            st.selectbox, texts.WHICH_PEST, list(living.options()), key=living.WHICH,
+            st.selectbox, texts.WHICH_PEST, list(chosen_pest.options()), key=chosen_pest.WHICH,
             default=_begins_with(kept), filter_mode=None, format_func=_name,
         )  # fmt: skip
-        if widget_memory.value(living.WHICH) == living.OWN:
-            bringing_files.show_one(texts.PEST_FILE, living.PEST, living.problem(living.PEST))
-        bringing_files.show_one(texts.WEATHER_FILE, living.WEATHER, living.problem(living.WEATHER))
-        chosen = living.pest()
-        if living.WEATHER in brought():
-            bringing_files.show_messages(living.messages(choices.plot, choices.today or choices.on))
+        if widget_memory.value(chosen_pest.WHICH) == chosen_pest.OWN:
+            bringing_files.show_one(
+                texts.PEST_FILE, chosen_pest.PEST, chosen_pest.problem(chosen_pest.PEST)
+            )
+        bringing_files.show_one(
+            texts.WEATHER_FILE, chosen_pest.WEATHER, chosen_pest.problem(chosen_pest.WEATHER)
+        )
+        chosen = chosen_pest.pest()
+        if chosen_pest.WEATHER in brought():
+            bringing_files.show_messages(
+                chosen_pest.messages(choices.plot, choices.today or choices.on)
+            )
         if season is not None:
-            st.button(texts.LIVING_USE, key="use_pest", on_click=_use, args=(choices,))
+            st.button(texts.PEST_USE, key="use_pest", on_click=_use, args=(choices,))
         if chosen is not None:
             pest_figures.show(chosen)
 
 
-def _begins_with(kept: object) -> str:
+def _begins_with(kept: Pest | None) -> str:
     """Return what the box begins with: the season's pest, if it is one that comes along."""
-    name = getattr(kept, "name", living.NONE)
-    return name if name in living.options() else living.NONE
+    if kept is None or kept.name not in chosen_pest.options():
+        return chosen_pest.NONE
+    return kept.name
 
 
 def _name(which: str) -> str:
-    if which == living.NONE:
+    if which == chosen_pest.NONE:
         return texts.NO_PEST
-    return texts.OWN_PEST if which == living.OWN else texts.PEST_TITLES[which]
+    return texts.OWN_PEST if which == chosen_pest.OWN else texts.PEST_TITLES[which]
 
 
 def _say_kept(choices: Choices) -> None:
     settings = choices.season.settings
     if settings.pest is None:
         return
-    st.markdown(texts.LIVING_KEPT.format(pest=pest_figures.title(settings.pest)))
+    st.markdown(texts.PEST_KEPT.format(pest=pest_figures.title(settings.pest)))
     if (weather := settings.weather) is not None and len(weather):
         days = weather.local_days()
         day = choices.units.day
@@ -71,7 +80,7 @@ def _use(choices: Choices) -> str:
     """Let a season believe its nights by the pest and the weather, from the first on."""
     season = choices.season
     settings = season.settings
-    pest, weather = living.pest(), living.met(choices)
+    pest, weather = chosen_pest.pest(), chosen_pest.met(choices)
     if pest is None and weather is not None:
         raise SettingError(texts.WEATHER_NEEDS_PEST)
     robot, team = settings.robot, settings.team
@@ -82,4 +91,4 @@ def _use(choices: Choices) -> str:
         settings, pest=pest, weather=weather or settings.weather, robot=robot, team=team
     )
     season.change(wanted, settings)
-    return texts.LIVING_CHANGED
+    return texts.PEST_CHANGED

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from fieldmon.infestation.inspections import RESULT_NAMES
-from fieldmon.monitoring import photos, tellings
+from fieldmon.monitoring import findings, photos
 
 #: findings in one request
 MOST_FINDINGS = 500
@@ -271,7 +271,7 @@ def description() -> dict[str, Any]:
             "version": VERSION,
             "description": "Fetch the day, tell findings, ask for the rest. Whatever is sent "
             "twice is taken once, and answers come when it is on the disk. One person may tell "
-            f"{tellings.MOST_A_DAY} findings a day.",
+            f"{findings.MOST_A_DAY} findings a day.",
         },
         "components": {"securitySchemes": {"key": {"type": "http", "scheme": "bearer"}}},
         "security": [{"key": []}],

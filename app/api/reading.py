@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.monitoring.findings import Finding
 from fieldmon.monitoring.photos import Photo
-from fieldmon.monitoring.tellings import Telling
 
 from . import description
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 
 
-def findings(body: bytes) -> tuple[list[Telling], datetime]:
+def findings(body: bytes) -> tuple[list[Finding], datetime]:
     """Return what is told, and the phone's clock; raise `ObservationError` if it is not so."""
     sent = _checked(body, "FINDINGS")
-    return [_telling(one) for one in sent["findings"]], _moment(sent["sent"])
+    return [_finding(one) for one in sent["findings"]], _moment(sent["sent"])
 
 
 def asked(body: bytes) -> tuple[date | None, float | None]:
@@ -62,10 +62,10 @@ def photo(name: str, query: Mapping[str, str], data: bytes) -> Photo:
     return Photo(name, query["finding"], data, _moment(query["at"]), lonlat, accuracy_m)
 
 
-def _telling(sent: dict[str, Any]) -> Telling:
+def _finding(sent: dict[str, Any]) -> Finding:
     lon, lat = sent.get("lon"), sent.get("lat")
     result = sent.get("result")
-    return Telling(
+    return Finding(
         id=sent["id"],
         at=_moment(sent["at"]),
         plant=sent.get("plant"),

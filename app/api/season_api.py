@@ -20,7 +20,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from fieldmon.errors import AccessError, FieldmonError, FileProblem, LimitError, ObservationError
-from fieldmon.monitoring import photos, photos_asked, scouts, tellings
+from fieldmon.monitoring import findings, photos, photos_asked, scouts
 
 from ..state import opened_seasons, seasons_folder
 from . import description, documents, reading
@@ -69,7 +69,7 @@ async def _route(request: Request) -> Response:
 async def _findings(request: Request) -> Response:
     season, _ = await _asked_by(request)
     told, sent = reading.findings(await _body(request, description.MOST_BYTES))
-    taken = await run_in_threadpool(tellings.take, season, _key(request), told, sent)
+    taken = await run_in_threadpool(findings.take, season, _key(request), told, sent)
     answer = [{"id": one.id, "new": one.new, "problem": one.problem} for one in taken]
     return JSONResponse({"taken": answer}, headers=_HEADERS)
 

@@ -81,7 +81,7 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
 
     And which rows the robot is too wide for.
     """
-    if told := plan.route.aisles.told_shut():
+    if told := plan.route.aisles.shut_sentence():
         st.warning(in_words(told))
     said = "" if len(plan.route) else texts.NO_STOPS
     if choices.season is not None:

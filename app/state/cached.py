@@ -94,14 +94,14 @@ _MAPS, _DAYS, _FILMS = 60, 200, 6
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Field, ...]]:  # noqa: ARG001
+def plots(key: str, options: PlotOptions, _source: Source) -> Imported[tuple[Field, ...]]:
     """Return the plots of a file."""
     return read.read_plots(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def records(
-    key: str,  # noqa: ARG001
+    key: str,
     _source: RecordSource,
     _plot: Plot,
     _fields: tuple[Field, ...],
@@ -115,7 +115,7 @@ def records(
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=_WORKING)
-def tried(key: str, _make: Callable[[], Tried]) -> Tried:  # noqa: ARG001
+def tried(key: str, _make: Callable[[], Tried]) -> Tried:
     """Return what an answer to an import's question leads to, be it nowhere.
 
     `key` stands for the file, what was answered before, and the answer.
@@ -124,14 +124,14 @@ def tried(key: str, _make: Callable[[], Tried]) -> Tried:  # noqa: ARG001
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def weather(key: str, options: WeatherOptions, _source: Source) -> Imported[Weather]:  # noqa: ARG001
+def weather(key: str, options: WeatherOptions, _source: Source) -> Imported[Weather]:
     """Return the weather of a file."""
     return read.read_weather(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def measured_plants(
-    key: str,  # noqa: ARG001
+    key: str,
     options: ReadOptions,
     _source: Source,
 ) -> Imported[Plants]:
@@ -141,7 +141,7 @@ def measured_plants(
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def drawn_rows(
-    key: str,  # noqa: ARG001
+    key: str,
     options: ReadOptions,
     _source: Source,
 ) -> Imported[MultiLineString]:
@@ -151,7 +151,7 @@ def drawn_rows(
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def drawn_blocks(
-    key: str,  # noqa: ARG001
+    key: str,
     options: PlotOptions,
     _source: Source,
 ) -> Imported[DrawnBlocks]:
@@ -166,14 +166,14 @@ def paths(source: Path) -> MultiLineString:
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def plot(key: str, choices: PlantingChoices, _field: Field) -> Plot:  # noqa: ARG001
+def plot(key: str, choices: PlantingChoices, _field: Field) -> Plot:
     """Return a field with its plants and aisles."""
     return prepare.lay(_field, choices).plot
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def plot_around(
-    key: str,  # noqa: ARG001
+    key: str,
     choices: PlantingChoices,
     _sources: PlotSources,
     _measured: Plants,
@@ -187,7 +187,7 @@ def day_plan(
     key: str,
     day: str,
     settings: PlanSettings,
-    sampler_name: str,  # noqa: ARG001 - whom the settings hold
+    sampler_name: str,
     _plot: Plot,
     _known: tuple[Observations, Array | None],
     wishes: Wishes,
@@ -212,7 +212,7 @@ def first_belief(
 
 @st.cache_resource(max_entries=_FEW)
 def chance_map(
-    key: str,  # noqa: ARG001
+    key: str,
     day: str,
     prior: PriorSettings,
     _plot: Plot,
@@ -225,7 +225,7 @@ def chance_map(
 
 
 @st.cache_resource(max_entries=_FEW)
-def newest_records(key: str, _plot: Plot, _records: Observations) -> NewestRecords:  # noqa: ARG001
+def newest_records(key: str, _plot: Plot, _records: Observations) -> NewestRecords:
     """Return what records say of plants; `key` stands for the plot, its records and the day."""
     return hotspots.newest_records(_plot.grid, _records)
 
@@ -248,15 +248,15 @@ def season(path: Path) -> Season:
 
 
 @st.cache_resource(max_entries=_FEW)
-def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:  # noqa: ARG001
+def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:
     """Return what the imports had to say when a season began."""
     return _season.messages()
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def season_plan(
-    path: str,  # noqa: ARG001
-    revision: str,  # noqa: ARG001
+    path: str,
+    revision: str,
     of: tuple[str, str | None],
     _season: Season,
     wishes: Wishes,
@@ -267,13 +267,13 @@ def season_plan(
 
 
 @st.cache_resource(max_entries=_FEW)
-def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:  # noqa: ARG001
+def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:
     """Return what is known and believed on a season's day before it is planned."""
     return _season.plan(np.datetime64(day).item(), keep=False).scene
 
 
 @st.cache_resource(max_entries=_DAYS)
-def turn_plan(key: str, robot: Robot, sampler_name: str, _scene: Scene) -> DayPlan:  # noqa: ARG001
+def turn_plan(key: str, robot: Robot, sampler_name: str, _scene: Scene) -> DayPlan:
     """Return the day of one who has only some hours for a plot; `key` stands for the scene."""
     scene = replace(_scene, robot=robot, seconds_left=robot.day_s)
     return plan_in(scene, sampler(sampler_name))
@@ -281,8 +281,8 @@ def turn_plan(key: str, robot: Robot, sampler_name: str, _scene: Scene) -> DayPl
 
 @st.cache_resource(max_entries=_FEW)
 def kept_route(
-    path: str,  # noqa: ARG001
-    revision: str,  # noqa: ARG001
+    path: str,
+    revision: str,
     of: tuple[str, str | None],
     _season: Season,
 ) -> Array:
@@ -293,8 +293,8 @@ def kept_route(
 
 @st.cache_resource(max_entries=_FEW)
 def worked(
-    path: str,  # noqa: ARG001
-    revision: str,  # noqa: ARG001
+    path: str,
+    revision: str,
     of: tuple[str, str | None],
     _season: Season,
 ) -> Route:
@@ -304,33 +304,33 @@ def worked(
 
 
 @st.cache_resource(max_entries=_FEW)
-def kept_days(path: str, revision: str, _season: Season) -> tuple[DayFigures, ...]:  # noqa: ARG001
+def kept_days(path: str, revision: str, _season: Season) -> tuple[DayFigures, ...]:
     """Return the figures of a season's days on which something happened, in order."""
     return _season.days()
 
 
 @st.cache_resource(max_entries=_DAYS)
-def day_figures(path: str, revision: str, day: str, _season: Season) -> DayFigures:  # noqa: ARG001
+def day_figures(path: str, revision: str, day: str, _season: Season) -> DayFigures:
     """Return a day of a season in figures."""
     return _season.day_figures(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def progress(path: str, revision: str, day: str, _season: Season) -> Progress:  # noqa: ARG001
+def progress(path: str, revision: str, day: str, _season: Season) -> Progress:
     """Return how far the inspections are after a day of a season."""
     return _season.progress(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:  # noqa: ARG001
+def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def advice(
-    path: str,  # noqa: ARG001
-    revision: str,  # noqa: ARG001
+    path: str,
+    revision: str,
     day: str,
     settings: AdviceSettings,
     _season: Season,
@@ -340,40 +340,40 @@ def advice(
 
 
 @st.cache_resource(max_entries=_MAPS)
-def forecast(path: str, revision: str, day: str, _season: Season) -> Forecast:  # noqa: ARG001
+def forecast(path: str, revision: str, day: str, _season: Season) -> Forecast:
     """Return how many plants are infested on the mornings after a day of a season."""
     return _season.forecast(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:  # noqa: ARG001
+def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:
     """Return where finds cluster on a day of a season."""
     number = _season.settings.day(np.datetime64(day).item())
     return hot_spots(_season.plot.grid, _season.history.known(number))
 
 
 @st.cache_resource(max_entries=_MAPS)
-def evening(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
+def evening(path: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a day after what was recorded of it."""
     return _season.evening(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def level_range(path: str, revision: str, day: str, _season: Season) -> LevelRange:  # noqa: ARG001
+def level_range(path: str, revision: str, day: str, _season: Season) -> LevelRange:
     """Return how far that chance map may be off as a whole."""
     return _season.level_range(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def morning(path: str, revision: str, day: str, _season: Season) -> Array:  # noqa: ARG001
+def morning(path: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a morning."""
     return _season.morning(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def season_report(
-    path: str,  # noqa: ARG001
-    revision: str,  # noqa: ARG001
+    path: str,
+    revision: str,
     day: str,
     units: Units,
     _season: Season,
@@ -383,26 +383,26 @@ def season_report(
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:  # noqa: ARG001
+def backdrop(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:
     """Return a picture of the ground about a plot."""
     return read_backdrop(_source, options, _near)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def relief(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:  # noqa: ARG001
+def relief(key: str, options: RasterOptions, _source: Source, _near: Field) -> Imported[Backdrop]:
     """Return the relief about a plot, of a raster of heights."""
     return read_relief(_source, options, _near)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def looks_like_heights(key: str, options: RasterOptions, _source: Source) -> bool:  # noqa: ARG001
+def looks_like_heights(key: str, options: RasterOptions, _source: Source) -> bool:
     """Return whether a raster is more likely heights than a picture."""
     return _looks_like_heights(_source, options)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def risk(
-    key: str,  # noqa: ARG001
+    key: str,
     _source: RiskSource,
     _plot: Plot,
 ) -> Imported[Array]:
@@ -412,7 +412,7 @@ def risk(
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def without_missing(
-    key: str,  # noqa: ARG001
+    key: str,
     _source: CanopySource,
     _plot: Plot,
 ) -> Imported[Plot]:
@@ -421,7 +421,7 @@ def without_missing(
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
-def directions(key: str, _plants: Array) -> tuple[RowDirection, ...]:  # noqa: ARG001
+def directions(key: str, _plants: Array) -> tuple[RowDirection, ...]:
     """Return the directions in which measured plants stand in rows, whatever was said of them."""
     return rows_from_plants(_plants).directions
 
@@ -432,12 +432,12 @@ def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:
 
 
 @st.cache_resource(max_entries=_MAPS)
-def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:  # noqa: ARG001
+def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:
     return _make()
 
 
 @st.cache_resource(max_entries=_FILMS)
-def frames(key: str, _make: Callable[[], list[list[Layer]]]) -> list[list[Layer]]:  # noqa: ARG001
+def frames(key: str, _make: Callable[[], list[list[Layer]]]) -> list[list[Layer]]:
     """Return the layers of each day of a season, kept together: they are more than maps are kept.
 
     `key` stands for all that they show, their language too.
@@ -450,7 +450,7 @@ def frames(key: str, _make: Callable[[], list[list[Layer]]]) -> list[list[Layer]
 
 @st.cache_resource(max_entries=8)
 def comparison(
-    key: str,  # noqa: ARG001
+    key: str,
     settings: ComparisonSettings,
     robot: Robot,
     _laid: LaidPlot,
@@ -464,7 +464,7 @@ def comparison(
 
 @st.cache_resource(max_entries=8)
 def drive_run(
-    key: str,  # noqa: ARG001
+    key: str,
     kind: str,
     made_up: MadeUp,
     _plot: Plot,
@@ -476,20 +476,20 @@ def drive_run(
 
 
 @st.cache_resource(max_entries=8)
-def live_drive(key: str, broker: Broker, robot: RobotName, _scene: Scene) -> LiveDrive:  # noqa: ARG001
+def live_drive(key: str, broker: Broker, robot: RobotName, _scene: Scene) -> LiveDrive:
     """Return a robot's day as it is driven; `key` stands for the plot and the day."""
     return LiveDrive(broker, robot, _scene)
 
 
 @st.cache_resource(max_entries=8, show_spinner=_WORKING)
-def recorded_drive(key: str, _data: bytes, _plot: Plot, _scene: Scene) -> DayInTime:  # noqa: ARG001
+def recorded_drive(key: str, _data: bytes, _plot: Plot, _scene: Scene) -> DayInTime:
     """Return a day that was driven; `key` stands for the scene and the file."""
     return DayInTime.of_file(_data, _plot, _scene)
 
 
 @st.cache_resource(max_entries=_FEW, show_spinner=_WORKING)
 def simulated_season(
-    key: str,  # noqa: ARG001
+    key: str,
     sampler_name: str,
     numbers: tuple[int, float, float, int],
     robot: Robot,
@@ -501,10 +501,10 @@ def simulated_season(
     """
     n_days, share, rate, seed = numbers
     streams = RandomStreams(seed)
-    plot, chance, living = _laid
-    robot = robot if living is None else living.pest.seen_by(robot)
+    plot, chance, pest_in_weather = _laid
+    robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
     start = season_start(plot.grid, chance, share, streams)
-    settings = SeasonSettings(n_days=n_days, spread=Spread(rate), pest=living)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(rate), pest=pest_in_weather)
     decides = sampler(sampler_name)
     walk = list(simulated_days(plot.aisles, robot, decides, start, settings, streams))
     return walk, season_metrics(walk)

@@ -11,7 +11,7 @@ from fieldmon.simulation.worker import LaidPlot
 
 from ..actions import background, changing, comparing
 from ..show import charts, field_map, map_layers, verdicts
-from ..state import cached, chosen_day, living
+from ..state import cached, chosen_day, chosen_pest
 from ..state.comparison import Comparison, curve, gains, outcomes
 from ..words import texts
 from ..words.language import of_error
@@ -28,12 +28,12 @@ def show(choices: Choices) -> None:
     """Choose what to compare, and watch the results come."""
     field_map.want(map_layers.day_map(choices))
     st.caption(texts.COMPARE_INTRO)
-    pest = living.in_weather(choices)
+    pest = chosen_pest.in_weather(choices)
     settings = comparing.settings(choices, pest)
     if not 1 <= len(settings.strategies) <= _MOST:
         st.warning(texts.TOO_MANY.format(most=_MOST, n=len(settings.strategies)))
         return
-    key = f"{choices.key} {choices.revision} {choices.day} {living.key(pest)}"
+    key = f"{choices.key} {choices.revision} {choices.day} {chosen_pest.key(pest)}"
     laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
     running = cached.comparison(key, settings, choices.robot, laid)
     label = texts.GO_ON if 0 < running.done < running.total else texts.RUN

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Choose a day, let it be driven or bring its file, and watch it."""
     st.caption(texts.DRIVE_INTRO)
-    scene = choices.wishes.told(choices.plan().scene)
+    scene = choices.wishes.applied_to(choices.plan().scene)
     field_map.want(drive_play.content(choices, scene, None))
     source = widget_memory.show(
         st.segmented_control, texts.DRIVE_SOURCE, list(texts.DRIVE_SOURCES), key="drive_source",

@@ -11,7 +11,7 @@ from fieldmon.simulation.worker import LaidPlot
 
 from ..actions import comparing
 from ..show import charts, field_map, simulated_day
-from ..state import cached, chosen_day, living
+from ..state import cached, chosen_day, chosen_pest
 from ..words import texts
 from ..words.language import number
 from ..words.strategies import sampler_name
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Simulate, and show any day of any sampler on the map."""
     st.caption(texts.SEASON_INTRO)
-    pest = living.in_weather(choices)
+    pest = chosen_pest.in_weather(choices)
     numbers = comparing.season(st.columns(3, vertical_alignment="bottom"), pest)
     seed = st.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
     names = _names(choices)
     laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
-    key = f"{choices.key}{choices.revision}{choices.day}{living.key(pest)}"
+    key = f"{choices.key}{choices.revision}{choices.day}{chosen_pest.key(pest)}"
     seasons = {
         name: cached.simulated_season(key, name, (*numbers, int(seed)), choices.robot, laid)
         for name in names

@@ -181,7 +181,7 @@ def main() -> None:
     for language in LANGUAGES:
         if language != ENGLISH:
             missing = update(language)
-            print(f"{path_of(language).name}: {len(missing)} to translate")  # noqa: T201
+            print(f"{path_of(language).name}: {len(missing)} to translate")  # noqa: T201 - a command
 
 
 if __name__ == "__main__":

@@ -125,7 +125,7 @@ class Plural(Text):
         return found.npgettext(self.context, self.one, str(self), number) or str(self)
 
 
-class Late(str):  # noqa: SLOT000
+class Late(str):  # noqa: SLOT000 - it has one attribute
     """A text that is looked up when it is shown, for what is told its words before any session."""
 
     look_up: Callable[[], str]
@@ -350,7 +350,7 @@ def for_reports(language: str) -> ReportLanguage:
 # -- numbers and dates
 
 
-class _Blanks(Formatter):
+class _BlanksInLanguage(Formatter):
     def __init__(self, language: str) -> None:
         self._language = language
 
@@ -363,7 +363,7 @@ class _Blanks(Formatter):
 def _filled(words: str, language: str, args: Any, values: Any) -> str:  # noqa: ANN401
     if language == ENGLISH and "%}" not in words:
         return str.format(words, *args, **values)
-    return _Blanks(language).vformat(str(words), args, values)
+    return _BlanksInLanguage(language).vformat(str(words), args, values)
 
 
 def number(value: float, form: str = "") -> str:

@@ -187,17 +187,17 @@ SEASON_INTRO = (
     "so far in percent of all infestations so far."
 )
 # pests and weather
-LIVING = "Pest and weather"
-LIVING_NOTE = (
+PEST_AND_WEATHER = "Pest and weather"
+PEST_NOTE = (
     "Which pest is looked for, and how warm it was. The chance map then follows that pest's "
     "nights, and the season says when its next generation is due."
 )
 WHICH_PEST, NO_PEST, OWN_PEST = "Pest", "Any pest: nights are as assumed", "From a file"
 PEST_FILE = "Pest: TOML, as the documentation says"
 WEATHER_FILE = "Weather by hours or days: CSV or Excel of a station, IPM Decisions JSON"
-LIVING_USE = "Use these in the season"
-LIVING_CHANGED = "The season's nights are believed by these from the first on."
-LIVING_KEPT = "Pest of this season: {pest}."
+PEST_USE = "Use these in the season"
+PEST_CHANGED = "The season's nights are believed by these from the first on."
+PEST_KEPT = "Pest of this season: {pest}."
 WEATHER_KEPT = "Its weather: {first} to {last}."
 WEATHER_NEEDS_PEST = "Weather goes with a pest, which says what warmth does: choose one."
 PEST_TITLES = {

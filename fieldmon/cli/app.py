@@ -47,9 +47,9 @@ def open_app(  # noqa: PLR0913, PLR0917 - the command's options
     ] = "",
 ) -> None:
     """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
-    import socket  # noqa: PLC0415
+    import socket
 
-    from fieldmon.io.sandbox.process import own_path  # noqa: PLC0415
+    from fieldmon.io.sandbox.process import own_path
 
     server = f"{app_package()[0]}.startup.serve"
     others = _others(lan, address, reached_at)
@@ -108,8 +108,8 @@ def _names(told: list[str] | None, reached_at: str) -> str:
 
 def _run(command: list[str], env: dict[str, str]) -> int:
     """Run the server until it ends; what ends this program ends it too. Return its exit code."""
-    import signal  # noqa: PLC0415
-    import subprocess  # noqa: PLC0415
+    import signal
+    import subprocess
 
     ended = False
     server: subprocess.Popen[bytes] | None = None

@@ -24,9 +24,9 @@ def app_package() -> tuple[str, Path]:
 
 def app_words(module: str) -> ModuleType:
     """Return a module of the app's words, which know nothing of pages."""
-    import sys  # noqa: PLC0415
-    from importlib import import_module  # noqa: PLC0415
-    from importlib.util import module_from_spec, spec_from_file_location  # noqa: PLC0415
+    import sys
+    from importlib import import_module
+    from importlib.util import module_from_spec, spec_from_file_location
 
     _, folder = app_package()
     if _INSTALLED not in sys.modules:

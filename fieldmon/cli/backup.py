@@ -20,7 +20,7 @@ def backup(
 
     Example: fieldmon backup season.gpkg --output /media/stick/season-monday.gpkg
     """
-    from fieldmon.monitoring import Store  # noqa: PLC0415
+    from fieldmon.monitoring import Store
 
     Store(season).back_up(output)
     typer.echo(f"{output} is a copy of {season} as it is now.")

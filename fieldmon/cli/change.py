@@ -66,11 +66,11 @@ class ChangeOptions:
     ] = None
     language: Language = None
     who: Annotated[str, typer.Option(help="Who makes the change.")] = ""
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
 
     def changed(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
         """Return a season's settings as they are to be."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
         worker = WorkerOptions(self.hours, self.look, self.speed, robot_times=self.robot_times)
         team = tuple(replace(one, robot=worker.said_of(one.robot)) for one in settings.team)
@@ -83,7 +83,7 @@ class ChangeOptions:
             new = replace(new, sampler_settings=sampler_settings(new.sampler, self.every))
         if self.start is not None:
             new = replace(new, starts=clock(self.start))
-        if self.spread is not None and self.living.pest != "none":
+        if self.spread is not None and self.pest_options.pest != "none":
             self._must_spread(settings)
         if self.spread is not None:
             rate = replace(settings.belief.spread, rate_per_day=self.spread)
@@ -99,7 +99,7 @@ class ChangeOptions:
 
     def _must_spread(self, settings: MonitoringSettings) -> None:
         """Refuse a rate of spread where a pest says how it spreads."""
-        if settings.pest is not None or self.living.pest is not None:
+        if settings.pest is not None or self.pest_options.pest is not None:
             raise SettingError(
                 "--spread goes without a pest, which says how it spreads. Take the pest out with: "
                 "fieldmon change --pest none"
@@ -107,9 +107,9 @@ class ChangeOptions:
 
     def _of_pest(self, settings: MonitoringSettings, plot: Field) -> MonitoringSettings:
         """Return settings with the pest and the weather told; ``none`` takes the pest out."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
-        new, told = settings, self.living
+        new, told = settings, self.pest_options
         if told.pest == "none":
             new = replace(new, pest=None)
         elif (pest := told.named()) is not None:
@@ -127,9 +127,9 @@ class ChangeOptions:
 
     def _of_several(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return settings with the team of ``--robots``; one robot is no team."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
-        from fieldmon.planning.members import team_of  # noqa: PLC0415
+        from fieldmon.planning.members import team_of
 
         robots = self.robots or ""
         if robots.isdecimal():
@@ -148,7 +148,7 @@ def change(options: ChangeOptions) -> None:
     Example: fieldmon change season.gpkg --hours 6 --sampler naive
     Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv
     """
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import Season
 
     season = Season(options.season)
     seen = season.settings

@@ -86,7 +86,7 @@ class CompareOptions:
     ] = None
     on: WorkDate = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
 
@@ -103,8 +103,8 @@ def compare(options: CompareOptions) -> None:
     Example: fieldmon compare vines.zip --feature 3 --observations mites.csv --robots 1-3
     Example: fieldmon compare --hectares 1 --hectares 5 --spread 0.1 --spread 0.3 --robots 1-5
     """
-    from fieldmon.studies.teams.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.teams.summary import rows, sentences, table  # noqa: PLC0415
+    from fieldmon.studies.teams.report import report_html
+    from fieldmon.studies.teams.summary import rows, sentences, table
 
     can_be_folder(options.output)
     sizes = robot_numbers(options.robots)
@@ -131,8 +131,8 @@ def robot_numbers(text: str) -> list[int]:
 
 def _scenarios(options: CompareOptions) -> list[TeamScenario]:
     """Return every plot with every spread."""
-    from fieldmon.infestation.spread import Spread  # noqa: PLC0415
-    from fieldmon.studies.teams.seasons import (  # noqa: PLC0415
+    from fieldmon.infestation.spread import Spread
+    from fieldmon.studies.teams.seasons import (
         TeamScenario,
         square_plot,
         unknown_chance,
@@ -140,21 +140,21 @@ def _scenarios(options: CompareOptions) -> list[TeamScenario]:
 
     if options.hectares and options.plot is not None:
         raise SettingError("Give a plot file or --hectares, but not both.")
-    options.living.check_alone(spread=options.spread, to=options.to)
-    robot = options.living.seen(options.worker.robot())
+    options.pest_options.check_alone(spread=options.spread, to=options.to)
+    robot = options.pest_options.seen(options.worker.robot())
     plots = [square_plot(hectares) for hectares in options.hectares or ()]
     known = [(plot, unknown_chance(plot)) for plot in plots]
     if plots:  # all of them lie in one place
         field = plots[0].field
-        living = options.living.living(field, day_on(field, day(options.on)))
+        pest_in_weather = options.pest_options.in_weather(field, day_on(field, day(options.on)))
     else:
-        own, living = _own(options)
+        own, pest_in_weather = _own(options)
         known = [own]
     return [
         TeamScenario(
             plot, chance,
             Spread(rate, options.to or "each"),  # type: ignore[arg-type]
-            robot, options.infested, options.days, living,
+            robot, options.infested, options.days, pest_in_weather,
         )
         for plot, chance in known
         for rate in options.spread or [0.1]
@@ -165,28 +165,29 @@ def _own(
     options: CompareOptions,
 ) -> tuple[tuple[Plot, NDArray[np.float64]], PestInWeather | None]:
     """Return the plot of the command's files with what is believed of it, and its pest."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance
 
     told = day(options.on)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
     plot = known.plot
     begins = day_on(plot.field, told)
-    on, living = np.datetime64(begins, "D"), options.living.living(plot.field, begins)
-    prior = prior_of(living, begins)
+    on = np.datetime64(begins, "D")
+    pest_in_weather = options.pest_options.in_weather(plot.field, begins)
+    prior = prior_of(pest_in_weather, begins)
     tell_unusable(known.records, on, prior)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
-    return (plot, chance), living
+    return (plot, chance), pest_in_weather
 
 
 def _settings(
     scenario: TeamScenario, sizes: list[int], options: CompareOptions
 ) -> list[TeamSetting]:
     """Return the teams that work in a scenario."""
-    from fieldmon.planning.members import Teamwork  # noqa: PLC0415
-    from fieldmon.simulation.team_season import Team  # noqa: PLC0415
-    from fieldmon.studies.teams.seasons import TeamSetting  # noqa: PLC0415
+    from fieldmon.planning.members import Teamwork
+    from fieldmon.simulation.team_season import Team
+    from fieldmon.studies.teams.seasons import TeamSetting
 
     passing_m = options.passing or 0.0
     together = Teamwork(True, 60.0 * options.contact, options.least_gain, passing_m)
@@ -203,17 +204,17 @@ def _settings(
 
 
 def _reads_chance(name: SamplerName) -> bool:
-    from fieldmon.samplers import kind_of  # noqa: PLC0415
+    from fieldmon.samplers import kind_of
 
     return kind_of(name.value).reads_chance
 
 
 def _outcomes(settings: list[TeamSetting], options: CompareOptions) -> list[TeamOutcome]:
     """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
-    from fieldmon.simulation import executor  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.teams.seasons import TeamOutcome, study_of  # noqa: PLC0415
+    from fieldmon.simulation import executor
+    from fieldmon.simulation.experiment import run
+    from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.teams.seasons import TeamOutcome, study_of
 
     study = study_of(settings, range(1, options.seeds + 1))
     file = options.output / "robots.csv"

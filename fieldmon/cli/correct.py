@@ -23,7 +23,7 @@ def correct(
     """
     if not who.strip():
         raise SettingError("--who must name whose corrections these are, but it is empty.")
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import Season
 
     n = Season(season).correct(who.strip())
     if n:

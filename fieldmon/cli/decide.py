@@ -101,11 +101,11 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
 
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
-    from fieldmon.decisions.leaves import of_leaves  # noqa: PLC0415
-    from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts  # noqa: PLC0415
-    from fieldmon.decisions.thresholds import threshold_of  # noqa: PLC0415
-    from fieldmon.monitoring import Season  # noqa: PLC0415
-    from fieldmon.monitoring.advice import AdviceSettings  # noqa: PLC0415
+    from fieldmon.decisions.leaves import of_leaves
+    from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
+    from fieldmon.decisions.thresholds import threshold_of
+    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.advice import AdviceSettings
 
     asked = threshold_of(threshold, _own(thresholds))
     for path in output or []:
@@ -141,7 +141,7 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
     typer.echo("\n".join([f"{when}, after the day's work.", asked.sentence(), *said, *where]))
     kept.advise(when, " ".join([*said[:1], *where[:1]]))
     if output:
-        _write(_Asked(kept, when, advice, product), output)
+        _write(_AdviceAsked(kept, when, advice, product), output)
 
 
 def _refuse_idle(*each: tuple[object, str]) -> None:
@@ -152,13 +152,13 @@ def _refuse_idle(*each: tuple[object, str]) -> None:
 
 
 def _own(path: Path | None) -> tuple[Threshold, ...] | None:
-    from fieldmon.decisions.thresholds import published, read_thresholds  # noqa: PLC0415
+    from fieldmon.decisions.thresholds import published, read_thresholds
 
     return None if path is None else (*published(), *read_thresholds(path))
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
+class _AdviceAsked:
     kept: Season
     when: date
     advice: Advice
@@ -167,8 +167,8 @@ class _Asked:
 
 def _check_name(path: Path) -> None:
     """Refuse a file that could not be written, before the first of them is."""
-    from fieldmon.io.atomic_write import require_place  # noqa: PLC0415
-    from fieldmon.io.writers.treatment_map import checked_ending  # noqa: PLC0415
+    from fieldmon.io.atomic_write import require_place
+    from fieldmon.io.writers.treatment_map import checked_ending
 
     if path.suffix.lower() not in _PAPER:
         try:
@@ -178,11 +178,11 @@ def _check_name(path: Path) -> None:
     require_place(path)
 
 
-def _write(asked: _Asked, paths: list[Path]) -> None:
-    from fieldmon.compute.units import Units  # noqa: PLC0415
-    from fieldmon.io.writers.treatment_map import write_treatment_map  # noqa: PLC0415
-    from fieldmon.reports.advice import advice_report  # noqa: PLC0415
-    from fieldmon.reports.write import write_report  # noqa: PLC0415
+def _write(asked: _AdviceAsked, paths: list[Path]) -> None:
+    from fieldmon.compute.units import Units
+    from fieldmon.io.writers.treatment_map import write_treatment_map
+    from fieldmon.reports.advice import advice_report
+    from fieldmon.reports.write import write_report
 
     for path in paths:
         if path.suffix.lower() in _PAPER:

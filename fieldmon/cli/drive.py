@@ -154,7 +154,7 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann
     Example: fieldmon drive season.gpkg --robot vda5050 --broker farm.local --serial robot1
     """
-    from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
+    from fieldmon.monitoring.transactions import is_season
 
     if options.plot is None or not is_season(options.plot):
         driven, on = _plot(options)
@@ -171,13 +171,13 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
 
 def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     """Drive a day on a plot of which nothing but records is known."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
-    from fieldmon.infestation.prior_settings import PriorSettings  # noqa: PLC0415
-    from fieldmon.monitoring.monitor import Monitor  # noqa: PLC0415
-    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
-    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance
+    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.monitoring.monitor import Monitor
+    from fieldmon.planning.assumptions import assumed_by
+    from fieldmon.plot.local_clock import local_clock
 
     worker = options.worker.robot()
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
@@ -189,7 +189,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     decides = sampler_of(options.sampler, options.every)
     monitor = Monitor(plot, decides, worker, chance, seed=options.seed)
     tell_assumed(assumed_by((), prior, worker, plot.grid))
-    if told := aisles.told_shut():
+    if told := aisles.shut_sentence():
         typer.echo(told)
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         begins = local_clock(plot.field).moment(on, time(6))
@@ -198,8 +198,8 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
 
 def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
     """Drive what is left of a day of a season, each plant told recorded at once."""
-    from fieldmon.drive.season_day import SeasonDay  # noqa: PLC0415
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.drive.season_day import SeasonDay
+    from fieldmon.monitoring import Season
 
     if options.robot is not Drives.VDA5050 and not options.made_up:
         raise SettingError(
@@ -212,7 +212,7 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
     made_up = "" if options.robot is Drives.VDA5050 else ", finds made up"
     today = SeasonDay(season, on, f"{_name(options)}{made_up}")
     tell_assumed(season.assumed())
-    if told := aisles.told_shut():
+    if told := aisles.shut_sentence():
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
@@ -222,16 +222,16 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
 
 def _team(options: DriveOptions, file: Path) -> list[tuple[date, DrivenDay, DriveOptions]] | None:
     """Let a season's team drive its day by VDA 5050, a robot each; None: it is no such day."""
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import Season
 
     season = Season(file)
     if options.robot is not Drives.VDA5050 or not season.settings.team:
         return None
-    from fieldmon.cli.team_files import files_of_each  # noqa: PLC0415
-    from fieldmon.drive.recording import Recording  # noqa: PLC0415
-    from fieldmon.drive.team_season import TeamSeason  # noqa: PLC0415
-    from fieldmon.drive.vda5050.team import drive_team  # noqa: PLC0415
-    from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
+    from fieldmon.cli.team_files import files_of_each
+    from fieldmon.drive.recording import Recording
+    from fieldmon.drive.team_season import TeamSeason
+    from fieldmon.drive.vda5050.team import drive_team
+    from fieldmon.drive.vda5050.wire import Broker
 
     on, team = day_on(season.plot.field, day(options.on)), season.settings.team
     asked = [path for path in (options.output, options.bag) if path is not None]
@@ -242,9 +242,8 @@ def _team(options: DriveOptions, file: Path) -> list[tuple[date, DrivenDay, Driv
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in team
     }
-    say = lambda told: typer.echo(told, err=True)  # noqa: E731
     broker = Broker.of(options.broker)
-    driven = drive_team(today, broker, _robot_name(options), say, recordings)
+    driven = drive_team(today, broker, _robot_name(options), _say, recordings)
     made = []
     for one, paths in zip(team, files, strict=True):
         own = [*paths]
@@ -257,7 +256,7 @@ def _team(options: DriveOptions, file: Path) -> list[tuple[date, DrivenDay, Driv
 
 
 def _begins(season: Season, on: date) -> datetime:
-    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+    from fieldmon.plot.local_clock import local_clock
 
     return local_clock(season.plot.field).moment(on, season.settings.starts)
 
@@ -269,7 +268,7 @@ def _driven(
     who: tuple[Robot, tuple[DrivingRobot, Recording]],
     begins: datetime,
 ) -> DrivenDay:
-    from fieldmon.drive.day import drive_day  # noqa: PLC0415
+    from fieldmon.drive.day import drive_day
 
     robot, (driver, recording) = who
     driven = drive_day(today, aisles, (robot, driver), recording.note)
@@ -280,7 +279,7 @@ def _driven(
 def _write_bag(recording: Recording, begins: datetime, options: DriveOptions) -> None:
     if options.bag is None:
         return
-    from fieldmon.drive.bag import write_bag  # noqa: PLC0415
+    from fieldmon.drive.bag import write_bag
 
     bag, *layouts = write_bag(recording, begins, options.bag)
     beside = " and ".join(path.name for path in layouts)
@@ -292,19 +291,18 @@ def _driver(
     options: DriveOptions, plot: Plot, worker: Robot, believed: tuple[Any, date]
 ) -> Iterator[tuple[DrivingRobot, Recording]]:
     """Yield whoever drives, and what it notes."""
-    from fieldmon.drive.recording import Recording  # noqa: PLC0415
+    from fieldmon.drive.recording import Recording
 
     recording = Recording(plot.aisles.for_robot(worker), worker, believed[0])
     if options.robot is Drives.VDA5050:
-        from fieldmon.drive.vda5050.fleet import live_robot  # noqa: PLC0415
-        from fieldmon.drive.vda5050.wire import Broker  # noqa: PLC0415
+        from fieldmon.drive.vda5050.fleet import live_robot
+        from fieldmon.drive.vda5050.wire import Broker
 
         who = _robot_name(options)
-        say = lambda told: typer.echo(told, err=True)  # noqa: E731
-        with live_robot(Broker.of(options.broker), who, str(believed[1]), say) as live:
+        with live_robot(Broker.of(options.broker), who, str(believed[1]), _say) as live:
             yield live, recording
         return
-    from fieldmon.drive.simulated import MadeUp, simulated_robot  # noqa: PLC0415
+    from fieldmon.drive.simulated import MadeUp, simulated_robot
 
     made_up = MadeUp(options.infested, options.seed)
     decides = sampler_of(options.sampler, options.every)
@@ -329,9 +327,9 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
         raise SettingError("Give one of --ground and --rough: heights of a raster are as they are.")
     if options.robot_model is not None and options.steering != "differential":
         raise SettingError("The joints of a --robot-model say how it steers: give no --steering.")
-    from fieldmon.drive.ground import ground_of_raster, rough_ground  # noqa: PLC0415
-    from fieldmon.drive.mujoco_robot import Physics  # noqa: PLC0415
-    from fieldmon.drive.robot_body import RobotBody  # noqa: PLC0415
+    from fieldmon.drive.ground import ground_of_raster, rough_ground
+    from fieldmon.drive.mujoco_robot import Physics
+    from fieldmon.drive.robot_body import RobotBody
 
     body = RobotBody.of(worker, options.steering, options.robot_model)
     heights, ground = options.ground, None
@@ -343,22 +341,22 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
 
 
 def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str) -> None:
-    from fieldmon.drive.account import day_table, in_words, stop_table, stops_beside  # noqa: PLC0415
+    from fieldmon.drive.account import day_table, in_words, stop_table, stops_path
 
     who = f"{name}, {on}" if options.serial == name else f"{on}"
     typer.echo(f"{who}: {in_words(driven)}")
     if options.output is None:
         return
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
+    from fieldmon.io.atomic_write import write_whole
 
     write_whole(options.output, day_table(driven, on, name))
-    write_whole(stops_beside(options.output), stop_table(driven))
-    typer.echo(f"Written to {options.output} and {stops_beside(options.output)}")
+    write_whole(stops_path(options.output), stop_table(driven))
+    typer.echo(f"Written to {options.output} and {stops_path(options.output)}")
 
 
 def _robot_name(options: DriveOptions) -> RobotName:
-    from fieldmon.drive.vda5050.versions import known_version  # noqa: PLC0415
-    from fieldmon.drive.vda5050.wire import RobotName  # noqa: PLC0415
+    from fieldmon.drive.vda5050.versions import known_version
+    from fieldmon.drive.vda5050.wire import RobotName
 
     return RobotName(options.manufacturer, options.serial, known_version(options.vda))
 
@@ -368,3 +366,7 @@ def _name(options: DriveOptions) -> str:
     if options.robot is Drives.VDA5050:
         return f"{options.manufacturer}/{options.serial}"
     return str(options.robot)
+
+
+def _say(told: str) -> None:
+    typer.echo(told, err=True)

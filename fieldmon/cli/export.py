@@ -50,8 +50,8 @@ def export(
 
     Example: fieldmon export season.gpkg --of inspections -o inspections.csv
     """
-    from fieldmon.cli.season_files import opened  # noqa: PLC0415
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
+    from fieldmon.cli.season_files import opened
+    from fieldmon.io.atomic_write import write_whole
 
     ending = output.suffix.lower()
     if ending not in {".csv", ".json"}:
@@ -63,7 +63,7 @@ def export(
 
 
 def _table(kept: list[Season], of: str) -> bytes:
-    from fieldmon.reports.record_tables import TABLES, csv_bytes  # noqa: PLC0415
+    from fieldmon.reports.record_tables import TABLES, csv_bytes
 
     data = csv_bytes(TABLES[of](season) for season in kept)
     if not data:
@@ -72,12 +72,12 @@ def _table(kept: list[Season], of: str) -> bytes:
 
 
 def _observations(kept: list[Season], pest: str, crop: str) -> bytes:
-    from fieldmon.io.writers.ipm_decisions import (  # noqa: PLC0415
+    from fieldmon.io.writers.ipm_decisions import (
         EppoCodes,
         field_observations,
         observations_json,
     )
-    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+    from fieldmon.plot.local_clock import local_clock
 
     codes = EppoCodes(pest.strip().upper(), crop.strip().upper())
     return observations_json(

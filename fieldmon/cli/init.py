@@ -77,7 +77,7 @@ class InitOptions:
     passing: Passing = None
     language: Language = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
     def team(self) -> tuple[tuple[TeamMember, ...], time]:
@@ -88,30 +88,30 @@ class InitOptions:
         return members_of(self.robots or "", start, self.worker)
 
     def settings(
-        self, begins: datetime, team: tuple[TeamMember, ...], living: PestInWeather | None
+        self, begins: datetime, team: tuple[TeamMember, ...], pest_in_weather: PestInWeather | None
     ) -> MonitoringSettings:
         """Return how the season is worked."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
-        from fieldmon.monitoring import MonitoringSettings  # noqa: PLC0415
-        from fieldmon.monitoring.history import BeliefSettings  # noqa: PLC0415
-        from fieldmon.planning.members import Teamwork  # noqa: PLC0415
+        from fieldmon.monitoring import MonitoringSettings
+        from fieldmon.monitoring.history import BeliefSettings
+        from fieldmon.planning.members import Teamwork
 
-        if self.spread is not None and living is not None:
+        if self.spread is not None and pest_in_weather is not None:
             raise SettingError("--spread goes without --pest, which says how it spreads.")
         belief = BeliefSettings(treated=not self.flag_only)
         return MonitoringSettings(
             begins.date(),
             begins.time(),
-            self.living.seen(self.worker.robot()),
+            self.pest_options.seen(self.worker.robot()),
             self.sampler.value,
             sampler_settings(self.sampler.value, self.every),
             belief=belief if self.spread is None else _spreading(belief, self.spread),
             seed=self.seed,
-            prior=prior_of(living, begins.date()),
-            pest=None if living is None else living.pest,
-            weather=None if living is None else living.weather,
-            team=tuple(replace(one, robot=self.living.seen(one.robot)) for one in team),
+            prior=prior_of(pest_in_weather, begins.date()),
+            pest=None if pest_in_weather is None else pest_in_weather.pest,
+            weather=None if pest_in_weather is None else pest_in_weather.weather,
+            team=tuple(replace(one, robot=self.pest_options.seen(one.robot)) for one in team),
             teamwork=Teamwork(
                 contact_s=60.0 * self.contact,
                 least_gain=self.least_gain,
@@ -122,7 +122,7 @@ class InitOptions:
 
 
 def _spreading(belief: BeliefSettings, rate: float) -> BeliefSettings:
-    from dataclasses import replace  # noqa: PLC0415
+    from dataclasses import replace
 
     return replace(belief, spread=replace(belief.spread, rate_per_day=rate))
 
@@ -141,17 +141,17 @@ def init(options: InitOptions) -> None:
     Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     Example: fieldmon init season.gpkg estate.zip --feature Gate --pest spider-mite
     """
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.monitoring import KeptMessage, Season  # noqa: PLC0415
+    from fieldmon.monitoring import KeptMessage, Season
 
     path, (team, at) = options.season, options.team()
     starts = WorkStart(day(options.begins, "--begins"), at)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = starts.on_plot(known.plot.field)
-    living = options.living.living(known.plot.field, begins.date())
-    settings = options.settings(begins, team, living)
+    pest_in_weather = options.pest_options.in_weather(known.plot.field, begins.date())
+    settings = options.settings(begins, team, pest_in_weather)
     tell_unusable(known.records, np.datetime64(settings.begins, "D"), settings.prior)
     messages = [KeptMessage.of(said.source, said.message) for said in known.messages]
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)

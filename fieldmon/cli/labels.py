@@ -29,8 +29,8 @@ def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
 
     Example: fieldmon labels season.gpkg labels.csv
     """
-    from fieldmon.decisions.label_file import read_labels  # noqa: PLC0415
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.decisions.label_file import read_labels
+    from fieldmon.monitoring import Season
 
     kept = Season(season)
     if table is not None:

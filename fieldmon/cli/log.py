@@ -16,8 +16,8 @@ def log(season: SeasonFile) -> None:
 
     Example: fieldmon log season.gpkg
     """
-    from fieldmon.monitoring import Season  # noqa: PLC0415
-    from fieldmon.monitoring.season_log import lines  # noqa: PLC0415
+    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.season_log import lines
 
     kept = Season(season)
     typer.echo("\n".join(lines(kept.log())))

@@ -23,7 +23,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
 
     Example: fieldmon merge season.gpkg "season (conflict).gpkg"
     """
-    from fieldmon.monitoring import Season, copy_season  # noqa: PLC0415
+    from fieldmon.monitoring import Season, copy_season
 
     kept = Season(season)
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:

@@ -154,7 +154,7 @@ def tell_not_come(on: date, field: Field, what: str) -> None:
 
 def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSettings) -> None:
     """Print which records say nothing, or hardly anything, about a day."""
-    from fieldmon.infestation.observations import usable  # noqa: PLC0415
+    from fieldmon.infestation.observations import usable
 
     for sentence in usable(records, day, prior.hardly_days).messages():
         typer.echo(sentence, err=True)

@@ -249,7 +249,7 @@ class WorkerOptions:
 
     def robot(self) -> Robot:
         """Return the robot, or the scout, with what was said."""
-        from fieldmon.plot import robot  # noqa: PLC0415
+        from fieldmon.plot import robot
 
         if self.scout and self.rover:
             raise SettingError("A scout is no rover: give one of --scout and --rover.")
@@ -258,7 +258,7 @@ class WorkerOptions:
 
     def said_of(self, robot: Robot) -> Robot:
         """Return a robot with what was said of its times and settings."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
         charged = robot if self.robot_times is None else robot.with_times(self.robot_times)
         return replace(charged, **self.given())  # type: ignore[arg-type]
@@ -278,7 +278,7 @@ class RowOptions:
 
     def choices(self) -> PlantingChoices:
         """Return what was said of the rows."""
-        from fieldmon.io.sources import PlantingChoices  # noqa: PLC0415
+        from fieldmon.io.sources import PlantingChoices
 
         faces = 2 if self.both_faces else None
         spacings = self.row_spacing, self.plant_spacing, self.headland
@@ -309,8 +309,8 @@ class FileOptions:
 
     def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
         """Return the plot's files, given the first of them."""
-        from fieldmon.io.options import PlotOptions, ReadOptions  # noqa: PLC0415
-        from fieldmon.io.sources import PlotSources  # noqa: PLC0415
+        from fieldmon.io.options import PlotOptions, ReadOptions
+        from fieldmon.io.sources import PlotSources
 
         if plot is None and self.plants is None and self.rows is None:
             raise SettingError(
@@ -353,8 +353,8 @@ class PlotFiles:
         self, plot: Path | None, feature: str | None, observations: Path | None
     ) -> PlotRequest:
         """Return what to prepare from the command's files."""
-        from fieldmon.io.options import RecordOptions  # noqa: PLC0415
-        from fieldmon.io.sources import PlotRequest, RecordSource  # noqa: PLC0415
+        from fieldmon.io.options import RecordOptions
+        from fieldmon.io.sources import PlotRequest, RecordSource
 
         flags = "--record-option", "--observations"
         options = chosen_of_file(RecordOptions(), self.files.record_option, observations, flags)
@@ -371,7 +371,7 @@ def plot_options(
     feature: str | None, crs: str | None, layer: str | None, more: list[str] | None
 ) -> PlotOptions:
     """Return how a plot file is read."""
-    from fieldmon.io.options import PlotOptions  # noqa: PLC0415
+    from fieldmon.io.options import PlotOptions
 
     return chosen(PlotOptions(feature=feature, crs=crs, layer=layer), more)
 
@@ -407,7 +407,7 @@ def _raster_options(given: list[str] | None, file: Path | None) -> RasterOptions
     """Return how heights are read; None: as they say, and nothing heavy is loaded for it."""
     if not given:
         return None
-    from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415
+    from fieldmon.io.rasters.values import RasterOptions
 
     return _of(RasterOptions(), given, file, "contours")
 

@@ -49,8 +49,8 @@ def _files(told: object) -> list[Path]:
 
 def check_outputs(outputs: list[Path] | None, chance_map: Path | None) -> None:
     """Refuse files that could not be written, before anything is planned or written."""
-    from fieldmon.io.atomic_write import require_place  # noqa: PLC0415
-    from fieldmon.io.writers.handoff import format_of  # noqa: PLC0415
+    from fieldmon.io.atomic_write import require_place
+    from fieldmon.io.writers.handoff import format_of
 
     for path in outputs or []:
         format_of(path)
@@ -75,7 +75,7 @@ def write_chance_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -
     """Write the chance map, if it was asked for."""
     if to is None:
         return
-    from fieldmon.io.writers.chance_raster import write_chance_raster  # noqa: PLC0415
+    from fieldmon.io.writers.chance_raster import write_chance_raster
 
     made = write_chance_raster(plot.grid, chance, to)
     high, wide = made.values.shape
@@ -91,5 +91,5 @@ def day_in_words(route: Route) -> str:
         f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
         f"about {route.expected_found:.1f} of these would be found."
     )
-    more = (route.bound_sentence, route.aisles.told_shut())
+    more = (route.bound_sentence, route.aisles.shut_sentence())
     return "\n".join([said, *(one for one in more if one)])

@@ -57,7 +57,7 @@ class PestOptions:
 
     def named(self) -> Pest | None:
         """Return the pest that was named; None: none was."""
-        from fieldmon.io.readers.pest_file import pest_of  # noqa: PLC0415
+        from fieldmon.io.readers.pest_file import pest_of
 
         return None if self.pest is None else pest_of(self.pest)
 
@@ -76,9 +76,9 @@ class PestOptions:
             if self.weather_option:
                 raise SettingError("--weather-option goes with --weather. Give the file too.")
             return None
-        from fieldmon.io.read import read_weather  # noqa: PLC0415
-        from fieldmon.io.readers.weather_options import WeatherOptions  # noqa: PLC0415
-        from fieldmon.plot.local_clock import utc_now  # noqa: PLC0415
+        from fieldmon.io.read import read_weather
+        from fieldmon.io.readers.weather_options import WeatherOptions
+        from fieldmon.plot.local_clock import utc_now
 
         options = chosen(WeatherOptions(now=utc_now()), self.weather_option).on(field)
         with Terminal().answering():
@@ -95,9 +95,9 @@ class PestOptions:
         pest = self.named()
         return robot if pest is None else pest.seen_by(robot)
 
-    def living(self, field: Field, begins: date) -> PestInWeather | None:
+    def in_weather(self, field: Field, begins: date) -> PestInWeather | None:
         """Return the pest in its weather from a day on; None: no pest was named."""
-        from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
+        from fieldmon.infestation.pest_in_weather import PestInWeather
 
         pest, weather = self.named(), self.met(field)
         if pest is None:
@@ -111,9 +111,9 @@ class PestOptions:
         return PestInWeather(pest, weather, begins)
 
 
-def living_of(name: str | None) -> PestInWeather | None:
+def pest_in_weather_of(name: str | None) -> PestInWeather | None:
     """Return the pest that a study named, at the temperature of its figures; None: none was."""
-    from fieldmon.infestation.pest_in_weather import PestInWeather  # noqa: PLC0415
+    from fieldmon.infestation.pest_in_weather import PestInWeather
 
     pest = PestOptions(name).named()
     if pest is None:
@@ -131,15 +131,15 @@ def check_no_pest(name: str | None, study: str) -> None:
         )
 
 
-def prior_of(living: PestInWeather | None, on: date) -> PriorSettings:
+def prior_of(pest_in_weather: PestInWeather | None, on: date) -> PriorSettings:
     """Return how records become chances for a day, as the pest and its weather have it."""
-    from fieldmon.infestation.pest_prior import prior_for  # noqa: PLC0415
-    from fieldmon.infestation.prior_settings import PriorSettings  # noqa: PLC0415
+    from fieldmon.infestation.pest_prior import prior_for
+    from fieldmon.infestation.prior_settings import PriorSettings
 
     usual = PriorSettings()
-    if living is None:
+    if pest_in_weather is None:
         return usual
-    made = prior_for(usual, living.pest, living.weather, on)
+    made = prior_for(usual, pest_in_weather.pest, pest_in_weather.weather, on)
     if made.half_life_days != usual.half_life_days:
         typer.echo(
             f"Records count half after {made.half_life_days:g} days: the last generation took so "

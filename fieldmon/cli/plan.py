@@ -59,7 +59,7 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
     who works on each plot. Options given here override them.
     """
-    from fieldmon.monitoring.transactions import is_season  # noqa: PLC0415
+    from fieldmon.monitoring.transactions import is_season
 
     if not options.every_plot:
         check_outputs(options.output, options.chance_map)
@@ -84,21 +84,22 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
 
 
 def _plan_one(options: PlanOptions) -> None:
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.io.writers.day_file import RouteNotes  # noqa: PLC0415
-    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
-    from fieldmon.planning.bound_wording import share_above  # noqa: PLC0415
-    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
-    from fieldmon.planning.plan import PlanSettings, first_day  # noqa: PLC0415
+    from fieldmon.io.writers.day_file import RouteNotes
+    from fieldmon.planning.assumptions import assumed_by
+    from fieldmon.planning.bound_wording import share_above
+    from fieldmon.planning.day_bound import with_bound
+    from fieldmon.planning.plan import PlanSettings, first_day
 
-    robot, starts = options.living.seen(options.worker.robot()), options.starts()
+    robot, starts = options.pest_options.seen(options.worker.robot()), options.starts()
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = starts.on_plot(known.plot.field)
     on = np.datetime64(begins.date(), "D")
-    living = options.living.living(known.plot.field, begins.date())
-    sampler, prior = sampler_of(options.sampler, options.every), prior_of(living, begins.date())
+    pest_in_weather = options.pest_options.in_weather(known.plot.field, begins.date())
+    sampler = sampler_of(options.sampler, options.every)
+    prior = prior_of(pest_in_weather, begins.date())
     settings = PlanSettings(robot, sampler, prior)
     tell_unusable(known.records, on, prior)
     today = first_day(known.plot, known.records, on, settings, known.risk)
@@ -123,10 +124,10 @@ def _plan_one(options: PlanOptions) -> None:
 
 def _plan_every_plot(options: PlanOptions) -> None:
     """Plan every plot of the file into a folder."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.cli.plan_all import Day, plan_all  # noqa: PLC0415
-    from fieldmon.planning.batch import Orders  # noqa: PLC0415
+    from fieldmon.cli.plan_all import Day, plan_all
+    from fieldmon.planning.batch import Orders
 
     worker, starts = options.worker, options.starts()
     # what cannot be is refused before any plot is read
@@ -135,7 +136,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
     request, folder = _request_of_all(options), _folder(options.output)
     plots = estate(request)
     begins = starts.on_plot(plots.fields[0])
-    living = options.living.living(plots.fields[0], begins.date())
+    pest_in_weather = options.pest_options.in_weather(plots.fields[0], begins.date())
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
         sampler=options.sampler.value,
@@ -144,8 +145,8 @@ def _plan_every_plot(options: PlanOptions) -> None:
         robot=worker.given(),
         planting=request.planting.given(),
         bound=options.bound,
-        prior=prior_of(living, begins.date()),
-        pest=None if living is None else living.pest,
+        prior=prior_of(pest_in_weather, begins.date()),
+        pest=None if pest_in_weather is None else pest_in_weather.pest,
         rover=worker.rover,
         robot_times=worker.robot_times,
         at=starts.at,

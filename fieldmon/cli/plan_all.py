@@ -99,7 +99,7 @@ def plan_all(plots: Estate, orders: Orders, day: Day, workers: int | None = None
 
 def _tasks(plots: Estate, orders: Orders) -> dict[str, Task]:
     """Return the tasks by the names of their files."""
-    from fieldmon.planning.batch import (  # noqa: PLC0415 - with orders, which the caller has made
+    from fieldmon.planning.batch import (
         Task,
     )
 
@@ -179,7 +179,7 @@ def _pool(workers: int, day: Day) -> Executor:
 
 def _here(day: Day) -> Executor:
     """Return this process: a few plots are planned before others have started."""
-    from fieldmon.simulation.executor import here  # noqa: PLC0415
+    from fieldmon.simulation.executor import here
 
     _day[:] = [day]
     return here().pool

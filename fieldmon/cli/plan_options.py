@@ -55,7 +55,7 @@ class PlanOptions:
     start: StartTime = "06:00"
     now: Now = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
     chance_map: ChanceMap = None
     every_plot: EveryPlot = False

@@ -26,9 +26,9 @@ _OF_A_PLAN = {"plot", "output", "on", "now", "chance_map", "bound"}
 
 def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
-    from fieldmon.monitoring import Season  # noqa: PLC0415
-    from fieldmon.planning.day_bound import with_bound  # noqa: PLC0415
-    from fieldmon.planning.route import with_forecast  # noqa: PLC0415
+    from fieldmon.monitoring import Season
+    from fieldmon.planning.day_bound import with_bound
+    from fieldmon.planning.route import with_forecast
 
     refuse_what_was_chosen(context, _OF_A_PLAN)
     season = Season(file)
@@ -58,7 +58,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
 
 def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
-    from fieldmon.planning.team import bound_of_days  # noqa: PLC0415
+    from fieldmon.planning.team import bound_of_days
 
     team = season.settings.team
     files = files_of_each(options.output, team)

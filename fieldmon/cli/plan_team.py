@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None:
     """Plan a day of a team on one plot, and write a file for each."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
-    from fieldmon.planning import team  # noqa: PLC0415
-    from fieldmon.planning.assumptions import assumed_by  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance
+    from fieldmon.planning import team
+    from fieldmon.planning.assumptions import assumed_by
 
     for name in ("sampler", "every", "every_plot"):
         source = context.get_parameter_source(name)
@@ -42,8 +42,8 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     starts, files = WorkStart(options.starts().on, first), files_of_each(options.output, members)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
     plot, begins = known.plot, starts.on_plot(known.plot.field)
-    prior = prior_of(options.living.living(plot.field, begins.date()), begins.date())
-    members = tuple(replace(one, robot=options.living.seen(one.robot)) for one in members)
+    prior = prior_of(options.pest_options.in_weather(plot.field, begins.date()), begins.date())
+    members = tuple(replace(one, robot=options.pest_options.seen(one.robot)) for one in members)
     on = np.datetime64(begins.date(), "D")
     tell_unusable(known.records, on, prior)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
@@ -66,7 +66,7 @@ def _tell(planned: TeamPlan, begins: datetime) -> None:
 
 
 def _write(planned: TeamPlan, begins: datetime, plot: str, files: list[list[Path]]) -> None:
-    from fieldmon.io.writers.day_file import RouteNotes  # noqa: PLC0415
+    from fieldmon.io.writers.day_file import RouteNotes
 
     parts = zip(planned.members, planned.days, planned.starts_s, files, strict=True)
     for member, day, starts_s, paths in parts:

@@ -12,10 +12,10 @@ def plots(
     plot: PlotFile, crs: Crs = None, layer: Layer = None, plot_option: PlotChoices = None
 ) -> None:
     """List the plots of a file, with their areas and the numbers that --feature takes."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.io.parse.geometry import areas_m2  # noqa: PLC0415
-    from fieldmon.io.sources import PlotRequest, PlotSources  # noqa: PLC0415
+    from fieldmon.io.parse.geometry import areas_m2
+    from fieldmon.io.sources import PlotRequest, PlotSources
 
     options = plot_options(None, crs, layer, plot_option)
     listed = estate(PlotRequest(PlotSources(plot, options))).fields

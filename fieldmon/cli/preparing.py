@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def prepared(request: PlotRequest, terminal: Terminal | None = None) -> Prepared:
     """Return the plot that a command is about."""
-    from fieldmon.io.prepare import prepare  # noqa: PLC0415
+    from fieldmon.io.prepare import prepare
 
     terminal = terminal or Terminal()
     with terminal.answering():
@@ -22,7 +22,7 @@ def prepared(request: PlotRequest, terminal: Terminal | None = None) -> Prepared
 
 def estate(request: PlotRequest, terminal: Terminal | None = None) -> Estate:
     """Return the plots that a command is about."""
-    from fieldmon.io.prepare import prepare_estate  # noqa: PLC0415
+    from fieldmon.io.prepare import prepare_estate
 
     terminal = terminal or Terminal()
     with terminal.answering():

@@ -64,7 +64,7 @@ class RasterFiles:
             raise SettingError(
                 "Missing plants are found with both --canopy FILE and --canopy-below X: give both."
             )
-        from fieldmon.io.sources import CanopySource  # noqa: PLC0415
+        from fieldmon.io.sources import CanopySource
 
         options, how = _options(dict(named_values(self.canopy_option, "--canopy-option")))
         return CanopySource(self.canopy, self.canopy_below, options, how)
@@ -77,7 +77,7 @@ class RasterFiles:
                     "--risk-option says how to read a raster: give it with --risk FILE."
                 )
             return None
-        from fieldmon.io.sources import RiskSource  # noqa: PLC0415
+        from fieldmon.io.sources import RiskSource
 
         given = dict(named_values(self.risk_option, "--risk-option"))
         settings = _risk_settings(given)
@@ -87,7 +87,7 @@ class RasterFiles:
 
 def _options(given: dict[str, str]) -> tuple[RasterOptions, How | None]:
     """Return how a raster is read, and how it is to be sampled where that was said."""
-    from fieldmon.io.rasters.read import RasterOptions  # noqa: PLC0415
+    from fieldmon.io.rasters.read import RasterOptions
 
     how: Any = given.pop("how", None)
     options = RasterOptions()
@@ -98,7 +98,7 @@ def _options(given: dict[str, str]) -> tuple[RasterOptions, How | None]:
 
 def _risk_settings(given: dict[str, str]) -> RiskSettings:
     """Return what was said of the meaning, taken out of the options."""
-    from fieldmon.infestation.raster_risk import RiskSettings  # noqa: PLC0415
+    from fieldmon.infestation.raster_risk import RiskSettings
 
     said: dict[str, Any] = {
         name: given.pop(name) for name in [f.name for f in fields(RiskSettings)] if name in given

@@ -78,11 +78,11 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
 
     Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
     """
-    from fieldmon.io.sandbox import process  # noqa: PLC0415
+    from fieldmon.io.sandbox import process
 
     process.warm("fieldmon.io.sandbox.tasks")  # it loads while the season is read
-    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.monitoring import Season
 
     kept = Season(season)
     options = InspectionOptions(take_doubtful=flags.take_doubtful)
@@ -109,7 +109,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
 
 def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
     """Refuse files that contradict the season, or one another, before any is recorded."""
-    from fieldmon.monitoring.recorded_before import contradictions  # noqa: PLC0415
+    from fieldmon.monitoring.recorded_before import contradictions
 
     held = season.history.inspections
     for inspections in read:
@@ -122,7 +122,7 @@ def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
 
 def _copies(files: list[Path], folder: Path) -> dict[Path, Path]:
     """Return copies to read of the files that are seasons."""
-    from fieldmon.monitoring.transactions import copy_season, is_season  # noqa: PLC0415
+    from fieldmon.monitoring.transactions import copy_season, is_season
 
     copies = {}
     for k, file in enumerate(files):
@@ -145,8 +145,8 @@ def _read(
     season: Season, files: list[Path], options: InspectionOptions, copies: dict[Path, Path]
 ) -> list[Inspections]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
-    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
-    from fieldmon.monitoring import counting_copy  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import dated, read_inspections
+    from fieldmon.monitoring import counting_copy
 
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         sources = dict(zip(files, files, strict=True))

@@ -79,8 +79,8 @@ def report(  # noqa: PLR0913, PLR0917 - the command's options
             f"A report is of one season, but {len(seasons)} are given. Several go into one with "
             "--certification."
         )
-    from fieldmon.cli.season_files import opened  # noqa: PLC0415
-    from fieldmon.reports.write import checked_ending, write_report  # noqa: PLC0415
+    from fieldmon.cli.season_files import opened
+    from fieldmon.reports.write import checked_ending, write_report
 
     checked_ending(output)
     kept = opened(seasons)
@@ -92,15 +92,15 @@ def report(  # noqa: PLR0913, PLR0917 - the command's options
 
 def _certified(seasons: list[Season], until: str | None, units: Units) -> Report:
     """Return the record of seasons for a certifier."""
-    from fieldmon.reports.certification import certification_report  # noqa: PLC0415
+    from fieldmon.reports.certification import certification_report
 
     return certification_report(seasons, units, day(until, "--until"))
 
 
 def _made(season: Season, on: str | None, until: str | None, units: Units) -> Report:
     """Return the report of a day, or of the season."""
-    from fieldmon.reports.day import DayFacts, day_report  # noqa: PLC0415
-    from fieldmon.reports.season import season_report  # noqa: PLC0415
+    from fieldmon.reports.day import DayFacts, day_report
+    from fieldmon.reports.season import season_report
 
     asked = day(on)
     if asked is not None:

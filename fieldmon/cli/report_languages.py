@@ -37,7 +37,7 @@ def checked_language(code: str) -> str:
 
 def spoken(asked: str | None, kept: str) -> tuple[ReportLanguage, Units]:
     """Return the language that is asked for, else the season's, and how it writes figures."""
-    from fieldmon.reports.language import ENGLISH  # noqa: PLC0415
+    from fieldmon.reports.language import ENGLISH
 
     # a season may keep a language of a later fieldmon
     known = kept if kept in app_words("language").LANGUAGES else ENGLISH.code

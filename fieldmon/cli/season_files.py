@@ -26,7 +26,7 @@ def opened(files: Iterable[Path]) -> list[Season]:
 
     Raise `SettingError` where two are copies of one: what both hold would stand there twice.
     """
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import Season
 
     seasons = [Season(file) for file in files]
     for one, other in combinations(seasons, 2):
@@ -98,8 +98,8 @@ def _is_filled_in(file: Path) -> bool:
 
 def _results_in(file: Path, season: Season) -> Inspections:
     """Return what a file says of this season's plants without a doubt; nothing of other files."""
-    from fieldmon.infestation.inspections import Inspections  # noqa: PLC0415
-    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.io.readers.inspections import dated, read_inspections
 
     try:
         return dated(read_inspections(file, season.plot.grid)).value

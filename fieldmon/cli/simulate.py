@@ -73,18 +73,18 @@ class SimulateOptions:
     ] = "zones"
     on: WorkDate = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
-    def season(self, living: PestInWeather | None) -> SeasonSettings:
+    def season(self, pest_in_weather: PestInWeather | None) -> SeasonSettings:
         """Return what happens in the season."""
-        from fieldmon.infestation.spread import Spread  # noqa: PLC0415
-        from fieldmon.simulation.season import SeasonSettings  # noqa: PLC0415
+        from fieldmon.infestation.spread import Spread
+        from fieldmon.simulation.season import SeasonSettings
 
-        self.living.check_alone(spread=self.spread)
+        self.pest_options.check_alone(spread=self.spread)
         rate = 0.1 if self.spread is None else self.spread
         return SeasonSettings(
-            n_days=self.days, spread=Spread(rate), pest=living, treating=_treating(self)
+            n_days=self.days, spread=Spread(rate), pest=pest_in_weather, treating=_treating(self)
         )
 
 
@@ -100,20 +100,21 @@ def simulate(options: SimulateOptions) -> None:
     Example: fieldmon simulate vines.zip --feature 3 --pest spider-mite --weather station.csv
     Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10
     """
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
-    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
-    from fieldmon.simulation.start import season_start  # noqa: PLC0415
+    from fieldmon.compute.random_streams import RandomStreams
+    from fieldmon.infestation.prior import prior_chance
+    from fieldmon.simulation.start import season_start
 
     names = options.sampler or COMPARED_SAMPLERS
     refuse_idle_every([name.value for name in names], options.every)
-    robot, told = options.living.seen(options.worker.robot()), day(options.on)
+    robot, told = options.pest_options.seen(options.worker.robot()), day(options.on)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = day_on(known.plot.field, told)
-    on, living = np.datetime64(begins, "D"), options.living.living(known.plot.field, begins)
-    season, prior = options.season(living), prior_of(living, begins)
+    on = np.datetime64(begins, "D")
+    pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)
+    season, prior = options.season(pest_in_weather), prior_of(pest_in_weather, begins)
     tell_unusable(known.records, on, prior)
     plot, records = known.plot, known.records
     chance = prior_chance(plot.grid, plot.field, records, on, prior, known.risk)
@@ -123,7 +124,7 @@ def simulate(options: SimulateOptions) -> None:
     for name in names:
         rows += _season(plot, robot, name, begin, (options, season))
     if options.output is not None:
-        from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
+        from fieldmon.io.atomic_write import write_whole
 
         write_whole(options.output, "\n".join([_HEADER, *rows, ""]).encode())
         typer.echo(f"Table written to {options.output}")
@@ -137,8 +138,8 @@ def _season(
     told: tuple[SimulateOptions, SeasonSettings],
 ) -> list[str]:
     """Print the days of a season with a sampler; return them as lines of the table."""
-    from fieldmon.compute.random_streams import RandomStreams  # noqa: PLC0415
-    from fieldmon.simulation.season import simulated_days  # noqa: PLC0415
+    from fieldmon.compute.random_streams import RandomStreams
+    from fieldmon.simulation.season import simulated_days
 
     options, settings = told
     settings_of = kind_of(name.value).settings_for(options.every)
@@ -166,7 +167,7 @@ def _treating(options: SimulateOptions) -> TreatmentRule | None:
     """Return the rule by which seasons are treated, if they are."""
     if options.treat_from is None:
         return None
-    from fieldmon.simulation.treating import TreatmentRule  # noqa: PLC0415
+    from fieldmon.simulation.treating import TreatmentRule
 
     return TreatmentRule(options.treat_from, options.treat, seed=options.seed)
 

@@ -30,7 +30,7 @@ class StandInOptions:
 
     def look(self, plant: int) -> bool:
         """Return what it makes up of a plant: the same each time."""
-        import numpy as np  # noqa: PLC0415
+        import numpy as np
 
         return bool(np.random.default_rng((self.seed, plant)).random() < self.infested)
 
@@ -44,9 +44,9 @@ def stand_in(options: StandInOptions) -> None:
 
     Example: fieldmon stand-in --broker 127.0.0.1:1883 --faster 100
     """
-    from fieldmon.drive.vda5050.stand_in import StandIn  # noqa: PLC0415
-    from fieldmon.drive.vda5050.versions import known_version  # noqa: PLC0415
-    from fieldmon.drive.vda5050.wire import Broker, RobotName  # noqa: PLC0415
+    from fieldmon.drive.vda5050.stand_in import StandIn
+    from fieldmon.drive.vda5050.versions import known_version
+    from fieldmon.drive.vda5050.wire import Broker, RobotName
 
     if not (options.speed > 0 and options.faster > 0 and 0 <= options.infested <= 1):
         raise SettingError("--speed and --faster must be above 0, and --infested in 0..1.")

@@ -40,7 +40,7 @@ def status(
 
     Example: fieldmon status season.gpkg
     """
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import Season
 
     kept = Season(season)
     tell_drafts(kept.drafts)
@@ -71,8 +71,8 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
 
 
 def _show_batches(kept: Season) -> None:
-    from fieldmon.compute.wording import counted  # noqa: PLC0415
-    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415
+    from fieldmon.compute.wording import counted
+    from fieldmon.plot.local_clock import local_clock
 
     clock, told = local_clock(kept.plot.field), kept.batches()
     contents = kept.contents([batch.number for batch in told[:_DETAILED]])
@@ -139,9 +139,9 @@ def of_treatments(season: Season, now: Status) -> Iterator[str]:
 
 
 def _show_rows(season: Season, now: Status) -> None:
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.compute.wording import counted  # noqa: PLC0415
+    from fieldmon.compute.wording import counted
 
     of_plant = season.plot.grid.row_line + 1
     for line in np.unique(of_plant):

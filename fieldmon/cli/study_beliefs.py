@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.errors import SettingError
 
@@ -35,14 +35,14 @@ def beliefs(
 
     Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
     """
-    from fieldmon.samplers import sampler as named  # noqa: PLC0415
-    from fieldmon.studies.samplers.calibration import (  # noqa: PLC0415
+    from fieldmon.samplers import sampler as named
+    from fieldmon.studies.samplers.calibration import (
         BELIEFS,
         OF_PESTS,
         calibration,
         report_html,
     )
-    from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import (
         Scenario,
         all_scenarios,
         in_worlds,
@@ -50,14 +50,14 @@ def beliefs(
     )
 
     can_be_folder(output)
-    living = living_of(pest)
+    pest_in_weather = pest_in_weather_of(pest)
     known = [Scenario(), *all_scenarios(), *in_worlds()]
-    known = known if living is None else with_pest(known, living)
+    known = known if pest_in_weather is None else with_pest(known, pest_in_weather)
     chosen = next((each for each in known if each.name.startswith(scenario or "")), None)
     if chosen is None:
         raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
     made = {}
-    for name, believe in (BELIEFS if living is None else OF_PESTS).items():
+    for name, believe in (BELIEFS if pest_in_weather is None else OF_PESTS).items():
         made[name] = c = calibration([chosen], named(sampler), believe, seeds)
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "

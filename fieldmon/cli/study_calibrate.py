@@ -41,8 +41,8 @@ def calibrate(options: CalibrateOptions) -> None:
     the figures are of the thesis's own rule.
     """
     check_no_pest(options.pest, "study calibrate")
-    from fieldmon.studies.thesis.chapter5.calibrate import Effort, candidates_csv  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.calibrate import calibrate as search  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.calibrate import Effort, candidates_csv
+    from fieldmon.studies.thesis.chapter5.calibrate import calibrate as search
 
     can_be_folder(options.output)
     tried = {"drawn": options.drawn, "kept": options.kept, "steps": options.steps}

@@ -54,9 +54,9 @@ def no_prior(options: NoPriorOptions) -> None:
     if options.golden:
         _compare(options.golden, options.night)
         return
-    from fieldmon.studies.thesis.chapter4.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter4.study import run_no_prior  # noqa: PLC0415
-    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter4.report import report_html
+    from fieldmon.studies.thesis.chapter4.study import run_no_prior
+    from fieldmon.studies.tidy_csv import csv_text
 
     can_be_folder(options.output)
     with counting("Simulating") as count:
@@ -72,7 +72,7 @@ def no_prior(options: NoPriorOptions) -> None:
 
 def _compare(files: list[Path], night: str | None) -> None:
     """Print which rows of exact runs differ; end with exit code 1 if any does."""
-    from fieldmon.studies.thesis.chapter4.exact_runs import compare_golden  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter4.exact_runs import compare_golden
 
     all_equal = True
     for file in files:

@@ -24,7 +24,7 @@ def can_be_folder(output: Path) -> None:
 
 def write_all(folder: Path, texts: dict[str, str]) -> None:
     """Write texts into files of a folder, which is made where it is not there; say so."""
-    from fieldmon.io.atomic_write import write_whole  # noqa: PLC0415
+    from fieldmon.io.atomic_write import write_whole
 
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():

@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
@@ -52,15 +52,15 @@ class PriorOptions:
     @property
     def choices(self) -> OpenChoices:
         """Return what the thesis leaves open; with the pest that was named instead of its rule."""
-        from dataclasses import replace  # noqa: PLC0415
+        from dataclasses import replace
 
-        from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED  # noqa: PLC0415
+        from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 
         if self.pest is None:
             return CALIBRATED
         if self.maps is not None:
             raise SettingError("--pest goes without --maps: on mapped plants nothing spreads.")
-        return replace(CALIBRATED, pest=living_of(self.pest))
+        return replace(CALIBRATED, pest=pest_in_weather_of(self.pest))
 
 
 @with_options
@@ -86,10 +86,10 @@ def prior(options: PriorOptions) -> None:
 
 def _as_published(options: PriorOptions, choices: OpenChoices) -> None:
     """Run what the thesis ran, and compare the figures."""
-    from fieldmon.studies.thesis.chapter5.published import PARTS  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import rows, run_prior  # noqa: PLC0415
-    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.published import PARTS
+    from fieldmon.studies.thesis.chapter5.report import report_html
+    from fieldmon.studies.thesis.chapter5.study import rows, run_prior
+    from fieldmon.studies.tidy_csv import csv_text
 
     parts = (*(options.scenario or []), *(options.sweep or [])) or PARTS
     with counting("Simulating") as count:
@@ -104,12 +104,12 @@ def _as_published(options: PriorOptions, choices: OpenChoices) -> None:
 
 def _on_maps(folder: Path, options: PriorOptions) -> None:
     """Run the samplers on mapped plants."""
-    from fieldmon.plot.robot import Robot  # noqa: PLC0415
-    from fieldmon.studies.plant_maps import read_plant_maps  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.mapped_plots import MapRules, run_maps  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.report import maps_html  # noqa: PLC0415
-    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
+    from fieldmon.plot.robot import Robot
+    from fieldmon.studies.plant_maps import read_plant_maps
+    from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
+    from fieldmon.studies.thesis.chapter5.mapped_plots import MapRules, run_maps
+    from fieldmon.studies.thesis.chapter5.report import maps_html
+    from fieldmon.studies.tidy_csv import csv_text
 
     rules = MapRules(Robot().with_times("thesis"), CALIBRATED.spread)
     maps = read_plant_maps(folder)
@@ -127,9 +127,9 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
 
 def _on_plot(plot: Path, options: PriorOptions, choices: OpenChoices) -> None:
     """Run the samplers on a plot of one's own."""
-    from fieldmon.studies.thesis.chapter5.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.study import rows, run_site  # noqa: PLC0415
-    from fieldmon.studies.tidy_csv import csv_text  # noqa: PLC0415
+    from fieldmon.studies.thesis.chapter5.report import report_html
+    from fieldmon.studies.thesis.chapter5.study import rows, run_site
+    from fieldmon.studies.tidy_csv import csv_text
 
     site = site_of(plot, options.feature, options.observations)
     with counting("Simulating") as count:
@@ -145,13 +145,13 @@ def _on_plot(plot: Path, options: PriorOptions, choices: OpenChoices) -> None:
 
 def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
     """Return a plot of a file; its records' chance map if there are any, on their last day."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from fieldmon.infestation.prior import prior_chance  # noqa: PLC0415
-    from fieldmon.infestation.prior_settings import PriorSettings  # noqa: PLC0415
-    from fieldmon.io.options import PlotOptions  # noqa: PLC0415
-    from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource  # noqa: PLC0415
-    from fieldmon.studies.thesis.chapter5.sites import Site  # noqa: PLC0415
+    from fieldmon.infestation.prior import prior_chance
+    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.io.options import PlotOptions
+    from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+    from fieldmon.studies.thesis.chapter5.sites import Site
 
     sources = PlotSources(file, PlotOptions(feature=feature))
     asked = None if observations is None else RecordSource(observations)

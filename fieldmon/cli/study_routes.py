@@ -55,7 +55,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
 
     Example: fieldmon study routes rewards.csv --budget 0.1 --budget 0.5 -o study
     """
-    from fieldmon.studies.routes.study import (  # noqa: PLC0415
+    from fieldmon.studies.routes.study import (
         MILP,
         PYVRP,
         csv_text,
@@ -63,7 +63,7 @@ def routes(  # noqa: PLR0913 - one a command-line option
         run_teams,
         sentences,
         table,
-        told_of_teams,
+        team_sentences,
     )
 
     can_be_folder(output)
@@ -78,14 +78,14 @@ def routes(  # noqa: PLR0913 - one a command-line option
             made += list(run(instance, shares, methods, solver_seconds))
             teams += list(run_teams(instance, shares, team or []))
             bar.update(1)
-    for sentence in (*sentences(made), *told_of_teams(teams)):
+    for sentence in (*sentences(made), *team_sentences(teams)):
         typer.echo(sentence)
     write_all(output, {"routes.csv": csv_text([*made, *teams]), "routes.md": table(made)})
 
 
 def _instances(files: list[Path] | None, seed: int | None, *, maps: bool) -> list[Instance]:
     """Return the reward matrices of files, and the families drawn from a seed."""
-    from fieldmon.studies.routes.instances import families, read_matrix  # noqa: PLC0415
+    from fieldmon.studies.routes.instances import families, read_matrix
 
     instances = [read_matrix(_text(file), file.name) for file in files or []]
     if seed is not None:

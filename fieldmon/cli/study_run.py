@@ -62,13 +62,13 @@ class StudyOptions:
     scheduler: Annotated[
         str | None, typer.Option(help="Scheduler of a Dask cluster: tcp://host:8786.")
     ] = None
-    living: PestOptions = field(default_factory=PestOptions)
+    pest_options: PestOptions = field(default_factory=PestOptions)
 
     def design(self) -> Design:
         """Return what is compared."""
-        from fieldmon.simulation.design import Design  # noqa: PLC0415
+        from fieldmon.simulation.design import Design
 
-        self.living.check_alone(spread=self.spread or None)
+        self.pest_options.check_alone(spread=self.spread or None)
         told = {
             "samplers": self.sampler,
             "hours": self.hours,
@@ -81,21 +81,22 @@ class StudyOptions:
 
     def plots(self) -> tuple[StudyPlot, ...]:
         """Return the plots with their records."""
-        import numpy as np  # noqa: PLC0415
+        import numpy as np
 
-        from fieldmon.io.options import PlotOptions  # noqa: PLC0415
-        from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource  # noqa: PLC0415
-        from fieldmon.plot.plot import planting_of  # noqa: PLC0415
-        from fieldmon.simulation.study_plot import StudyPlot  # noqa: PLC0415
+        from fieldmon.io.options import PlotOptions
+        from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+        from fieldmon.plot.plot import planting_of
+        from fieldmon.simulation.study_plot import StudyPlot
 
         told = day(self.on)
         records = None if self.observations is None else RecordSource(self.observations)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         known = estate(PlotRequest(sources, records=records), Terminal(flags={}))
         begins = day_on(known.fields[0], told)
-        on, living = np.datetime64(begins, "D"), self.living.living(known.fields[0], begins)
+        on = np.datetime64(begins, "D")
+        pest_in_weather = self.pest_options.in_weather(known.fields[0], begins)
         return tuple(
-            StudyPlot(one, planting_of(one), known.records.on(one), on, living)
+            StudyPlot(one, planting_of(one), known.records.on(one), on, pest_in_weather)
             for one in known.fields
         )
 
@@ -113,9 +114,9 @@ def study_run(options: StudyOptions) -> None:
 
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """
-    from fieldmon.simulation import executor, results  # noqa: PLC0415
-    from fieldmon.simulation.design import study_of  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
+    from fieldmon.simulation import executor, results
+    from fieldmon.simulation.design import study_of
+    from fieldmon.simulation.experiment import run
 
     design, plots, output = options.design(), options.plots(), options.output
     with executor.cluster(options.scheduler, options.workers) as workers:

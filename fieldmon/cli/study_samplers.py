@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
@@ -72,8 +72,8 @@ def samplers(options: SamplersOptions) -> None:
 
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """
-    from fieldmon.studies.samplers.report import report_html  # noqa: PLC0415
-    from fieldmon.studies.samplers.summary import ratio_lines, sentences  # noqa: PLC0415
+    from fieldmon.studies.samplers.report import report_html
+    from fieldmon.studies.samplers.summary import ratio_lines, sentences
 
     can_be_folder(options.output)
     if options.pest is not None and (options.tune or options.maps is not None):
@@ -88,7 +88,7 @@ def samplers(options: SamplersOptions) -> None:
         _tune()
         return
     table = options.output / "samplers.csv"
-    meant = _scenarios(options.scenario, living_of(options.pest), full=options.full)
+    meant = _scenarios(options.scenario, pest_in_weather_of(options.pest), full=options.full)
     shown = _outcomes(meant, options.seeds, table)
     for sentence in (*ratio_lines(shown), *sentences(shown)):
         typer.echo(sentence)
@@ -97,10 +97,10 @@ def samplers(options: SamplersOptions) -> None:
 
 
 def _scenarios(
-    beginnings: list[str] | None, living: PestInWeather | None, *, full: bool
+    beginnings: list[str] | None, pest_in_weather: PestInWeather | None, *, full: bool
 ) -> list[Scenario]:
     """Return the scenarios that are meant."""
-    from fieldmon.studies.samplers.scenarios import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.scenarios import (
         all_scenarios,
         in_worlds,
         usual_scenarios,
@@ -108,11 +108,11 @@ def _scenarios(
     )
 
     scenarios = all_scenarios() if full else usual_scenarios()
-    if living is not None:
-        scenarios = with_pest(scenarios, living)
+    if pest_in_weather is not None:
+        scenarios = with_pest(scenarios, pest_in_weather)
     if not beginnings:
         return scenarios
-    if living is None:
+    if pest_in_weather is None:
         scenarios = [*scenarios, *in_worlds()]
     meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
     if not meant:
@@ -122,10 +122,10 @@ def _scenarios(
 
 def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonOutcome]:
     """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
-    from fieldmon.simulation import executor  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of  # noqa: PLC0415
+    from fieldmon.simulation import executor
+    from fieldmon.simulation.experiment import run
+    from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of
 
     study = study_of(scenarios, range(seeds))
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome)
@@ -136,7 +136,7 @@ def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonO
 
 def _tune() -> None:
     """Print what each of Dynamic's open choices loses."""
-    from fieldmon.studies.samplers.tuning import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.tuning import (
         SEEDS,
         losses,
         tuning_scenarios,
@@ -150,7 +150,7 @@ def _tune() -> None:
 
 def _on_maps(folder: Path, output: Path) -> None:
     """Print and write how many infested plants an inspection finds on mapped plots."""
-    from fieldmon.studies.samplers.mapped_plots import (  # noqa: PLC0415
+    from fieldmon.studies.samplers.mapped_plots import (
         SHARES,
         plots_in,
         table,

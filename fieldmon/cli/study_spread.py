@@ -15,7 +15,7 @@ def spread(
 
     Example: fieldmon study spread maps
     """
-    from fieldmon.studies.map_spread import intervals_in, scores  # noqa: PLC0415
+    from fieldmon.studies.map_spread import intervals_in, scores
 
     for each in intervals_in(folder):
         typer.echo(scores(each).sentence())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.waiting import counting
 
@@ -39,11 +39,11 @@ def treatments(
 
     Example: fieldmon study treatments --seeds 5 --sampler adaptive -o study
     """
-    from fieldmon.samplers import kind_of  # noqa: PLC0415
-    from fieldmon.simulation import executor  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.verdicts.treated_seasons import (  # noqa: PLC0415
+    from fieldmon.samplers import kind_of
+    from fieldmon.simulation import executor
+    from fieldmon.simulation.experiment import run
+    from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.verdicts.treated_seasons import (
         TreatedSeason,
         known_samplers,
         study_of_treatments,
@@ -54,7 +54,7 @@ def treatments(
     names = tuple(sampler or known_samplers())
     for name in names:
         kind_of(name)
-    scenarios = treated_scenarios(living_of(pest))
+    scenarios = treated_scenarios(pest_in_weather_of(pest))
     study = study_of_treatments(scenarios, range(seeds), names)
     file = output / "treatments.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TreatedSeason)
@@ -67,7 +67,7 @@ def treatments(
 
 def _tell(made: Sequence[TreatedSeason]) -> None:
     """Print the means by scenario, sampler and rule."""
-    from fieldmon.studies.verdicts.treated_seasons import against_nothing  # noqa: PLC0415
+    from fieldmon.studies.verdicts.treated_seasons import against_nothing
 
     typer.echo(
         f"{'scenario':42} {'sampler':15} {'rule':8} plant-days  ha sprayed   money  "
@@ -89,7 +89,7 @@ def _tell(made: Sequence[TreatedSeason]) -> None:
 
 def _tell_areas(scenarios: Sequence[Scenario], seeds: int) -> None:
     """Print what zones spray where they leave about as much as the whole plot's treatment."""
-    from fieldmon.studies.verdicts.treated_seasons import area_at_equal_left  # noqa: PLC0415
+    from fieldmon.studies.verdicts.treated_seasons import area_at_equal_left
 
     typer.echo("\nZones that leave about as many infested plants as treating the whole plot:")
     for share in _LOOKED_AT:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.pest_options import PestName, living_of
+from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.waiting import counting
 
@@ -32,10 +32,10 @@ def verdicts(
 
     Example: fieldmon study verdicts --seeds 20 -o study
     """
-    from fieldmon.simulation import executor  # noqa: PLC0415
-    from fieldmon.simulation.experiment import run  # noqa: PLC0415
-    from fieldmon.studies.outcome_table import OutcomeTable  # noqa: PLC0415
-    from fieldmon.studies.verdicts.looks import (  # noqa: PLC0415
+    from fieldmon.simulation import executor
+    from fieldmon.simulation.experiment import run
+    from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.verdicts.until_verdict import (
         VerdictOutcome,
         real_questions,
         study_of_verdicts,
@@ -44,9 +44,9 @@ def verdicts(
     )
 
     can_be_folder(output)
-    living = living_of(pest)
+    pest_in_weather = pest_in_weather_of(pest)
     questions = usual_questions() + ([] if maps is None else real_questions(maps))
-    questions = [replace(each, living=living) for each in questions]
+    questions = [replace(each, pest_in_weather=pest_in_weather) for each in questions]
     study, file = study_of_verdicts(questions, range(seeds)), output / "verdicts.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], VerdictOutcome)
     with counting("Plots") as count, table, executor.threads() as workers:

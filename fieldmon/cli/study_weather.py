@@ -26,8 +26,8 @@ def weather(
 
     Example: fieldmon study weather --seeds 20 --shape "steady wind"
     """
-    from fieldmon.io.readers.pest_file import pest_of  # noqa: PLC0415
-    from fieldmon.studies.weather_known import CARRIED, SHAPES, worth_of_weather  # noqa: PLC0415
+    from fieldmon.io.readers.pest_file import pest_of
+    from fieldmon.studies.weather_known import CARRIED, SHAPES, worth_of_weather
 
     lives = pest_of(pest) if pest else CARRIED
     if pest:

@@ -26,8 +26,8 @@ def members_of(
     robots: str, usual: time, worker: WorkerOptions
 ) -> tuple[tuple[TeamMember, ...], time]:
     """Return the team of ``--robots``, and the local time at which the first of it starts."""
-    from fieldmon.io.readers.team import read_team  # noqa: PLC0415
-    from fieldmon.planning.members import TeamMember, team_of  # noqa: PLC0415
+    from fieldmon.io.readers.team import read_team
+    from fieldmon.planning.members import TeamMember, team_of
 
     if robots.isdecimal():
         return team_of(int(robots), worker.robot()), usual

@@ -22,7 +22,7 @@ def day(text: str | None, flag: str = "--date") -> date | None:
 
 def day_on(field: Field, told: date | None) -> date:
     """Return the day that was told; else today, in the time zone in which the plot lies."""
-    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415 - geometry is slow to load
+    from fieldmon.plot.local_clock import local_clock
 
     return local_clock(field).today() if told is None else told
 

@@ -80,8 +80,8 @@ class TreatOptions:
 
     def application(self) -> Application:
         """Return what was applied."""
-        from fieldmon.decisions.labels import irac_groups  # noqa: PLC0415
-        from fieldmon.monitoring import Application  # noqa: PLC0415
+        from fieldmon.decisions.labels import irac_groups
+        from fieldmon.monitoring import Application
 
         return Application(
             product=self.product,
@@ -112,8 +112,8 @@ def treat(options: TreatOptions) -> None:
 
     Example: fieldmon treat season.gpkg --efficacy 0.8 --area zones.gpkg --product soap
     """
-    from fieldmon.io.read import read_treated  # noqa: PLC0415
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.io.read import read_treated
+    from fieldmon.monitoring import Season
 
     if options.area is not None and options.rows is not None:
         raise SettingError("Give --area or --rows, not both.")
@@ -159,7 +159,7 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
 
 def _dose(text: str) -> Dose:
     """Return a dose as it was written: a number, and its unit behind it."""
-    from fieldmon.decisions.doses import Dose  # noqa: PLC0415
+    from fieldmon.decisions.doses import Dose
 
     bare = text.strip()
     letters = next((k for k, one in enumerate(bare) if one not in "0123456789.,"), len(bare))
@@ -174,7 +174,7 @@ def _dose(text: str) -> Dose:
 
 def _plants_of(kept: Season, rows: str) -> NDArray[np.bool_]:
     """Return the plants ``(n,)`` of rows as people count them."""
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
     there, wanted = set((kept.plot.grid.row_line + 1).tolist()), set[int]()
     for part in rows.split(","):

@@ -31,7 +31,7 @@ def undo(
     """
     if (batch is not None) + (inspection is not None) + change > 1:
         raise SettingError("Give --batch, --inspection or --change, not two of them.")
-    from fieldmon.monitoring import Season  # noqa: PLC0415
+    from fieldmon.monitoring import Season
 
     if change:
         settings = Season(season).undo_change(who)

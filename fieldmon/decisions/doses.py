@@ -65,10 +65,10 @@ class Dose:
         return f"{self.value:g} {self.unit}"
 
     def share_of(self, other: Dose, water_l_ha: float | None = None) -> float | None:
-        """Return how many times another dose this is; None where the two cannot be compared.
+        """Return how many times the `other` dose this is; None where the two cannot be compared.
 
         Litres and kilograms cannot. A dose in water and one on an area can where it is known how
-        much water goes on a hectare.
+        much water goes on a hectare, `water_l_ha` litres.
         """
         amount, per, size = self._sized()
         their_amount, their_per, their_size = other._sized()

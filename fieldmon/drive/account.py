@@ -38,7 +38,7 @@ def stop_table(driven: DrivenDay) -> bytes:
     return "\n".join([*lines, ""]).encode()
 
 
-def stops_beside(path: Path) -> Path:
+def stops_path(path: Path) -> Path:
     """Return where the stops are written beside the table of the day."""
     return path.with_name(f"{path.stem}.stops{path.suffix}")
 

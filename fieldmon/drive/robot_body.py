@@ -168,11 +168,11 @@ class RobotBody:
 
     def wheels(self, model: Any, mujoco: Any) -> Wheels:  # noqa: ANN401
         """Return its wheels, measured in a compiled world; raise `FileProblem` if they are none."""
-        return _Measured(model, mujoco, self.name).wheels()
+        return _MeasuredRobot(model, mujoco, self.name).wheels()
 
     def box_m(self, model: Any, mujoco: Any) -> tuple[Float, Float]:  # noqa: ANN401
         """Return the corners ``(3,)`` of the box around all of it that can touch."""
-        return _Measured(model, mujoco, self.name).box_m()
+        return _MeasuredRobot(model, mujoco, self.name).box_m()
 
     @property
     def is_of_file(self) -> bool:
@@ -245,7 +245,7 @@ def _mass_kg(spec: Any) -> float:  # noqa: ANN401
     return float(spec.copy().compile().body_mass.sum())
 
 
-class _Measured:
+class _MeasuredRobot:
     """A robot in a compiled world, stood at the origin and measured."""
 
     def __init__(self, model: Any, mujoco: Any, name: str) -> None:  # noqa: ANN401

@@ -23,7 +23,7 @@ _NEXT = np.uint64(1)
 # how infested plants may stand: chance that the neighbour of one along the row, and that of one
 # across, is infested too; side by side, in rows, across rows, apart; and how likely each is before
 # anything was inspected (our choice: insects that jump are seen within a day's finds)
-_BESIDE = np.array([[0.5, 0.5], [0.75, 0.1], [0.1, 0.75], [0.15, 0.15]])
+_NEIGHBOUR = np.array([[0.5, 0.5], [0.75, 0.1], [0.1, 0.75], [0.15, 0.15]])
 _LIKELY = np.log(np.array([0.64, 0.14, 0.1, 0.12]))
 _STANDS, _APART = 4, 3
 # neighbours of one find share their fate, so each counts half; and nothing is settled for good
@@ -101,7 +101,7 @@ def leaning(evidence: NDArray[np.float64]) -> float:
     for k in range(_STANDS):
         weight = np.exp(evidence[k] + _LIKELY[k] - most)
         total += weight
-        lean += weight * _BESIDE[k, 0] / (_BESIDE[k, 0] + _BESIDE[k, 1])
+        lean += weight * _NEIGHBOUR[k, 0] / (_NEIGHBOUR[k, 0] + _NEIGHBOUR[k, 1])
     return float(lean / total)
 
 
@@ -151,7 +151,7 @@ def _update_evidence(
     excess = pair_chance[e] / chance[find] - chance[other]
     fresh = min(max(excess / clusters.fresh[along], 0.0), 1.0)
     for k in range(_STANDS):
-        infested = chance[other] + (1.0 - chance[other]) * _BESIDE[k, along] * fresh
+        infested = chance[other] + (1.0 - chance[other]) * _NEIGHBOUR[k, along] * fresh
         found = detects * infested
         likely = found if clusters.outcome[other] == 1 else 1.0 - found
         clusters.evidence[k] += _TEMPER * np.log(likely)

@@ -203,7 +203,7 @@ class ToAdjacent:
     def reached(self, senders: Plants, sends: float, key: np.uint64, turn: int = 0) -> Mask:
         """Return the plants reached, as `Dispersal.reached`; so much goes to each of them."""
         found = np.zeros(len(self.adjacent.start) - 1, np.bool_)
-        _reach_beside(senders, float(-np.expm1(-sends)), (key, turn), self.adjacent, found)
+        _reach_adjacent(senders, float(-np.expm1(-sends)), (key, turn), self.adjacent, found)
         return found
 
 
@@ -326,7 +326,7 @@ def _jumps(drawn: float, mean: float, none: float, table: np.uint64) -> int:
 
 
 @loop
-def _reach_beside(
+def _reach_adjacent(
     senders: Plants, chance: float, coins: tuple[np.uint64, int], adjacent: Csr, found: Mask
 ) -> None:
     key, turn = coins

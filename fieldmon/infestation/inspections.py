@@ -150,7 +150,7 @@ class Inspections:
         return cls.of(np.empty(0, np.int32), np.empty(0, np.int8), np.datetime64("NaT"))
 
     def take(self, which: NDArray[np.generic] | slice) -> Inspections:
-        """Return those at the given indices, mask or slice."""
+        """Return those at `which` indices, or of a mask ``(k,)`` or a slice."""
         return Inspections(**{name: getattr(self, name)[which] for name in _TYPES})
 
     def and_those(self, others: Inspections) -> Inspections:

@@ -112,7 +112,7 @@ class DistanceKernel:
             shares[a, b] = 0.0
         total = shares.sum()
         if total <= 0.0:  # all far below what a number can hold: to the plants beside it
-            return _beside(shares.shape, a, b)
+            return _on_adjacent_cells(shares.shape, a, b)
         landed: Floats = shares / total
         return landed
 
@@ -151,7 +151,7 @@ def _stretch(wind_m_s: tuple[float, float]) -> float:
     return 1.0 + float(np.hypot(*wind_m_s)) / _DOUBLES_M_S
 
 
-def _beside(shape: tuple[int, ...], a: int, b: int) -> NDArray[np.float64]:
+def _on_adjacent_cells(shape: tuple[int, ...], a: int, b: int) -> NDArray[np.float64]:
     shares = np.zeros(shape)
     for y, x in ((a - 1, b), (a + 1, b), (a, b - 1), (a, b + 1)):
         if 0 <= y < shape[0] and 0 <= x < shape[1]:

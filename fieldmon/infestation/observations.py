@@ -126,7 +126,7 @@ class Observations:
         return cls(points, np.asarray(present, np.int8), days, **(unknown | columns))  # type: ignore[arg-type]
 
     def take(self, which: NDArray[np.generic]) -> Observations:
-        """Return the records at the given indices or mask."""
+        """Return the records at `which` indices, or of a mask ``(k,)``."""
         return Observations(**{name: values[which].copy() for name, values in vars(self).items()})
 
     @classmethod

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: one or more, and among the others; from outside, anywhere or by the plot's edge; by the plant
 #: beside it; overlooked at an inspection; and by jumps of each kernel of `reach.kernels`, from
 #: `JUMPED` on
-AT_START, ANYWHERE, BY_EDGE, BESIDE_IT, OVERLOOKED, AT_START_ELSEWHERE, JUMPED = range(7)
+AT_START, ANYWHERE, BY_EDGE, BY_ADJACENT, OVERLOOKED, AT_START_ELSEWHERE, JUMPED = range(7)
 N_ORIGINS = JUMPED + 6
 # how many finds what was believed before the season is worth, of each origin (our choice): little
 # where a plot's insects differ most from another's

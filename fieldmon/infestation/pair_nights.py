@@ -109,7 +109,7 @@ def _escape_any(
     # the most infested neighbour, and the next
     most, second, which = 0.0, 0.0, -1
     for k in range(degree):
-        j, infested = _beside_clean(believed, linked, np.uint64(first + k), 1.0 - chance[i])
+        j, infested = _given_clean(believed, linked, np.uint64(first + k), 1.0 - chance[i])
         total += infested
         together += infested * density[j] ** 2
         room[_INFECTS, k] = _transmits(linked, rates, (i, j)) * infested
@@ -165,10 +165,10 @@ def _escape_four(
     stay, clean = 1.0 - arrivals, 1.0 - chance[i]
     e0 = np.uint64(np.uint32(linked.start[i]))
     e1, e2, e3 = e0 + _1, e0 + np.uint64(2), e0 + np.uint64(3)
-    j0, b0 = _beside_clean(believed, linked, e0, clean)
-    j1, b1 = _beside_clean(believed, linked, e1, clean)
-    j2, b2 = _beside_clean(believed, linked, e2, clean)
-    j3, b3 = _beside_clean(believed, linked, e3, clean)
+    j0, b0 = _given_clean(believed, linked, e0, clean)
+    j1, b1 = _given_clean(believed, linked, e1, clean)
+    j2, b2 = _given_clean(believed, linked, e2, clean)
+    j3, b3 = _given_clean(believed, linked, e3, clean)
     d0, d1, d2, d3 = density[j0], density[j1], density[j2], density[j3]
     together = b0 * d0**2 + b1 * d1**2 + b2 * d2**2 + b3 * d3**2
     # the most infested of them, and the next
@@ -195,7 +195,7 @@ def _escape_four(
 
 
 @inlined
-def _beside_clean(
+def _given_clean(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
     e: np.uint64,

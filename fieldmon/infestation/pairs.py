@@ -36,7 +36,7 @@ _1 = np.uint64(1)
 # an inspection teaches about plants up to three away, as long as it changes a chance by this
 _RINGS, _LEAST_CHANGE = 3, 1e-6
 # the ring of the plants beside the one inspected
-_BESIDE = 2
+_ADJACENT_RING = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +201,7 @@ def _propagate(
         elif its_ring != ring:
             continue
         conditional = _conditional(p, q, pair_chance[e], after)
-        if ring == _BESIDE and after > p and reached.alone.size > 0:
+        if ring == _ADJACENT_RING and after > p and reached.alone.size > 0:
             by_itself = pair_chance[e] / q * reached.alone[k] / reached.alone[j]
             # never less than was believed already, never more than the find's own news
             ways = greater(1.0 - (1.0 - q) * (1.0 - lesser(by_itself, 1.0)), q)

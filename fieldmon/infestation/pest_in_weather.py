@@ -134,7 +134,7 @@ class PestInWeather:
     begins: date = field(default_factory=lambda: date(2026, 1, 1))
 
     @property
-    def told(self) -> tuple[object, ...]:
+    def content(self) -> tuple[object, ...]:
         """Return what tells a pest in its weather from any other, for a digest."""
         weather = () if self.weather is None else tuple(vars(self.weather).values())
         return (self.pest, str(self.begins), *weather)

@@ -27,7 +27,7 @@ RADIUS = 12
 _NEAR, _MIDDLE, _FAR = 2.0, 4.0, 3.0
 #: how the jumps of a pest that jumps are shared out before anything is found: to the plants next to
 #: it; and by each kernel of :func:`kernels` (our choice)
-BESIDE = 0.5
+TO_ADJACENT = 0.5
 BEYOND = np.array([0.25, 0.05, 0.05, 0.05, 0.05, 0.05])
 #: the same of a pest whose kernel was published, its own kernel first, see :func:`pest_kernels`
 OF_PEST = np.array([0.6, 0.1, 0.1, 0.05, 0.05, 0.1])
@@ -108,7 +108,7 @@ class Reach:
     at_edge
         ``(n,)`` how much more arrives from outside at each plant than on average, if it comes by
         the edge.
-    beside
+    adjacent
         Share of what a plant sends that goes to the plants next to it.
     beyond
         ``(6,)`` share that goes by each kernel.
@@ -121,7 +121,7 @@ class Reach:
     spectra: NDArray[np.complex128]
     padded: tuple[int, int]
     at_edge: Floats
-    beside: float = BESIDE
+    adjacent: float = TO_ADJACENT
     beyond: Floats = field(default_factory=lambda: BEYOND)
     anywhere: float = 0.0
 
@@ -189,7 +189,7 @@ def pest_reach_of(
         made,
         *_transformed(cells, made),
         usual.at_edge,
-        beside=float(shares @ near),
+        adjacent=float(shares @ near),
         beyond=shares * far,
         anywhere=kernel.long_share,
     )

@@ -8,7 +8,7 @@ from fieldmon.compute.jit import loop, part
 from fieldmon.infestation.calibration_slope import note_inspection
 from fieldmon.infestation.chance_bounds import lesser
 from fieldmon.infestation.origins import (
-    BESIDE_IT,
+    BY_ADJACENT,
     JUMPED,
     N_ORIGINS,
     OVERLOOKED,
@@ -122,7 +122,7 @@ def _share(day: TracedDay, chance: Floats, j: int) -> None:
     if more > 0.0:
         for o in range(N_ORIGINS):
             day.shares[j, o] *= day.before[j] / chance[j]
-        day.shares[j, BESIDE_IT] += more / chance[j]
+        day.shares[j, BY_ADJACENT] += more / chance[j]
     day.before[j] = chance[j]
 
 

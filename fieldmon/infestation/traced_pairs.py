@@ -31,7 +31,7 @@ from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
     AT_START_ELSEWHERE,
-    BESIDE_IT,
+    BY_ADJACENT,
     BY_EDGE,
     JUMPED,
     N_ORIGINS,
@@ -123,7 +123,11 @@ class TracedPairs:
 
     @classmethod
     def of(cls, grid: PlantGrid, chance: Floats, clustering: float = CLUSTERING) -> TracedPairs:
-        """Begin with a chance map, see :func:`fieldmon.infestation.pairs.pair_chances`."""
+        """Begin with the `chance` ``(n,)`` of each plant of a `grid`.
+
+        `clustering` is the correlation of neighbours, see
+        :func:`fieldmon.infestation.pairs.pair_chances`.
+        """
         chance = np.clip(chance, LEAST_CHANCE, MOST_CHANCE)
         shares = np.zeros((len(chance), N_ORIGINS), np.float32)
         elsewhere = chance < chance.mean() * _AVERAGE
@@ -313,11 +317,11 @@ class TracedPairs:
             moves = self.chance * (1.0 - self.cohorts.still)
             reach = self._reach(spread.wind_m_s)
             sends = spread.sends if self.known_to_jump else sends
-            each = spread.sends * reach.beside / max(degree, 1.0) if self.known_to_jump else None
+            each = spread.sends * reach.adjacent / max(degree, 1.0) if self.known_to_jump else None
             spread = _moving(spread, each, float(moves.sum() / self.chance.sum()))
         # of a pest with a kernel of its own, the rate is of the plants beside it already
-        beside = 1.0 if self.known_to_jump else 1.0 - self.jumps * (1.0 - reach.beside)
-        rate = spread.rate_per_day * min(1.0, beside * self.counts.scale[BESIDE_IT])
+        beside = 1.0 if self.known_to_jump else 1.0 - self.jumps * (1.0 - reach.adjacent)
+        rate = spread.rate_per_day * min(1.0, beside * self.counts.scale[BY_ADJACENT])
         near = replace(spread, rate_per_day=rate, arrivals_per_day=0.0)
         pairs = self.chance, self.pair_chance
         believed = night_of_pairs(pairs, self.grid.linked, near, leaning(self.evidence))
@@ -376,7 +380,7 @@ class TracedPairs:
     def _shares_after(self, beside: Floats, gain: Floats, brought: Floats) -> NDArray[np.float32]:
         """Return the shares of the origins after a night that brought so much."""
         parts = self.shares * self.chance[:, None].astype(np.float32)
-        parts[:, BESIDE_IT] += np.maximum(beside, 0.0).astype(np.float32)
+        parts[:, BY_ADJACENT] += np.maximum(beside, 0.0).astype(np.float32)
         parts += (brought * (gain / np.maximum(brought.sum(axis=0), 1e-12))).T.astype(np.float32)
         shares: NDArray[np.float32] = parts / parts.sum(axis=1, keepdims=True)
         return shares
@@ -396,9 +400,9 @@ class TracedPairs:
         brought = np.einsum("i,ik->k", self.chance, shares)
         # what came from the plant beside it came from where that one did
         arrived = brought[[ANYWHERE, BY_EDGE]].sum() / max(
-            brought.sum() - brought[BESIDE_IT], 1e-12
+            brought.sum() - brought[BY_ADJACENT], 1e-12
         )
-        inside = 1.0 - outside - shares[:, BESIDE_IT] * min(arrived, 1.0)
+        inside = 1.0 - outside - shares[:, BY_ADJACENT] * min(arrived, 1.0)
         return replace(self.times(inside), counts=OriginCounts(found, expected))
 
     def treated(self, left: Floats) -> TracedPairs:

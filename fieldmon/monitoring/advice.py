@@ -85,7 +85,7 @@ class AdviceSettings:
 
 
 @dataclass(frozen=True)
-class MoreLooks:
+class MoreInspections:
     """After how many looks more a verdict can come, at the earliest.
 
     Parameters
@@ -125,7 +125,7 @@ class Advice:
     plot: MapVerdict
     zones: Zones
     said: ZoneVerdicts
-    more: MoreLooks | None = None
+    more: MoreInspections | None = None
 
     def __repr__(self) -> str:
         return f"<Advice: {self.verdict}, {counted(len(self.zones), 'zone')}>"
@@ -183,7 +183,7 @@ class Advice:
         return worded("Do not treat today.")
 
     def _look_on(self) -> str:
-        more = self.more or MoreLooks(None, None)
+        more = self.more or MoreInspections(None, None)
         if more.if_clean is not None:
             return worded(
                 "Look on: look at {plants} more; if nothing is found there, it need not be "
@@ -207,9 +207,9 @@ class Advice:
 
     def said_of_plot(self) -> list[str]:
         """Return the verdict of the plot, and the looks that it lacks."""
-        return [self.plot.sentence(), *self._looks_said(), *self._sooner_said()]
+        return [self.plot.sentence(), *self._inspections_said(), *self._sooner_said()]
 
-    def _looks_said(self) -> list[str]:
+    def _inspections_said(self) -> list[str]:
         more = self.more
         if more is None or more.if_clean is None:
             return []
@@ -297,11 +297,11 @@ def advice(
     )  # fmt: skip
     more = None
     if scene is not None and plot.verdict == LOOK_ON:
-        more = looks_to_verdict(evening, scene, asked)
+        more = inspections_to_verdict(evening, scene, asked)
     return Advice(grid, asked, plot, zones, said, more)
 
 
-def looks_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings) -> MoreLooks:
+def inspections_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings) -> MoreInspections:
     """Return after how many looks, driven as Decide drives, a verdict can come at the earliest."""
     n = len(scene.chance)
     day = replace(scene, seconds_left=min(_LONG_DAY_S, 1e4 * n))
@@ -315,7 +315,7 @@ def looks_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings) -> Mo
             doubt=after.doubt,
         ).verdict  # fmt: skip
 
-    return MoreLooks(
+    return MoreInspections(
         _first(lambda looks: verdict(looks, found=False) == LEAVE, len(order)),
         _first(lambda looks: verdict(looks, found=True) == TREAT, len(order)),
     )

@@ -107,14 +107,14 @@ def spot_area(plot: Plot, spots: HotSpots, h: int) -> MultiPolygon:
     """Return the ground of a hot spot, lon/lat: its plants and half a row around them."""
     grid = plot.grid
     plants = np.flatnonzero(spots.of_plant == h)
-    starts = np.concatenate([[0], np.flatnonzero(~_beside_the_next(grid, plants)) + 1])
+    starts = np.concatenate([[0], np.flatnonzero(~_adjacent_to_next(grid, plants)) + 1])
     stretch = tuple(starts.tolist())
     around = _ground_around(grid.xy_m[plants].tobytes(), stretch, grid.row_spacing_m)
     parts = shapely.get_parts(grid.frame.geometry_lonlat(around))
     return MultiPolygon(list(parts))
 
 
-def _beside_the_next(grid: PlantGrid, plants: NDArray[np.intp]) -> NDArray[np.bool_]:
+def _adjacent_to_next(grid: PlantGrid, plants: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Return whether each plant but the last stands in a row just before the next one given."""
     far_m = np.hypot(*np.diff(grid.xy_m[plants], axis=0).T)
     same_row = np.diff(grid.row[plants]) == 0

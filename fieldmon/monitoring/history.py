@@ -80,9 +80,9 @@ class BeliefSettings:
     def first_morning(
         self, grid: PlantGrid, chance: NDArray[np.float64], pest: Pest | None = None
     ) -> Belief:
-        """Return what is believed at first, from a chance map ``(n,)``, of a pest if one is named.
+        """Return what is believed at first, from the `chance` ``(n,)`` of each plant of a `grid`.
 
-        Only where finds are traced is anything made of the pest.
+        Only where finds are traced is anything made of a `pest`.
         """
         if not self.traces:
             return PairApproximation.of(grid, chance)
@@ -113,7 +113,7 @@ class BeliefSettings:
         return morning.learn(plants, found, Learning(detection, treated=self.treated))
 
     def overnight(self, evening: Belief) -> Belief:
-        """Return what is believed the next morning."""
+        """Return what is believed the morning after an `evening`."""
         return evening.overnight(self.spread)
 
 
@@ -170,7 +170,7 @@ class History:
         None: there are none.
     detection_of
         The same chance for those of a team, by their names without capitals.
-    living
+    pest_in_weather
         The pest, in the weather of the season's days; None: nobody named it, and nights are as
         `belief` says.
     """
@@ -184,7 +184,7 @@ class History:
     detection: float = 0.84
     recorded: NDArray[np.int8] | None = None
     detection_of: Mapping[str, float] = field(default_factory=dict)
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
     def __post_init__(self) -> None:
         if (np.diff(self.days) < 0).any():
@@ -214,9 +214,9 @@ class History:
 
     def night(self, day: int) -> Spread:
         """Return what the insects are taken to do in the night after a day."""
-        if self.living is None:
+        if self.pest_in_weather is None:
             return self.belief.spread
-        return self.living.spread(day, self.grid.frame)
+        return self.pest_in_weather.spread(day, self.grid.frame)
 
     def forecast(self, morning: Belief, day: int, nights: int = NIGHTS) -> Forecast:
         """Return how many plants are infested on the next mornings, nobody inspecting any more.
@@ -225,8 +225,8 @@ class History:
         """
         ahead = range(day, day + nights)
         known = None
-        if self.living is not None and self.living.weather is not None:
-            known = sum(self.living.known(number) for number in ahead)
+        if self.pest_in_weather is not None and self.pest_in_weather.weather is not None:
+            known = sum(self.pest_in_weather.known(number) for number in ahead)
         evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
         # what is flagged and not treated is still out there tomorrow, but not left to be found
         now = self.estimate(morning, day) if self.belief.treated else None

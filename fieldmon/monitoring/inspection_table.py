@@ -172,7 +172,7 @@ def in_words(result: NDArray[np.int8], on: NDArray[np.datetime64]) -> dict[str, 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:
     """Return rows whose digest is not that of what they say.
 
-    Of two that a phone told alike, the second has a digest with its telling's id in it.
+    Of two that a phone told alike, the second has a digest with its finding's id in it.
     """
     # most are as SQLite writes them; of others, as of counts of sixteen digits, Python is asked
     # the same as `digest` gives: it is called half a million times

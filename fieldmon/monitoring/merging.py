@@ -19,7 +19,7 @@ from fieldmon.monitoring.geopackage import touch
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Hashable, Iterable
+    from collections.abc import Hashable, Iterable
 
     from fieldmon.monitoring.geopackage import GeoPackageTable
 
@@ -292,8 +292,11 @@ def _once(
 ) -> list[Row]:
     """Return the rows of both copies, once each, in an order that both would give."""
     found = {_key(row, known_by): row for copied in copies for row in copied[name]}
-    first: Callable[[Row], Any] = lambda row: repr((_key(row, order), _key(row, known_by)))  # noqa: E731
-    return sorted(found.values(), key=first)
+
+    def place(row: Row) -> str:
+        return repr((_key(row, order), _key(row, known_by)))
+
+    return sorted(found.values(), key=place)
 
 
 def _differing(copies: list[dict[str, list[Row]]]) -> tuple[str, ...]:

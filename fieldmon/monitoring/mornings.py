@@ -108,7 +108,7 @@ class Mornings:
 
 def take(db: sqlite3.Connection, mornings: Mornings) -> None:
     """Add the mornings that the file keeps, and the estimate of its last day."""
-    if mornings.history.living is not None:
+    if mornings.history.pest_in_weather is not None:
         return
     late = "SELECT day, causes, content, chances FROM mornings WHERE day > 0"
     for day, *kept in db.execute(late):
@@ -128,7 +128,7 @@ def causes_of(history: History, day: int, estimate: PlotEstimate) -> str | None:
 
     None: it follows from more than the season's file says.
     """
-    if history.living is not None:
+    if history.pest_in_weather is not None:
         return None
     said = estimate.expected, estimate.low, estimate.high, estimate.chance_clean
     return digest(_causes(history, day + 1), said)
@@ -137,7 +137,7 @@ def causes_of(history: History, day: int, estimate: PlotEstimate) -> str | None:
 def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
     """Keep the latest mornings in the file, within the transaction that changes it."""
     wanted: set[int] = set()
-    if mornings.history.living is None:
+    if mornings.history.pest_in_weather is None:
         eighths = range(newest - newest % _EVERY, 0, -_EVERY)[:_IN_FILE]
         # that before the newest: who corrects the last day's work begins there
         wanted = {day for day in (*eighths, newest - 1, newest) if day > 0}
@@ -158,7 +158,7 @@ def is_behind(db: sqlite3.Connection, mornings: Mornings, newest: int) -> bool:
 
     As after a new version of fieldmon: who only reads works it out again each time.
     """
-    if mornings.history.living is not None or newest not in mornings.known or newest == 0:
+    if mornings.history.pest_in_weather is not None or newest not in mornings.known or newest == 0:
         return False
     row = db.execute("SELECT causes FROM mornings WHERE day = ?", (newest,)).fetchone()
     return row is None or row[0] != _causes(mornings.history, newest)

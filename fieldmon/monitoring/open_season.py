@@ -179,9 +179,9 @@ class OpenSeason:
         return row_label(self.plot.grid)
 
     def scene(self, on: date, now: time | None = None, who: str = "") -> Scene:
-        """Return a day as it stands after what was recorded of it; `now` as in `plan`.
+        """Return the day `on` as it stands after what was recorded of it; `now` as in `plan`.
 
-        Of a team it is that of the one named, or of the first.
+        Of a team it is that of `who` is named, or of the first.
         """
         with self._lock:
             return self._scene(self._now(), on, now, who)
@@ -324,7 +324,7 @@ def nothing_yet(
         detection=settings.robot.detects,
         recorded=record_states(plot.grid, known) if len(known) else None,
         detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
-        living=settings.living(),
+        pest_in_weather=settings.pest_in_weather(),
     )
 
 

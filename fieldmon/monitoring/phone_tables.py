@@ -26,7 +26,8 @@ SCOUTS = GeoPackageTable(
     None,
     "Who may tell findings from a phone, and of which rows; of keys only digests are kept.",
 )
-TELLINGS = GeoPackageTable(
+#: its name is that of files that were made before findings were called so
+FINDINGS = GeoPackageTable(
     "tellings",
     (
         "id TEXT NOT NULL UNIQUE",
@@ -95,7 +96,7 @@ PHOTO_PLACES = GeoPackageTable(
     "Photos at the plants that they show.",
 )
 
-_FIRST = (SCOUTS, TELLINGS, PHOTOS)
+_FIRST = (SCOUTS, FINDINGS, PHOTOS)
 TABLES = (*_FIRST, PHOTOS_ASKED)
 
 _VIEWS = (
@@ -158,19 +159,19 @@ def _relate(db: sqlite3.Connection) -> None:
 # -- two copies of a season
 
 _INSPECTION = "i.digest, b.at, b.source, b.who"
-_OF_TELLING = "FROM inspections i JOIN batches b ON b.fid = i.batch WHERE i."
+_OF_FINDING = "FROM inspections i JOIN batches b ON b.fid = i.batch WHERE i."
 
 #: rows of a table by the names of its columns
 Rows = list[dict[str, Any]]
 
 
 def brought(db: sqlite3.Connection) -> dict[str, Rows]:
-    """Return what phones brought to a copy; tellings by what their inspections say.
+    """Return what phones brought to a copy; findings by what their inspections say.
 
     Numbers of inspections change when copies are merged: they are known by digest and batch.
     """
     found = {table.name: _rows(db, table) for table in TABLES}
-    wanted = f"SELECT {_INSPECTION} {_OF_TELLING}fid = ?"
+    wanted = f"SELECT {_INSPECTION} {_OF_FINDING}fid = ?"
     for row in found["tellings"]:
         row["inspection"] = db.execute(wanted, (row["inspection"],)).fetchone()
     return found
@@ -183,14 +184,14 @@ def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> Non
         for row in (*copied["scouts"], *copied["photos_asked"]):
             known = row["key_digest"] if "key_digest" in row else row["id"]
             ends.setdefault(known, []).extend([row["ended"]] if row["ended"] else [])
-    wanted = f"SELECT i.fid {_OF_TELLING}digest = ? AND b.at = ? AND b.source = ? AND b.who = ?"
+    wanted = f"SELECT i.fid {_OF_FINDING}digest = ? AND b.at = ? AND b.source = ? AND b.who = ?"
     for table, known_by in zip(TABLES, ("key_digest", "id", "photo", "id"), strict=True):
         rows = {row[known_by]: row for copied in reversed(copies) for row in copied[table.name]}
         made = []
         for key, row in sorted(rows.items()):
             if table in {SCOUTS, PHOTOS_ASKED}:
                 row["ended"] = min(ends[key], default=None)
-            elif table is TELLINGS and row["inspection"] is not None:
+            elif table is FINDINGS and row["inspection"] is not None:
                 (row["inspection"],) = db.execute(wanted, row["inspection"]).fetchone() or (None,)
             made.append(tuple(row[name] for name in table.names))
         db.execute(f"DELETE FROM {table.name}")  # noqa: S608 - names of ours
@@ -200,7 +201,7 @@ def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> Non
 
 
 def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
-    """Mark as undone what a telling of the same person takes back, whichever came first.
+    """Mark as undone what a finding of the same person takes back, whichever came first.
 
     Return the batch and the day of each.
     """

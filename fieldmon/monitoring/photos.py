@@ -34,8 +34,8 @@ class Photo:
     ----------
     id
         Made on the phone: a UUID.
-    telling
-        Id of the telling that it belongs to, which may come later.
+    finding
+        Id of the finding that it belongs to, which may come later.
     data
         The picture: JPEG, PNG or WebP.
     at
@@ -45,7 +45,7 @@ class Photo:
     """
 
     id: str
-    telling: str
+    finding: str
     data: bytes
     at: datetime
     lonlat: tuple[float, float] | None = None
@@ -90,7 +90,7 @@ def keep(season: Season, key: str, photo: Photo) -> bool:
                 worded("One person may send {n} photos a day. Wait a day.", n=MOST_A_DAY)
             )
         lon, lat = photo.lonlat or (None, None)
-        who = (photo.id, photo.telling, scout.name, photo.at.isoformat(), text_now())
+        who = (photo.id, photo.finding, scout.name, photo.at.isoformat(), text_now())
         row = (photo.data, kind, *who, lon, lat, photo.accuracy_m, mark)
         insert(db, phone_tables.PHOTOS, [row])
         touch(db, phone_tables.PHOTOS.name)

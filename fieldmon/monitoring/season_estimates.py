@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-class _Asked(NamedTuple):
+class _MorningAsked(NamedTuple):
     """What the file says now; what is believed on the morning of a day; the day's number."""
 
     contents: SeasonContents
@@ -45,12 +45,12 @@ class SeasonEstimates(OpenSeason):
     """What follows on each day from all that was recorded before."""
 
     def morning(self, on: date) -> Floats:
-        """Return the chance map ``(n,)`` of a morning."""
+        """Return the chance map ``(n,)`` of the morning of `on`."""
         with self._asked(on) as (_, morning, _):
             return morning.chance
 
     def evening(self, on: date) -> Floats:
-        """Return the chance map ``(n,)`` of a day, after what was recorded of it so far."""
+        """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far."""
         with self._asked(on) as (contents, morning, day):
             return contents.history.evening(morning, day).chance
 
@@ -64,8 +64,18 @@ class SeasonEstimates(OpenSeason):
     ) -> MapVerdict:
         """Return whether treating pays after a day's work; see `fieldmon.decisions`.
 
-        Plants that were found and not treated count: they are infested. `plants` ``(n,)`` is the
-        part of the plot that is asked about; None: all.
+        Plants that were found and not treated count: they are infested.
+
+        Parameters
+        ----------
+        on
+            The day.
+        level
+            Share of infested plants from which treating pays.
+        sure
+            How likely the answer must be to be right.
+        plants
+            ``(n,)`` the part of the plot that is asked about; None: all.
         """
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.evening(morning, day)
@@ -110,17 +120,17 @@ class SeasonEstimates(OpenSeason):
         return history.forecast(morning, day)  # others may plan meanwhile
 
     def learnt(self, on: date) -> tuple[Learnt, ...]:
-        """Return what the inspections up to the evening of a day tell of the insects."""
+        """Return what the inspections up to the evening of `on` tell of the insects."""
         with self._asked(on) as (contents, morning, day):
             return contents.history.learnt(morning, day)
 
     def progress(self, on: date) -> Progress:
-        """Return how far the inspections are after a day's work; nothing is estimated for it."""
+        """Return how far the inspections are after the work of `on`; nothing is estimated."""
         now = self._now()
         return Progress.of(now.history, now.settings.day(on))
 
     def day_figures(self, on: date) -> DayFigures:
-        """Return a day in figures: those kept with it, or else worked out, which takes seconds."""
+        """Return the day `on` in figures: those kept with it, or worked out in seconds."""
         for kept in self.days():
             if kept.on == on:
                 return kept
@@ -134,12 +144,12 @@ class SeasonEstimates(OpenSeason):
             return day_figures.kept(db)
 
     @contextmanager
-    def _asked(self, on: date) -> Iterator[_Asked]:
+    def _asked(self, on: date) -> Iterator[_MorningAsked]:
         """Give what a question about a day is answered from; others wait, or would do it again."""
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            yield _Asked(contents, contents.morning(day), day)
+            yield _MorningAsked(contents, contents.morning(day), day)
 
 
 def _development(now: SeasonContents, on: date) -> Development | None:

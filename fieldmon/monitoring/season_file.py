@@ -184,7 +184,22 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         return (*made, Assumed("rate_per_day", rate))
 
     def change(self, settings: MonitoringSettings, seen: MonitoringSettings, who: str = "") -> None:
-        """Choose otherwise; raise `FileProblem` if the choices are no longer those `seen`."""
+        """Choose otherwise.
+
+        Parameters
+        ----------
+        settings
+            What counts from now on.
+        seen
+            What counted when it was chosen.
+        who
+            Who changes it, for the log.
+
+        Raises
+        ------
+        FileProblem
+            If something else than `seen` counts by now.
+        """
         with self._lock, self.store.writing() as db:
             if as_json(settings_of(db)) != as_json(seen):
                 raise FileProblem(
@@ -203,7 +218,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         return None if parts is None else from_json(parts)
 
     def undo_change(self, who: str = "") -> MonitoringSettings:
-        """Take the last change of settings back; return what counts again.
+        """Take the last change of settings back; return what counts again. `who` is for the log.
 
         Raise `SettingError` if there is none.
         """
@@ -233,7 +248,17 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                 self._refresh(db, change.since)
 
     def advise(self, on: date, said: str, who: str = "") -> None:
-        """Write into the log what was advised for a day, unless that was written last of it."""
+        """Write into the log what was advised for a day, unless that was written last of it.
+
+        Parameters
+        ----------
+        on
+            The day.
+        said
+            The advice, in a sentence or more.
+        who
+            Who was advised, or advises.
+        """
         with self._lock, self.store.reading() as db:
             if _advised(db, on)[-1:] == [said]:
                 return
@@ -272,15 +297,18 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     def verify(self, *, whole: bool = True) -> tuple[str, ...]:
         """Hold the file to its digests; return a sentence for each thing that differs.
 
-        Whole, every morning since the first is worked out again and each row is held to the log;
-        else only the last morning that the file keeps, and those after it.
+        If `whole`, every morning since the first is worked out again and each row is held to the
+        log; else only the last morning that the file keeps, and those after it.
         """
         doubt = () if self.store.doubt is None else (self.store.doubt,)
         held = self.held_to_log() if whole else ()
         return (*doubt, *held, *self.other_maps(whole=whole))
 
     def other_maps(self, *, whole: bool = True) -> tuple[str, ...]:
-        """Return a sentence for each day whose chance map is not the one that was used then."""
+        """Return a sentence for each day whose chance map is not the one that was used then.
+
+        `whole` as in `verify`.
+        """
         with self._lock:
             with self.store.reading() as db:  # both at one moment: others may write between
                 contents = self._read(db)

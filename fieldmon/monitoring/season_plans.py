@@ -15,7 +15,8 @@ from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
-from fieldmon.planning.team_day import Posted, team_day
+from fieldmon.planning.team_day import team_day
+from fieldmon.planning.team_worker import Posted
 
 if TYPE_CHECKING:
     from datetime import date, time
@@ -60,6 +61,7 @@ class SeasonPlans(OpenSeason):
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Plan what is left of a day for each of the team, or for the one who works.
 
+        `on`, `now`, `keep` and `wishes` are those of `plan`.
         In the order of the team. Aisles that the routes kept of this day gave to one stay its own
         unless another way to give them out gains enough, see `Teamwork`.
         """
@@ -80,9 +82,9 @@ class SeasonPlans(OpenSeason):
         return noted
 
     def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
-        """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none.
+        """Return the plants ``(k,)`` of the latest route kept for the day `on`; empty without one.
 
-        Of a team it is that of the one named, or of the first.
+        Of a team it is that of `who` is named, or of the first.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             settings = self._read(db).settings
@@ -135,7 +137,7 @@ class SeasonPlans(OpenSeason):
         posts = []
         for member, scene in zip(settings.team, scenes, strict=True):
             begun_s = member.starts_s + member.robot.day_s - scene.seconds_left
-            told = scene if wishes is None else wishes.told(scene)
+            told = scene if wishes is None else wishes.applied_to(scene)
             posts.append(Posted(told, begun_s, np.zeros(len(scene.chance), np.bool_)))
         before = self._given_out(settings, day)
         works = team_day(posts, settings.decides(), settings.teamwork, before=before)

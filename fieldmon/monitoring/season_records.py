@@ -44,11 +44,11 @@ class SeasonRecords(OpenSeason):
     """The inspections of a season, whoever brings them; each batch can be undone."""
 
     def contradictions(self, inspections: Inspections) -> Contradictions:
-        """Return those that say otherwise than what is recorded of the same plant and day."""
+        """Return which `inspections` say otherwise than what is recorded of their plant and day."""
         return contradictions(inspections, self.history.inspections)
 
     def unrecorded(self, inspections: Inspections) -> int:
-        """Return how many are of a plant, day and result that were never recorded.
+        """Return how many `inspections` are of a plant, day and result that were never recorded.
 
         What was recorded and taken back since was recorded.
         """
@@ -126,8 +126,9 @@ class SeasonRecords(OpenSeason):
         )  # fmt: skip
 
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
-        """Take a batch back (None: the last one), or one inspection; nothing is deleted.
+        """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
+        Both are numbers; `who` takes it back, for the log.
         Return a sentence that says what was undone. Raise `SettingError` if there is nothing.
         """
         with self._lock, self.store.writing() as db:
@@ -143,7 +144,7 @@ class SeasonRecords(OpenSeason):
     def correct(self, who: str) -> int:
         """Take what another program changed of inspections as corrections; return how many.
 
-        They are a batch of their own, of this person; undoing it takes the corrected rows out.
+        They are a batch of their own, of `who` corrects; undoing it takes the corrected rows out.
         Raise `FileProblem` if more than inspections was changed, or what makes no sense.
         """
         with self._lock, self.store.writing() as db:
@@ -209,10 +210,11 @@ class SeasonRecords(OpenSeason):
             return copy_corrections.waiting(theirs)
 
     def take_corrections(self, copy: Path, name: str, who: str) -> int:
-        """Take what was corrected or deleted in a copy of this season; return how many were new.
+        """Take what was corrected or deleted in a `copy` of this season; return how many were new.
 
-        They are a batch of their own, of this person. Raise `FileProblem` if a changed row makes no
-        sense or is not here, and `SettingError` if nobody is named.
+        They are a batch of their own, of `who`; `name` is what the copy is called.
+        Raise `FileProblem` if a changed row makes no sense or is not here, and `SettingError` if
+        nobody is named.
         """
         if not who.strip():
             raise SettingError(

@@ -161,7 +161,10 @@ class SeasonTreatments(OpenSeason):
         return treatments.kept(db, self._inside, local_clock(self.plot.field))
 
     def keep_labels(self, labels: Iterable[ProductLabel], source: str = "", who: str = "") -> int:
-        """Let these be what labels allow, instead of those before; return how many there are."""
+        """Let these be what labels allow, instead of those before; return how many there are.
+
+        `source` is where they come from, and `who` brings them, for the log.
+        """
         kept = tuple(labels)
         with self._lock, self.store.writing() as db:
             if kept != label_table.read(db):
@@ -178,7 +181,10 @@ class SeasonTreatments(OpenSeason):
             return label_table.read(db)
 
     def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
-        """Return what to beware of on a day: harvest, entry, resistance, what labels allow."""
+        """Return what to beware of on a day: harvest, entry, resistance, what labels allow.
+
+        Sentences speak in `units`; None: the usual ones.
+        """
         with self._lock, self.store.reading() as db:  # all of one moment
             done = self._treatments(db)
             settings, labels = settings_of(db), label_table.read(db)
@@ -188,7 +194,7 @@ class SeasonTreatments(OpenSeason):
         return cautions.cautions(done, rules, on)
 
     def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
-        """Return the first day of harvest that treatments up to a day allow, and which one waits.
+        """Return the first day of harvest that treatments until `on` allow, and which one waits.
 
         None: no treatment is known to need a wait.
         """
@@ -198,7 +204,10 @@ class SeasonTreatments(OpenSeason):
         return cautions.harvest_from(done, labels)
 
     def effects(self, on: date, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
-        """Return what inspections up to the evening of a day tell of each treatment before it."""
+        """Return what inspections up to the evening of `on` tell of each treatment before it.
+
+        Sentences speak in `units`; None: the usual ones. Raise `SettingError` outside the season.
+        """
         with self._lock, self.store.reading() as db:  # both of one moment
             done = self._treatments(db)
             if not done:

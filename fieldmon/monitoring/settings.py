@@ -132,16 +132,16 @@ class MonitoringSettings:
                 )
             )
 
-    def living(self) -> PestInWeather | None:
+    def pest_in_weather(self) -> PestInWeather | None:
         """Return the pest in its weather, day by day; None: no pest was named."""
-        return None if self.pest is None else _living(self.pest, self.weather, self.begins)
+        return None if self.pest is None else _pest_in_weather(self.pest, self.weather, self.begins)
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
         return sampler(self.sampler, **self.sampler_settings)
 
     def member(self, who: str) -> TeamMember:
-        """Return one of the team by its name; raise `SettingError` if there is none."""
+        """Return the one of the team whose name is `who`; raise `SettingError` if there is none."""
         for one in self.team:
             if one.name.casefold() == who.casefold():
                 return one
@@ -154,7 +154,7 @@ class MonitoringSettings:
         )
 
     def day(self, on: date) -> int:
-        """Return the number of a date, from 0; raise `SettingError` outside the season."""
+        """Return the number of the day `on`, from 0; raise `SettingError` outside the season."""
         what = "A day of a season must be a date"
         must_be(what, on, date, "Give date(2026, 11, 18).", but_no=(datetime,))
         number = (on - self.begins).days
@@ -187,7 +187,7 @@ class MonitoringSettings:
 
 
 @lru_cache(maxsize=4)
-def _living(pest: Pest, weather: Weather | None, begins: date) -> PestInWeather:
+def _pest_in_weather(pest: Pest, weather: Weather | None, begins: date) -> PestInWeather:
     """Return a pest in its weather, made once: a year of hours takes half a second to lay out."""
     return PestInWeather(pest, weather, begins)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import require_folder
-from fieldmon.monitoring import changes_beside, season_log
+from fieldmon.monitoring import journals, season_log
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.schema import (
     LOGS_SINCE,
@@ -72,15 +72,15 @@ class Store:
         self.path = Path(path).absolute()
         if not self.path.is_file():
             raise _no_file(path)
-        has_more = changes_beside.refuse_foreign(self.path)
-        changes_beside.refuse_foreign_journal(self.path)
+        has_more = journals.refuse_foreign_wal(self.path)
+        journals.refuse_foreign_journal(self.path)
         with self.reading() as db:
             version = _version(db)
             is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
             needs = get_meta(db, "needs") if version else None
         self._checked: tuple[int, str] | None = None
         #: what is to be doubted of the file, in a sentence, or None
-        self.doubt = changes_beside.PARTED.format(path=self.path) if is_parted else None
+        self.doubt = journals.PARTED.format(path=self.path) if is_parted else None
         if version is None:
             raise FileProblem(
                 worded(
@@ -114,7 +114,7 @@ class Store:
         """Copy the file as it is at this moment, whoever works on it; never over another file."""
         target = Path(to).absolute()
         _refuse_old(target, to)
-        with _beside(target) as folder:
+        with _draft_folder(target) as folder:
             draft = Path(folder) / "copy.gpkg"
             copy_season(self.path, draft)
             _put(draft, target)
@@ -125,7 +125,7 @@ class Store:
         """Make a new file: it appears with all that is written inside this block, or not at all."""
         target = Path(path).absolute()
         _refuse_old(target, path)
-        with _beside(target) as folder:
+        with _draft_folder(target) as folder:
             draft = Path(folder) / "season.gpkg"
             with _sentences(target), closing(_connect(draft)) as db:
                 db.execute("BEGIN")
@@ -278,7 +278,7 @@ def _put(draft: Path, target: Path) -> None:
 
 
 @contextmanager
-def _beside(target: Path) -> Iterator[str]:
+def _draft_folder(target: Path) -> Iterator[str]:
     """Make a folder for a draft beside a file, so that it can take its place at once."""
     try:
         draft = tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent)

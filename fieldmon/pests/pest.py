@@ -313,7 +313,7 @@ class Pest:
                 _must("pest", name, value, "a chance in 0..1", 0 <= value <= 1)
 
     def infests_per_day(self, temperature_c: float | Floats | None = None) -> Floats:
-        """Return `movement.per_day` at temperatures, of their shape; None: as it is.
+        """Return `movement.per_day` at `temperature_c`, °C, of its shape; None: as it is.
 
         It goes with the rate of increase, where both are known with the temperature. A chance
         stays one: it follows 1 - (1 - per_day)^ratio.

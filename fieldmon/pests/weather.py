@@ -133,7 +133,7 @@ class Weather:
         return self.chosen((self.at >= first) & (self.at < end))
 
     def chosen(self, which: NDArray[np.bool_]) -> Weather:
-        """Return the entries of a mask ``(n,)``."""
+        """Return the entries of the mask `which` ``(n,)``."""
         parts: dict[str, Any] = {
             each.name: getattr(self, each.name)[which]
             for each in fields(self)

@@ -102,7 +102,7 @@ class Task:
         for name in later:
             if ordered[name] == usual[name]:
                 del ordered[name]
-        parts = (*self.plot.told, self.who, self.stated, *ordered.values())
+        parts = (*self.plot.content, self.who, self.stated, *ordered.values())
         return digest(*parts, *vars(observations).values(), length=16)
 
 

@@ -21,16 +21,16 @@ def share_above(held: float, bound: float) -> float:
 FINDS, REWARD = worded("finds"), worded("reward")
 
 
-def told(held: float, bound: float, what: str = FINDS, routes: str = "route") -> str:
+def bound_sentence(held: float, bound: float, what: str = FINDS, routes: str = "route") -> str:
     """Return what a route is expected to hold and what no other can exceed.
 
     The bound and the share are rounded up: no route exceeds what is said.
 
     Examples
     --------
-    >>> told(42.31, 42.97)
+    >>> bound_sentence(42.31, 42.97)
     '42.3 finds expected; no route of these hours can expect more than 43.0 (1.6 %).'
-    >>> told(20.0, 20.0)
+    >>> bound_sentence(20.0, 20.0)
     '20.0 finds expected; no route of these hours can expect more.'
     """
     said = _of_route(held, bound, what)

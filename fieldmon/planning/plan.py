@@ -267,5 +267,5 @@ def plan_in(scene: Scene, sampler: Sampler, wishes: Wishes | None = None) -> Day
 
     Wishes change where it goes, not what is believed of the plants.
     """
-    work = plan_work(scene if wishes is None else wishes.told(scene), sampler)
+    work = plan_work(scene if wishes is None else wishes.applied_to(scene), sampler)
     return DayPlan(scene, work, route_of(scene, work))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import counted
-from fieldmon.planning.bound_wording import told
+from fieldmon.planning.bound_wording import bound_sentence
 from fieldmon.plot.passing import legs_of
 from fieldmon.plot.travel import GATE
 
@@ -106,7 +106,7 @@ class Route:
         """Return for people what is expected, and what no other route can exceed; "" if unknown."""
         if self.found_bound is None:
             return ""
-        return told(self.expected_found, self.found_bound)
+        return bound_sentence(self.expected_found, self.found_bound)
 
     def line_lonlat(self) -> NDArray[np.float64]:
         """Return the driven line in degrees, ``(m, 2)``."""

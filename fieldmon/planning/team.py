@@ -11,7 +11,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.planning.bound_wording import PROVED, told
+from fieldmon.planning.bound_wording import PROVED, bound_sentence
 from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
 from fieldmon.planning.members import must_differ
@@ -89,7 +89,7 @@ class TeamPlan:
     @property
     def sentence(self) -> str:
         """Return for people what is expected, and what no other routes can exceed."""
-        return told(self.expected_found, self.bound, routes="routes")
+        return bound_sentence(self.expected_found, self.bound, routes="routes")
 
     def meetings(self) -> list[Meeting]:
         """Return where two are in one aisle at once: nowhere, if the plan is right."""
@@ -171,7 +171,7 @@ def plan_team(
         )
         for one in members
     ]
-    search = _Search(plot, tasks, progress or (lambda _done, _of: None))
+    search = _StopSearch(plot, tasks, progress or (lambda _done, _of: None))
     in_turn = search.in_turn()
     exclusive = search.aisle_by_aisle(in_turn)
     shared = search.apart(search.plant_by_plant(exclusive))
@@ -210,7 +210,7 @@ def bound_of_days(days: Sequence[DayPlan]) -> str:
         return ""
     tasks = [_task_of(day.scene) for day in days]
     held = _expected(days)
-    return told(held, max(team_bound(tasks, held), held), routes="routes")
+    return bound_sentence(held, max(team_bound(tasks, held), held), routes="routes")
 
 
 def _task_of(scene: Scene) -> _Task:
@@ -278,7 +278,7 @@ def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
     return least
 
 
-class _Search:
+class _StopSearch:
     """Looks for the stops of each of a team's tasks, given those of the others."""
 
     def __init__(
@@ -430,14 +430,14 @@ def _seen(scene: Scene, chance: Float, done: NDArray[np.bool_] | None) -> Scene:
     return replace(scene, chance=chance, last_inspected=last)
 
 
-class _Timed(NamedTuple):
+class _DaysInTurn(NamedTuple):
     """Days, and the seconds ``(m,)`` that each begins later than its start."""
 
     days: list[DayPlan]
     late_s: Float
 
 
-def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan], passing_m: float) -> _Timed:
+def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan], passing_m: float) -> _DaysInTurn:
     """Let whoever would still meet another begin later, with fewer stops if need be."""
     kept, late_s = [*days], np.zeros(len(days))
     own_s = np.array([task.starts_s for task in tasks])
@@ -445,7 +445,7 @@ def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan], passing_m: floa
         k, seconds = wait
         late_s[k] += seconds
         kept[k] = _shortened(tasks[k], kept[k], tasks[k].robot.day_s - float(late_s[k]))
-    return _Timed(kept, late_s)
+    return _DaysInTurn(kept, late_s)
 
 
 def _first_wait(

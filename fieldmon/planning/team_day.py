@@ -3,61 +3,32 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from fieldmon.planning.headlands import Steps, headlands_of
-from fieldmon.planning.sections import (
-    aisle_heights,
-    aisle_worth,
-    best_sections,
-    even_sections,
-    worth_together,
-)
+from fieldmon.planning.headlands import headlands_of
+from fieldmon.planning.sections import aisle_heights
+from fieldmon.planning.team_news import TeamNews
+from fieldmon.planning.team_sections import TeamSections
+from fieldmon.planning.team_worker import NOWHERE, ROUNDING_S, StopMade, TeamWorker
 from fieldmon.planning.workday import Workday, work_day
-from fieldmon.plot.passing import legs_of
-from fieldmon.plot.travel import GATE, travel_s
+from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.tracing import Traces
+    from fieldmon.planning.headlands import Steps
     from fieldmon.planning.members import Teamwork
-    from fieldmon.planning.sections import AisleWorth
-    from fieldmon.plot.passing import Leg, Legs
-    from fieldmon.samplers.base import Sampler, Scene, WouldFind
+    from fieldmon.planning.team_news import Learn
+    from fieldmon.planning.team_worker import Posted
+    from fieldmon.samplers.base import Sampler
 
-    #: chances of plants and of pairs, and how far insects jump
-    _Believed = tuple[NDArray[np.float64], NDArray[np.float64] | None, Traces | None]
-    #: what is believed after inspections: plants, whether each was a find, and its detection
-    Learn = Callable[[NDArray[np.int32], NDArray[np.bool_], NDArray[np.float64]], Belief]
-
-_NOBODY = _NOWHERE = -1
-_ROUNDING_S = 1e-6
-
-
-class Posted(NamedTuple):
-    """One of a team on its day.
-
-    Parameters
-    ----------
-    scene
-        Where it begins, and what is believed then; the plants of all are open in it.
-    starts_s
-        Seconds after the team's day began at which it does.
-    would_find
-        ``(n,)`` what its inspection of each plant would find, see `Sampler.walk`.
-    """
-
-    scene: Scene
-    starts_s: float
-    would_find: WouldFind
+_NOBODY = -1
 
 
 def team_day(
@@ -99,97 +70,8 @@ def team_day(
     return _Day(team, sampler, teamwork, learn, before).run()
 
 
-class _Done(NamedTuple):
-    """A stop that was made."""
-
-    plant: int
-    arrive_s: float
-    leave_s: float
-    found: bool
-    detects: float
-    wait_s: float
-
-
-class _Told(NamedTuple):
-    """A stop that all know of."""
-
-    leave_s: float
-    k: int
-    plant: int
-    found: bool
-    detects: float
-
-
 class _Event(Protocol):
-    def __call__(self, worker: _Worker, now_s: float) -> None: ...
-
-
-@dataclass(eq=False)
-class _Worker:
-    """One of the team, as its day goes."""
-
-    k: int
-    post: Posted
-    legs: Legs
-    at: int
-    plan: Workday | None = None
-    plan_from_s: float = 0.0
-    next: int = 0
-    done: list[_Done] = field(default_factory=list)
-    visit: int = 0
-    begun: int = 0
-    told: int = 0
-    version: int = 0
-    anew: bool = True
-    over: bool = False
-    holds: int = _NOWHERE
-    claims: int = _NOWHERE
-    through: tuple[int, ...] = ()
-    leg: Leg | None = None
-    out_s: float = 0.0
-    free_s: float = 0.0
-    driven: Steps | None = None
-    end_s: float = 0.0
-    wait_home_s: float = 0.0
-
-    @property
-    def scene(self) -> Scene:
-        return self.post.scene
-
-    @property
-    def until_s(self) -> float:
-        return self.post.starts_s + self.scene.seconds_left
-
-    def seconds(self, i: int, j: int) -> float:
-        return float(travel_s(self.scene.aisles.travel, self.scene.clock, i, j))
-
-    def home_s(self, plant: int) -> float:
-        return self.seconds(plant, GATE) if self.scene.robot.returns else 0.0
-
-    def spare_s(self, arrive_s: float) -> float:
-        """Return how much later it could come to its next plant and still be home in time."""
-        plan, plant = self.plan, self.target()
-        assert plan is not None  # noqa: S101 - it has a target
-        return self.until_s - arrive_s - float(plan.stop_s[self.next]) - self.home_s(plant)
-
-    def under_way(self, now_s: float) -> int:
-        """Return how many of its stops it has made, or begun to drive to."""
-        for k in range(self.visit + 1, len(self.done)):
-            if self.done[k - 1].leave_s > now_s + _ROUNDING_S:
-                return k
-        return len(self.done)
-
-    def share_out(self) -> float:
-        """Return how much of the way to its next plant, or home, is driven in its own aisle."""
-        leg = self.leg
-        assert leg is not None  # noqa: S101 - set on leaving
-        return leg.out_m / leg.length_m if leg.length_m > 0 else 0.0
-
-    def target(self) -> int:
-        """Return the plant it goes to next, -1 for home."""
-        if self.plan is None or self.next >= len(self.plan):
-            return GATE
-        return int(self.plan.plant[self.next])
+    def __call__(self, worker: TeamWorker, now_s: float) -> None: ...
 
 
 class _Day:
@@ -203,30 +85,24 @@ class _Day:
         learn: Learn | None,
         before: NDArray[np.int64] | None,
     ) -> None:
-        self.sampler, self.teamwork, self.learn = sampler, teamwork, learn
+        self.sampler, self.teamwork = sampler, teamwork
         self.grid = team[0].scene.grid
         self.corridor = self.grid.corridor[self.grid.row]
-        self.heights = aisle_heights(self.grid)
-        self.workers = [
-            _Worker(k, post, legs_of(post.scene.aisles), post.scene.at)
-            for k, post in enumerate(team)
-        ]
-        first = team[0].scene
-        self.today: NDArray[np.bool_] = first.last_inspected == first.day
-        self.believed: _Believed = first.chance, first.pair_chance, first.traces
-        self.known: list[_Told] = []
-        self.valued: tuple[tuple[float, int], AisleWorth] | None = None
+        self.workers = [TeamWorker.of(k, post) for k, post in enumerate(team)]
+        by_worth = teamwork.together and sampler.reads_chance
+        self.news = TeamNews(self.workers, learn if by_worth else None)
+        self.news_at: set[float] = set()
         self.events: list[tuple[float, int, int, int, _Event]] = []
         self.count = 0
-        self.waiting: list[_Worker] = []
-        self.news_at: set[float] = set()
-        self.holder = np.full(len(self.heights), _NOBODY)
+        self.waiting: list[TeamWorker] = []
+        self.holder = np.full(len(aisle_heights(self.grid)), _NOBODY)
         for worker in self.workers:
             if worker.at >= 0:
                 worker.holds = worker.claims = int(self.corridor[worker.at])
                 if self.holder[worker.holds] == _NOBODY:
                     self.holder[worker.holds] = worker.k
-        self.section = self._first_sections(before)
+        self.sections = TeamSections(self.workers, teamwork, self.news, by_worth=by_worth)
+        self.sections.begin(before)
 
     def run(self) -> tuple[Workday, ...]:
         for worker in self.workers:
@@ -240,16 +116,16 @@ class _Day:
             worker = self.workers[k]
             if version in (worker.version, _NOBODY):
                 event(worker, now_s)
-        return tuple(self._worked(worker) for worker in self.workers)
+        return tuple(worker.worked() for worker in self.workers)
 
     # -- events
 
-    def _at(self, at_s: float, worker: _Worker, event: _Event, *, always: bool = False) -> None:
+    def _at(self, at_s: float, worker: TeamWorker, event: _Event, *, always: bool = False) -> None:
         self.count += 1
         version = _NOBODY if always else worker.version
         heappush(self.events, (at_s, self.count, version, worker.k, event))
 
-    def _ready(self, worker: _Worker, now_s: float) -> None:
+    def _ready(self, worker: TeamWorker, now_s: float) -> None:
         """Go on from where a worker stands."""
         if worker.anew:
             self._walk(worker, now_s)
@@ -257,12 +133,12 @@ class _Day:
             self._walk(worker, now_s)
         self._pass_by(worker)
         target = worker.target()
-        if target >= 0 and worker.spare_s(now_s + worker.seconds(worker.at, target)) < -_ROUNDING_S:
-            target = self._homeward(worker)
+        if target >= 0 and worker.spare_s(now_s + worker.seconds(worker.at, target)) < -ROUNDING_S:
+            target = worker.turn_home()
         if target < 0 and (worker.at < 0 or not worker.scene.robot.returns):
             worker.over, worker.end_s = True, now_s
             return
-        aisle = int(self.corridor[target]) if target >= 0 else _NOWHERE
+        aisle = int(self.corridor[target]) if target >= 0 else NOWHERE
         if aisle == worker.holds and aisle >= 0 and self.holder[aisle] == worker.k:
             self._visit(worker, now_s + worker.seconds(worker.at, target), 0.0)
             return
@@ -271,7 +147,7 @@ class _Day:
         way_s = worker.share_out() * worker.seconds(worker.at, target)
         self._at(now_s + way_s, worker, self._out)
 
-    def _pass_by(self, worker: _Worker) -> None:
+    def _pass_by(self, worker: TeamWorker) -> None:
         """Leave out the next aisles if somebody stays in them for the night."""
         while (target := worker.target()) >= 0:
             holder = self.holder[self.corridor[target]]
@@ -279,7 +155,7 @@ class _Day:
                 return
             worker.next += 1
 
-    def _out(self, worker: _Worker, now_s: float) -> None:
+    def _out(self, worker: TeamWorker, now_s: float) -> None:
         """Leave an aisle, or the gate; wait at its end if the way is not free."""
         worker.out_s = worker.free_s = now_s
         if self._enter(worker, now_s):
@@ -289,17 +165,17 @@ class _Day:
         if self._wait_for_each_other(worker):
             # one of them steps out into the headland, and lets the other in
             self._release((worker.holds,), worker, now_s)
-            worker.holds = _NOWHERE
+            worker.holds = NOWHERE
         if worker.target() >= 0:
-            last_s = now_s + worker.spare_s(now_s + self._onward_s(worker))
+            last_s = now_s + worker.spare_s(now_s + worker.onward_s())
             self._at(max(last_s, now_s), worker, self._give_up)
 
-    def _give_up(self, worker: _Worker, now_s: float) -> None:
+    def _give_up(self, worker: TeamWorker, now_s: float) -> None:
         """Make no more stops, as the aisle waited for comes free too late, or not today."""
         if worker not in self.waiting or worker.target() < 0:
             return
         leg, spent_s = worker.leg, worker.post.starts_s
-        self._homeward(worker)
+        worker.turn_home()
         if worker.done:
             spent_s = worker.done[-1].leave_s
         if not worker.scene.robot.returns or worker.at < 0 or leg is None:
@@ -313,31 +189,15 @@ class _Day:
         worker.free_s = max(now_s + back_m / worker.scene.clock.speed_m_s, worker.out_s)
         self._at(worker.free_s, worker, self._passed, always=True)
 
-    def _go_at_last(self, worker: _Worker) -> None:
+    def _go_at_last(self, worker: TeamWorker) -> None:
         """End a day on a way home that will not come free."""
         self.waiting.remove(worker)
         worker.over, worker.wait_home_s = True, worker.free_s - worker.out_s
-        worker.end_s = worker.free_s + self._onward_s(worker)
+        worker.end_s = worker.free_s + worker.onward_s()
 
-    def _homeward(self, worker: _Worker) -> int:
-        """Let a worker make no more stops; return where it goes."""
-        if worker.plan is not None:
-            worker.next = len(worker.plan)
-        worker.claims = _NOWHERE
-        return GATE
-
-    def _onward_s(self, worker: _Worker) -> float:
-        """Return the seconds from the end of an aisle to the next plant, or home."""
-        return (1.0 - worker.share_out()) * worker.seconds(worker.at, worker.target())
-
-    def _needed(self, worker: _Worker) -> list[int]:
-        """Return the aisles that a worker drives through next, and the one where it goes."""
-        assert worker.leg is not None  # noqa: S101 - set on leaving
-        return [*worker.leg.through, *([worker.claims] if worker.target() >= 0 else [])]
-
-    def _enter(self, worker: _Worker, now_s: float) -> bool:
+    def _enter(self, worker: TeamWorker, now_s: float) -> bool:
         """Drive on to the next aisle or home, if all that is on the way is free."""
-        needed, target = self._needed(worker), worker.target()
+        needed, target = worker.needed(), worker.target()
         if now_s < worker.free_s or (set(self.holder[needed].tolist()) - {_NOBODY, worker.k}):
             return False
         driven = self._driven(worker, now_s)
@@ -347,7 +207,7 @@ class _Day:
         left, worker.driven = worker.holds, driven
         self.holder[needed] = worker.k
         self._free((left,) if left not in needed else (), worker)
-        arrive_s = now_s + self._onward_s(worker)
+        arrive_s = now_s + worker.onward_s()
         worker.through = worker.leg.through
         if worker.through or driven is not None:
             self._at(arrive_s, worker, self._passed, always=True)
@@ -359,16 +219,16 @@ class _Day:
             self._visit(worker, arrive_s, wait_s)
         return True
 
-    def _passed(self, worker: _Worker, now_s: float) -> None:
+    def _passed(self, worker: TeamWorker, now_s: float) -> None:
         """Give free what was driven through."""
         through, worker.through = worker.through, ()
         self._release(tuple(a for a in through if a != worker.holds), worker, now_s)
 
-    def _release(self, aisles: tuple[int, ...], worker: _Worker, now_s: float) -> None:
+    def _release(self, aisles: tuple[int, ...], worker: TeamWorker, now_s: float) -> None:
         self._free(aisles, worker)
         self._try_again(now_s)
 
-    def _free(self, aisles: tuple[int, ...], worker: _Worker) -> None:
+    def _free(self, aisles: tuple[int, ...], worker: TeamWorker) -> None:
         freed = [aisle for aisle in aisles if aisle >= 0 and self.holder[aisle] == worker.k]
         self.holder[freed] = _NOBODY
 
@@ -377,13 +237,13 @@ class _Day:
         while (free := next((w for w in self.waiting if self._enter(w, now_s)), None)) is not None:
             self.waiting.remove(free)
 
-    def _wait_for_each_other(self, worker: _Worker) -> bool:
+    def _wait_for_each_other(self, worker: TeamWorker) -> bool:
         """Tell whether a worker keeps the aisle that those keep waiting for whom it waits."""
         seen: set[int] = set()
         ahead = [worker]
         while ahead:
             one = ahead.pop()
-            holders = set(self.holder[self._needed(one)].tolist()) - {_NOBODY, one.k} - seen
+            holders = set(self.holder[one.needed()].tolist()) - {_NOBODY, one.k} - seen
             if worker.k in holders:
                 return True
             seen |= holders
@@ -392,7 +252,7 @@ class _Day:
 
     # -- headlands
 
-    def _driven(self, worker: _Worker, now_s: float) -> Steps | None:
+    def _driven(self, worker: TeamWorker, now_s: float) -> Steps | None:
         """Return the steps in headlands from an aisle's end on; None where all can pass."""
         if not self.teamwork.passing_m:
             return None
@@ -404,11 +264,11 @@ class _Day:
         ahead = way_m > out_m
         here = [np.interp(out_m, way_m, line_m[:, k]) for k in range(2)]
         left_m = np.append(0.0, way_m[ahead] - out_m)
-        times_s = now_s + left_m * (self._onward_s(worker) / max(left_m[-1], _ROUNDING_S))
+        times_s = now_s + left_m * (worker.onward_s() / max(left_m[-1], ROUNDING_S))
         line_m = np.vstack([here, line_m[ahead]])
         return headlands_of(self.grid).steps(line_m, (times_s, times_s))
 
-    def _meets_head_on(self, worker: _Worker, driven: Steps) -> bool:
+    def _meets_head_on(self, worker: TeamWorker, driven: Steps) -> bool:
         """Tell whether somebody comes the other way where the headland does not hold both."""
         headlands = headlands_of(self.grid)
         others = [one.driven for one in self.workers if one is not worker]
@@ -418,7 +278,7 @@ class _Day:
             if other is not None
         )
 
-    def _visit(self, worker: _Worker, arrive_s: float, wait_s: float) -> None:
+    def _visit(self, worker: TeamWorker, arrive_s: float, wait_s: float) -> None:
         """Make the stops in the aisle that a worker is in."""
         plan, first = worker.plan, worker.next
         assert plan is not None  # noqa: S101 - it has a target
@@ -429,11 +289,11 @@ class _Day:
         for j in range(first, first + n):
             at_s = worker.plan_from_s + float(plan.arrive_s[j]) + late_s
             leave_s, plant = at_s + float(plan.stop_s[j]), int(plan.plant[j])
-            if late_s > _ROUNDING_S and leave_s + worker.home_s(plant) > worker.until_s:
+            if late_s > ROUNDING_S and leave_s + worker.home_s(plant) > worker.until_s:
                 worker.next = len(plan)
                 break
             what = plant, at_s, leave_s, bool(plan.found[j]), float(plan.detects[j])
-            worker.done.append(_Done(*what, wait_s if j == first else 0.0))
+            worker.done.append(StopMade(*what, wait_s if j == first else 0.0))
             worker.next, worker.at = j + 1, plant
             if plan.found[j]:
                 self._tell(worker, leave_s)
@@ -442,9 +302,9 @@ class _Day:
 
     # -- what finds change
 
-    def _tell(self, worker: _Worker, found_s: float) -> None:
+    def _tell(self, worker: TeamWorker, found_s: float) -> None:
         """Let a find be heard of, at once or at the next contact."""
-        if not self._hears():
+        if not self.news.heard:
             return
         every_s = self.teamwork.contact_s
         heard_s = math.ceil(found_s / every_s) * every_s if every_s else found_s
@@ -452,162 +312,37 @@ class _Day:
             self.news_at.add(heard_s)
             self._at(heard_s, worker, self._hear, always=True)
 
-    def _hear(self, worker: _Worker, now_s: float) -> None:  # noqa: ARG002 - an event
+    def _hear(self, worker: TeamWorker, now_s: float) -> None:  # noqa: ARG002 - an event
         """Believe what was found so far; go elsewhere if that is worth it."""
-        news = sorted(told for each in self.workers for told in self._untold(each, now_s))
-        for told in news:
-            self.workers[told.k].told += 1
-        self.known += news
-        self.believed = self._after(self.known)
+        news = self.news.hear(now_s)
         if not self._shared_anew(now_s):
             for other in self.workers:
-                near = self._beside([t.plant for t in news if t.found and t.k != other.k])
-                if (self.section[self.corridor[near]] == other.k).any():
+                near = self._adjacent([t.plant for t in news if t.found and t.k != other.k])
+                if (self.sections.owner[self.corridor[near]] == other.k).any():
                     self._interrupt(other, now_s)
 
-    def _untold(self, worker: _Worker, now_s: float) -> list[_Told]:
-        """Return the stops that a worker has made and not told of."""
-        return [
-            _Told(stop.leave_s, worker.k, stop.plant, stop.found, stop.detects)
-            for stop in worker.done[worker.told :]
-            if stop.leave_s <= now_s + _ROUNDING_S
-        ]
-
-    def _after(self, told: list[_Told]) -> _Believed:
-        """Return what is believed after some stops, in order of the clock."""
-        assert self.learn is not None  # noqa: S101 - asked before
-        _, _, plants, found, detects = (np.array(column) for column in zip(*told, strict=True))
-        belief = self.learn(plants.astype(np.int32), found, detects)
-        return belief.chance, belief.pair_chance, belief.traces
-
-    def _beside(self, plants: list[int]) -> NDArray[np.int32]:
+    def _adjacent(self, plants: list[int]) -> NDArray[np.int32]:
         start, near = self.grid.adjacent
         return np.concatenate([near[:0], *(near[start[p] : start[p + 1]] for p in plants)])
 
-    def _interrupt(self, worker: _Worker, now_s: float) -> None:
+    def _interrupt(self, worker: TeamWorker, now_s: float) -> None:
         """Let a worker plan anew after the stop that it is at, or has begun to drive to."""
-        if worker.over:
-            return
-        worker.anew = True
-        k = worker.under_way(now_s)
-        if k < len(worker.done):
-            del worker.done[k:]
-            worker.at = worker.done[-1].plant
-            worker.version += 1
+        if not worker.over and worker.interrupt(now_s):
             self._at(worker.done[-1].leave_s, worker, self._ready)
-
-    # -- who goes where
-
-    def _first_sections(self, before: NDArray[np.int64] | None) -> NDArray[np.int64]:
-        """Return who has each aisle; what is given out stays so, if no other way gains enough."""
-        if self._by_worth():
-            best = self._proposed(-np.inf)
-        else:
-            shares = np.array([worker.scene.robot.day_s for worker in self.workers])
-            best = self._with_claims(even_sections(self.grid, shares))
-        if before is None:
-            return best
-        kept = self._with_claims(np.where(before >= 0, before, best))
-        if self._by_worth() and self._gain(best, kept, -np.inf) >= self.teamwork.least_gain:
-            return best
-        return kept
-
-    def _by_worth(self) -> bool:
-        return self.teamwork.together and self.sampler.reads_chance
-
-    def _hears(self) -> bool:
-        return self._by_worth() and self.learn is not None
 
     def _shared_anew(self, now_s: float) -> bool:
         """Give the aisles out anew if that gains enough; tell whether it was done."""
-        if not self._hears():
-            return False
-        section = self._proposed(now_s)
-        if self._gain(section, self.section, now_s) < max(self.teamwork.least_gain, _ROUNDING_S):
-            return False
-        other = section != self.section
-        changed = {*section[other].tolist(), *self.section[other].tolist()}
-        self.section = section
-        for k in sorted(changed):
+        changed = self.sections.share_anew(now_s)
+        for k in changed:
             self._interrupt(self.workers[k], now_s)
-        return True
+        return bool(changed)
 
-    def _proposed(self, now_s: float) -> NDArray[np.int64]:
-        """Return the best sections for the seconds left."""
-        up = np.argsort(self._stands(), kind="stable")
-        worth, left_s = self._worth(now_s), self._left_s(now_s)
-        return self._with_claims(best_sections(worth, self.heights, left_s, up))
-
-    def _gain(self, section: NDArray[np.int64], other: NDArray[np.int64], now_s: float) -> float:
-        """Return how many more finds are expected with some sections than with others."""
-        worth, left_s, stands = self._worth(now_s), self._left_s(now_s), self._stands()
-        held, less = (
-            worth_together(worth, one, left_s - self._way_s(one, stands))
-            for one in (section, other)
-        )
-        return held - less
-
-    def _worth(self, now_s: float) -> AisleWorth:
-        """Return what aisles hold now; worked out once for a moment."""
-        key = now_s, len(self.known)
-        if self.valued is None or self.valued[0] != key:
-            robots = [worker.scene.robot for worker in self.workers]
-            chance = np.where(self._closed(now_s), 0.0, self.believed[0])
-            self.valued = key, aisle_worth(self.workers[0].scene.aisles, robots, chance)
-        return self.valued[1]
-
-    def _left_s(self, now_s: float) -> NDArray[np.float64]:
-        """Return the seconds that each has left after what it has begun, ``(m,)``."""
-        left = (0.0 if w.over else w.until_s - self._free_s(w, now_s) for w in self.workers)
-        return np.array([*left])
-
-    def _stands(self) -> NDArray[np.float64]:
-        """Return where across the plot each is, ``(m,)`` metres; at the gate below all."""
-        lane_m, row = self.grid.lane_y_m, self.grid.row
-        return np.array([lane_m[row[w.at]] if w.at >= 0 else -np.inf for w in self.workers])
-
-    def _way_s(
-        self, section: NDArray[np.int64], stands: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """Return about how long each takes to the nearest of its aisles, ``(m,)``."""
-        way_s = np.zeros(len(self.workers))
-        for k, worker in enumerate(self.workers):
-            own = self.heights[section == k]
-            if len(own) and np.isfinite(stands[k]):
-                way_s[k] = np.abs(own - stands[k]).min() / worker.scene.robot.speed_m_s
-        return way_s
-
-    def _with_claims(self, section: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return sections in which each keeps the aisle that it is in, or about to enter."""
-        for worker in self.workers:
-            if worker.claims >= 0:
-                section[worker.claims] = worker.k
-        return section
-
-    def _free_s(self, worker: _Worker, now_s: float) -> float:
-        """Return when a worker is done with the stop it is at, or has begun to drive to."""
-        return min((s.leave_s for s in worker.done[worker.visit :] if s.leave_s > now_s),
-                   default=max(now_s, worker.post.starts_s))  # fmt: skip
-
-    def _closed(self, now_s: float) -> NDArray[np.bool_]:
-        """Return ``(n,)`` the plants inspected today, and those that somebody drives to.
-
-        Stops that others are yet to make in their aisles hang on what they will find.
-        """
-        for worker in self.workers:
-            n = worker.under_way(now_s)
-            self.today[[stop.plant for stop in worker.done[worker.begun : n]]] = True
-            worker.begun = max(worker.begun, n)
-        return self.today
-
-    def _walk(self, worker: _Worker, now_s: float) -> None:
+    def _walk(self, worker: TeamWorker, now_s: float) -> None:
         """Have the sampler plan the rest of a worker's day in its section."""
-        scene, believed = worker.scene, self.believed
-        if own := self._untold(worker, now_s) if self._hears() else []:
-            believed = self._after(sorted([*self.known, *own]))
-        shut = self._closed(now_s) | (self.section[self.corridor] != worker.k)
+        scene = worker.scene
+        chance, pairs, traces = self.news.believed_by(worker, now_s)
+        shut = self.news.closed(now_s) | (self.sections.owner[self.corridor] != worker.k)
         last = np.where(shut, scene.day, scene.last_inspected).astype(np.int32)
-        chance, pairs, traces = believed
         scene = replace(
             scene,
             chance=chance,
@@ -619,20 +354,6 @@ class _Day:
         )
         worker.plan = work_day(scene, self.sampler, worker.post.would_find)
         worker.plan_from_s, worker.next, worker.anew = now_s, 0, False
-
-    def _worked(self, worker: _Worker) -> Workday:
-        done, begin = worker.done, worker.post.starts_s
-        columns = list(zip(*done, strict=True)) or [()] * len(_Done._fields)
-        plant, arrive_s, leave_s, found, detects, wait_s = (np.array(c) for c in columns)
-        return Workday(
-            plant.astype(np.int32),
-            arrive_s.astype(np.float64) - begin,
-            found.astype(np.bool_),
-            (leave_s - arrive_s).astype(np.float64),
-            detects.astype(np.float64),
-            worker.end_s - begin,
-            np.append(wait_s, worker.wait_home_s).astype(np.float64),
-        )
 
 
 def merged(works: Sequence[Workday], starts_s: Sequence[float]) -> Workday:

@@ -50,7 +50,7 @@ class Wishes:
         """Return the wishes with these plants left out, whatever was said of them before."""
         return Wishes(_without(self.wanted, plants), _with(self.unwanted, plants))
 
-    def told(self, scene: Scene) -> Scene:
+    def applied_to(self, scene: Scene) -> Scene:
         """Return the scene as whoever plans is told of it.
 
         Wanted plants seem all but surely infested; unwanted ones seem inspected today. A sampler

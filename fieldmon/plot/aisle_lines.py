@@ -70,10 +70,10 @@ def aisles_of(rows: Polylines, block: Int, row_spacing_m: Float, beyond_m: float
         usual_m = float(row_spacing_m[row])
         if first:
             gap_m = usual_m if last else _apart(rows, thin, row, row + 1, usual_m)
-            middles.append(_beside(thin.line(row), _RIGHT * gap_m / 2))
+            middles.append(_shifted(thin.line(row), _RIGHT * gap_m / 2))
         if last:
             gap_m = usual_m if first else _apart(rows, thin, row, row - 1, usual_m)
-            middles.append(_beside(thin.line(row), _LEFT * gap_m / 2))
+            middles.append(_shifted(thin.line(row), _LEFT * gap_m / 2))
         else:
             middles.append(_between(rows, thin, row, (usual_m, beyond_m / 2)))
     lines = Polylines.each(middles).extended(beyond_m).simpler(_THIN_M)
@@ -117,13 +117,13 @@ def _between(rows: Polylines, thin: Polylines, row: int, reach_m: tuple[float, f
         # to the next row's left or right as it is measured: half the way there
         half = np.interp(index, index[beside], np.abs(left[beside]) / 2)
         foot = rows.points(np.full(int(beside.sum()), row + 1), place[beside])
-    middle = _beside(here, half)
+    middle = _shifted(here, half)
     if beside.any():
         middle[beside] = (here[beside] + foot) / 2
     beyond, _ = rows.project(there, np.full(len(there), row))
     clear = 0.25 * row_spacing_m
-    before = _beside(there, -np.full(len(there), half[0]))[beyond < -clear]
-    after = _beside(there, -np.full(len(there), half[-1]))[beyond > rows.length_m[row] + clear]
+    before = _shifted(there, -np.full(len(there), half[0]))[beyond < -clear]
+    after = _shifted(there, -np.full(len(there), half[-1]))[beyond > rows.length_m[row] + clear]
     return _joined(_joined(before, middle, lane_m), after, lane_m)
 
 
@@ -148,7 +148,7 @@ def _straight_on(line: Float, by_m: float) -> Float:
     return onward
 
 
-def _beside(line: Float, left_m: Float | float) -> Float:
+def _shifted(line: Float, left_m: Float | float) -> Float:
     """Return the corners of a line moved to its left, each at right angles to the line there."""
     step = np.diff(line, axis=0)
     step /= np.maximum(np.hypot(step[:, 0], step[:, 1]), 1e-12)[:, None]

@@ -246,14 +246,14 @@ def _strips(
     """
     row, from_m, to_m = stretches
 
-    def beside(side: int) -> Polylines:
+    def aisle_middle(side: int) -> Polylines:
         aisle = (aisles.left if side == _LEFT else aisles.right)[row]
         ends = (rows.lines.points(row, place_m) for place_m in (from_m, to_m))
         low, high = (aisles.lines.project(end, aisle)[0] for end in ends)
         return aisles.lines.stretches(aisle, low, high)
 
-    left = beside(_LEFT)
-    right = beside(_RIGHT) if sides == _BOTH else rows.lines.stretches(row, from_m, to_m)
+    left = aisle_middle(_LEFT)
+    right = aisle_middle(_RIGHT) if sides == _BOTH else rows.lines.stretches(row, from_m, to_m)
     owner = np.concatenate([np.repeat(np.arange(len(row)), np.diff(right.start)),
                             np.repeat(np.arange(len(row)), np.diff(left.start))[::-1]])  # fmt: skip
     corners = np.concatenate([right.xy_m, left.xy_m[::-1]])

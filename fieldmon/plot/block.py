@@ -59,6 +59,6 @@ class Block:
         return f"<Block {self.name}>"
 
     @property
-    def told(self) -> tuple[object, ...]:
+    def content(self) -> tuple[object, ...]:
         """Return all that is said of the block, as digests take it."""
         return tuple(vars(self).values())

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Int = NDArray[np.int64]
 
 # rows farther apart than this many spacings have other ground between them
-_BESIDE = 1.5
+_APART = 1.5
 # a drawn row belongs to the block in which most of it lies
 _MOST = 0.5
 
@@ -158,7 +158,7 @@ def _straight(area: MultiPolygon, frames: tuple[Frame, Frame], planting: Plantin
     ends = np.stack([np.stack([low, y[strip]], 1), np.stack([high, y[strip]], 1)], axis=1)
     start = 2 * np.arange(len(strip) + 1)
     lines = Polylines.of(start, frame.xy_m(own.lonlat(ends.reshape(-1, 2))))
-    block = np.cumsum(np.diff(y[strip], prepend=y[strip[0]]) > _BESIDE * planting.row_spacing_m)
+    block = np.cumsum(np.diff(y[strip], prepend=y[strip[0]]) > _APART * planting.row_spacing_m)
     each = np.tile([planting.row_spacing_m, planting.plant_spacing_m], (len(strip), 1))
     rows = RowLines(lines, block.astype(np.int64), each)
     place = np.searchsorted(strip, free.strip)

@@ -102,7 +102,7 @@ def lane_room_m(grid: PlantGrid) -> Float:
     return room
 
 
-def told_shut(shut: Mask, grid: PlantGrid, needs: Clearance) -> str:
+def shut_sentence(shut: Mask, grid: PlantGrid, needs: Clearance) -> str:
     """Return for people which rows ``(r,)`` a robot that needs so much cannot enter."""
     return worded(
         "{rows} of {all} cannot be inspected: in their aisles the robot needs {need_m:.2f} m from "

@@ -99,7 +99,7 @@ class Field:
         return f"<Field {self.name}: {parts}{plants}>"
 
     @property
-    def told(self) -> tuple[object, ...]:
+    def content(self) -> tuple[object, ...]:
         """Return all that is said of the plot, as digests take it.
 
         What later versions added counts only where it is said: digests of before stay valid.
@@ -111,7 +111,7 @@ class Field:
         del said["blocks"]
         if self.in_rows:
             del said["in_rows"]
-        return (*said.values(), *(part for block in self.blocks for part in block.told))
+        return (*said.values(), *(part for block in self.blocks for part in block.content))
 
     def frame(self, bearing_deg: float = 90.0) -> Frame:
         """Return the plane in metres centred on this plot, x along ``bearing_deg``."""
@@ -119,7 +119,10 @@ class Field:
         return Frame((west + east) / 2, (south + north) / 2, bearing_deg)
 
     def drivable(self) -> MultiPolygon:
-        """Return the boundary without the no-go areas, lon/lat."""
+        """Return the boundary without the no-go areas, lon/lat.
+
+        Raise `PlotError` where nothing is left of it.
+        """
         if self.no_go.is_empty:
             return self.boundary
         left = shapely.difference(self.boundary, self.no_go)

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.row_order import ASTRAY_DEG, BesidePairs, StrandRows, counted_pairs, in_line
+from fieldmon.plot.row_order import ASTRAY_DEG, StrandPairs, StrandRows, counted_pairs, in_line
 from fieldmon.plot.strands import Strands
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def sorted_rows(lines: Polylines, reach_m: float) -> DrawnRows:
     place = share * lines.length_m[line]
     at, ahead = lines.points(line, place), lines.ahead(line, place)
     strands = Strands(np.arange(len(at)), np.arange(f + 1) * _LOOKS, at, ahead)
-    rows = StrandRows.of(strands, _beside_lines(lines, strands, reach_m))
+    rows = StrandRows.of(strands, _neighbouring_lines(lines, strands, reach_m))
     joined = []
     for row in range(len(rows.block)):
         parts = in_line(strands, rows, np.flatnonzero(rows.row == row).tolist())
@@ -52,7 +52,7 @@ def sorted_rows(lines: Polylines, reach_m: float) -> DrawnRows:
     return DrawnRows(Polylines.each(joined), rows.block, rows.spacing_m)
 
 
-def _beside_lines(lines: Polylines, strands: Strands, reach_m: float) -> BesidePairs:
+def _neighbouring_lines(lines: Polylines, strands: Strands, reach_m: float) -> StrandPairs:
     """Return which lines run beside which: what is met at right angles to them."""
     shapes, owner = lines.shapes(), strands.owner
     tree = shapely.STRtree(shapes)

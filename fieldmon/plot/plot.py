@@ -187,7 +187,7 @@ class Plot:
     def among(
         cls, name: str, plants: NDArray[np.float64], gate: tuple[float, float] | None = None
     ) -> Plot:
-        """Return the plot of measured plants in no rows whose boundary nobody drew.
+        """Return the plot called `name` of measured plants in no rows, whose boundary nobody drew.
 
         `plants` are ``(n, 2)`` degrees, `gate` is ``(lon, lat)``. Raise `PlotError` where two
         plants are in one place.
@@ -207,7 +207,21 @@ class Plot:
     ) -> Plot:
         """Return the plot of rows drawn as lines, lon/lat, whose boundary nobody drew.
 
-        Raise `PlotError` of a single row: how far its copies reach is not known then.
+        Parameters
+        ----------
+        name
+            What it is called.
+        rows
+            A line a row, degrees.
+        planting
+            Spacings, headland and faces; None: the usual ones.
+        gate
+            ``(lon, lat)`` where days start and end; None: the nearest row end.
+
+        Raises
+        ------
+        PlotError
+            Of a single row: how far its copies reach is not known then.
         """
         if len(rows.geoms) < _LEAST_ROWS:
             raise PlotError(

@@ -195,7 +195,17 @@ class Robot:
         return (self.row_change_s, self.turn_180_s, self.stop_s) == SCOUT_TIMES
 
     def with_times(self, name: str) -> Robot:
-        """Return the same robot charged the times of ``"measured"`` or ``"thesis"``.
+        """Return the same robot charged other times.
+
+        Parameters
+        ----------
+        name
+            ``"measured"``, in simulated drives, or ``"thesis"``.
+
+        Raises
+        ------
+        SettingError
+            If there are no times of that name, or a scout is meant.
 
         Examples
         --------
@@ -216,7 +226,10 @@ class Robot:
         return replace(self, **ROBOT_TIMES[name]._asdict())
 
     def with_hours(self, hours: float) -> Robot:
-        """Return the same robot with another working day."""
+        """Return the same robot with a working day of so many `hours`.
+
+        Raise `SettingError` if they are not above 0 and 24 at most.
+        """
         return replace(self, hours=hours)
 
 

@@ -172,13 +172,13 @@ def row_ends(lonlat: Float, bearing_deg: float, row_spacing_m: float) -> Float:
     return frame.lonlat(np.concatenate(ends_m)).reshape(2, -1, 2).swapaxes(0, 1)
 
 
-def _direction(lonlat: Float, lines: _Lines) -> RowDirection:
+def _direction(lonlat: Float, lines: _LinesSeen) -> RowDirection:
     """Return a direction with the number of rows that all plants make along it."""
     bearing_deg, spacing_m = lines.bearing_deg % 180.0, lines.row_spacing_m or np.inf
     return RowDirection(bearing_deg, len(row_ends(lonlat, bearing_deg, spacing_m)), spacing_m)
 
 
-def _longest(seen: list[_Lines], best: _Lines) -> tuple[_Lines, list[_Lines]]:
+def _longest(seen: list[_LinesSeen], best: _LinesSeen) -> tuple[_LinesSeen, list[_LinesSeen]]:
     """Return of directions as good as the best one that with the longest lines, and the others."""
     if best.blur > _NO_ROWS or best.row_spacing_m is None:
         return best, []
@@ -276,7 +276,7 @@ class _Pairs(NamedTuple):
         return _along_across(self.apart_m, bearing_deg)
 
 
-class _Lines(NamedTuple):
+class _LinesSeen(NamedTuple):
     """Plants seen as lines in one direction."""
 
     bearing_deg: float
@@ -296,7 +296,7 @@ class _Lines(NamedTuple):
         return off / (1 - self.n_lines / self.n_plants) if self.n_lines < self.n_plants else np.inf
 
 
-def _unlikeliness(lines: _Lines) -> float:
+def _unlikeliness(lines: _LinesSeen) -> float:
     """Return a rank for directions: straight lines first, and lines far apart (so: dense ones)."""
     return lines.blur / (lines.row_spacing_m or 1.0)
 
@@ -323,7 +323,7 @@ def _promising_bearings(pairs: _Pairs) -> list[float]:
     return chosen
 
 
-def _lines(east_north_m: Float, pairs: _Pairs, bearing_deg: float) -> _Lines:
+def _lines(east_north_m: Float, pairs: _Pairs, bearing_deg: float) -> _LinesSeen:
     """Return the lines about a bearing, which is made exact from near pairs to far ones."""
     reach = 8.0
     farthest = float(pairs.distance_m.max()) / pairs.near_m
@@ -348,7 +348,7 @@ def _lines(east_north_m: Float, pairs: _Pairs, bearing_deg: float) -> _Lines:
     off_m = float(np.sqrt(np.sum(y_off**2) / freedom)) if freedom > 0 else np.inf
     if len(n_on) > 1:
         row_spacing_m = float(np.median(np.diff(np.bincount(line, y) / n_on)))
-    return _Lines(
+    return _LinesSeen(
         bearing_deg,
         len(line),
         len(n_on),

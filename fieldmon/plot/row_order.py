@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Int = NDArray[np.int64]
 
 # rows beside each other run the same way within this, and are this many usual spacings apart
-ASTRAY_DEG, _BESIDE = 30.0, 1.7
+ASTRAY_DEG, _MOST_SPACINGS = 30.0, 1.7
 
 
 class StrandRows(NamedTuple):
@@ -35,7 +35,7 @@ class StrandRows(NamedTuple):
         return f"<StrandRows: {len(self.row)} strands in {len(self.block)} rows>"
 
     @classmethod
-    def of(cls, strands: Strands, beside: BesidePairs) -> StrandRows:
+    def of(cls, strands: Strands, beside: StrandPairs) -> StrandRows:
         """Sort strands into rows and blocks by who is beside whom."""
         f = len(strands.start) - 1
         level, sign, block = _levels(f, beside)
@@ -50,7 +50,7 @@ class StrandRows(NamedTuple):
         )
 
 
-class BesidePairs(NamedTuple):
+class StrandPairs(NamedTuple):
     """Pairs of strands beside each other ``(e,)``: the other is left (+1) or right of one."""
 
     one: Int
@@ -61,10 +61,10 @@ class BesidePairs(NamedTuple):
     apart_m: Float
 
     def __repr__(self) -> str:
-        return f"<BesidePairs: {len(self.one)} pairs>"
+        return f"<StrandPairs: {len(self.one)} pairs>"
 
 
-def strands_beside(strands: Strands, step_m: float) -> BesidePairs:
+def neighbouring_strands(strands: Strands, step_m: float) -> StrandPairs:
     """Return which strands run beside which."""
     m = len(strands.plant)
     owner = strands.owner
@@ -98,7 +98,7 @@ def strands_beside(strands: Strands, step_m: float) -> BesidePairs:
 
 def counted_pairs(
     f: int, one: Int, other: Int, side: Int, same: Float, apart: Float
-) -> BesidePairs:
+) -> StrandPairs:
     """Return each pair once, with its votes; pairs too far apart for rows are left out."""
     usual = np.full(f, np.inf)
     order = np.argsort(one, kind="stable")
@@ -106,7 +106,7 @@ def counted_pairs(
         if len(part):
             usual[one[part[0]]] = np.median(apart[part])
     # at the edge of a block the nearest row on the far side is another block's
-    limit = _BESIDE * np.minimum(usual[one], usual[other])
+    limit = _MOST_SPACINGS * np.minimum(usual[one], usual[other])
     kept = apart <= limit * 1.0000001
     one, other, side, same, apart = (v[kept] for v in (one, other, side, same, apart))
     key = (one * f + other) * 2 + (side > 0)
@@ -115,10 +115,10 @@ def counted_pairs(
     )
     way = np.sign(np.bincount(group, same, len(first)) + 0.5).astype(np.int64)
     mean = np.bincount(group, apart, len(first)) / np.maximum(votes, 1)
-    return BesidePairs(one[first], other[first], side[first], way, votes, mean)
+    return StrandPairs(one[first], other[first], side[first], way, votes, mean)
 
 
-def _levels(f: int, beside: BesidePairs) -> tuple[Int, Int, Int]:
+def _levels(f: int, beside: StrandPairs) -> tuple[Int, Int, Int]:
     """Return of each strand its level in its block, its direction in it (1, -1), and the block.
 
     Strands are placed from the best known on: by the pairs with most votes.
@@ -159,7 +159,7 @@ def _left_of_north(strands: Strands, level: Int, sign: Int, block: Int) -> None:
     level[back[block]] *= -1
 
 
-def _part_doubled(level: Int, block: Int, beside: BesidePairs) -> None:
+def _part_doubled(level: Int, block: Int, beside: StrandPairs) -> None:
     """Give strands that are level with one beside them a block of their own."""
     same = (block[beside.one] == block[beside.other]) & (level[beside.one] == level[beside.other])
     for k in np.flatnonzero(same & (beside.votes >= 2)):

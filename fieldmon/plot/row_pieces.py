@@ -309,7 +309,7 @@ def _top(root: Int, k: int) -> int:
     return k
 
 
-class _Lines(NamedTuple):
+class _United(NamedTuple):
     """Lines of windows, united bit by bit: a ring of lines each, its top, and how many they are."""
 
     top: Int
@@ -325,7 +325,7 @@ def _united(n: int, windows: Windows, seen: tuple[Int, Int, Int], first: Int) ->
     m, n_lines = int(first[-1]), np.diff(first)
     window = np.repeat(np.arange(len(n_lines)), n_lines)
     plants = np.bincount(np.repeat(first[:-1], np.diff(start)) + line, minlength=m)
-    lines = _Lines(np.arange(m), np.arange(m), np.ones(m, np.int64), window, plants)
+    lines = _United(np.arange(m), np.arange(m), np.ones(m, np.int64), window, plants)
     for same in _SAME:
         _unite(n, windows, seen, (first, lines), same)
     return _tops(lines.top)
@@ -341,7 +341,11 @@ def _tops(root: Int) -> Int:
 
 @routine
 def _unite(
-    n: int, windows: Windows, seen: tuple[Int, Int, Int], known: tuple[Int, _Lines], same: float
+    n: int,
+    windows: Windows,
+    seen: tuple[Int, Int, Int],
+    known: tuple[Int, _United],
+    same: float,
 ) -> None:
     start, member, line = seen
     first, lines = known
@@ -374,7 +378,7 @@ def _unite(
 
 
 @routine
-def _join(first: Int, lines: _Lines, one: int, two: int) -> None:
+def _join(first: Int, lines: _United, one: int, two: int) -> None:
     """Make two lines one, unless both would then run through one window side by side."""
     one, two = _top(lines.top, one), _top(lines.top, two)
     if one == two:

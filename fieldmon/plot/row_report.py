@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
-from fieldmon.plot.strands import beside_their_rows
+from fieldmon.plot.strands import row_deviations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -96,46 +96,62 @@ class RowReport:
     @property
     def doubts(self) -> tuple[str, ...]:
         """Return a sentence for each thing to be looked at before the rows are used."""
-        said: list[str] = []
+        return (
+            *self._off_rows(), *self._names(), *self._double_plants(), *self._double_rows(),
+            *self._other_ways(),
+        )  # fmt: skip
+
+    def _off_rows(self) -> list[str]:
+        """Return what to say of plants that stand in no rows, or beside theirs."""
         if not self.in_rows:
-            said.append(
+            return [
                 worded(
                     "No rows were found: the plants stand anyhow. The lines along which they would "
                     "be visited are none of theirs, and aisles between them may not be there. Give "
                     "the row bearing or name each plant's row; or say that they stand in no rows, "
                     "and they are visited by nearness."
                 )
+            ]
+        if self.off_share < _WORTH_A_WORD:
+            return []
+        return [
+            worded(
+                "{off_share:.0%} of the plants stand more than a quarter of the row spacing "
+                "beside their row: look at the rows before you use them.",
+                off_share=self.off_share,
             )
-        elif self.off_share >= _WORTH_A_WORD:
-            said.append(
-                worded(
-                    "{off_share:.0%} of the plants stand more than a quarter of the row spacing "
-                    "beside their row: look at the rows before you use them.",
-                    off_share=self.off_share,
-                )
+        ]
+
+    def _names(self) -> list[str]:
+        """Return what to say of the rows that plants name."""
+        if self.misnamed_share is None or self.misnamed_share < _WORTH_A_WORD:
+            return []
+        decided = worded("the names decided") if self.named else worded("rows were found instead")
+        return [
+            worded(
+                "{misnamed_share:.0%} of the plants seem to stand in another row than the file "
+                "names; {decided}. Look whether its rows are named rightly.",
+                misnamed_share=self.misnamed_share,
+                decided=decided,
             )
-        if self.misnamed_share is not None and self.misnamed_share >= _WORTH_A_WORD:
-            decided = (
-                worded("the names decided") if self.named else worded("rows were found instead")
+        ]
+
+    def _double_plants(self) -> list[str]:
+        """Return what to say of plants that stand in close pairs."""
+        if self.paired_share < _PAIRED or self.named or not self.in_rows:
+            return []
+        return [
+            worded(
+                "{paired_share:.0%} of the plants stand in close pairs, as in double rows or "
+                "where two are planted in one place: rows may be seen where there are none. "
+                "Look at them, name each plant's row, or leave one of each pair out.",
+                paired_share=self.paired_share,
             )
-            said.append(
-                worded(
-                    "{misnamed_share:.0%} of the plants seem to stand in another row than the file "
-                    "names; {decided}. Look whether its rows are named rightly.",
-                    misnamed_share=self.misnamed_share,
-                    decided=decided,
-                )
-            )
-        if self.paired_share >= _PAIRED and not self.named and self.in_rows:
-            said.append(
-                worded(
-                    "{paired_share:.0%} of the plants stand in close pairs, as in double rows or "
-                    "where two are planted in one place: rows may be seen where there are none. "
-                    "Look at them, name each plant's row, or leave one of each pair out.",
-                    paired_share=self.paired_share,
-                )
-            )
-        said += self._double_rows()
+        ]
+
+    def _other_ways(self) -> list[str]:
+        """Return what to say of blocks, bends and directions that may be others."""
+        said: list[str] = []
         if self.of_trial:
             said.append(
                 worded(
@@ -166,7 +182,7 @@ class RowReport:
                     names=" and ".join(others),
                 )
             )
-        return tuple(said)
+        return said
 
     def _double_rows(self) -> list[str]:
         """Return what to say of double rows, taken as one row or as two."""
@@ -199,7 +215,7 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
     first = grid.side == grid.side[0]
     faces = np.flatnonzero(first[grid.row])
     xy_m, row = grid.xy_m[faces], grid.row_line[grid.row[faces]]
-    left_m, alone_m, free = beside_their_rows(xy_m, row)
+    left_m, alone_m, free = row_deviations(xy_m, row)
     decided = said.bearing or said.label is not None or grid.aisles_m is not None
     typical_m = float(np.sqrt(np.sum(left_m**2) / free)) if free > 0 else 0.0
     # what bends was only taken since plants stand in it; of straight lines that is not known

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from fieldmon.compute.arrays import offsets
 from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.row_order import StrandRows, in_line, strands_beside
+from fieldmon.plot.row_order import StrandRows, in_line, neighbouring_strands
 from fieldmon.plot.row_pieces import Windows, pieces
 from fieldmon.plot.strands import Strands, lines_of, ordered
 
@@ -90,7 +90,7 @@ def trace(xy_m: Float, label: Int | None = None) -> TracedRows | None:
         piece = label
     spacing_m = _next_in(piece, far_m, near)
     strands = _strands(xy_m, piece, (far_m, near), _GAP * spacing_m, angle)
-    rows = StrandRows.of(strands, strands_beside(strands, float(np.sqrt(area_m2))))
+    rows = StrandRows.of(strands, neighbouring_strands(strands, float(np.sqrt(area_m2))))
     if label is not None:
         rows = _by_label(strands, rows, label)
     strands = _joined(xy_m, strands, rows)

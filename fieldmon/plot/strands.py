@@ -115,7 +115,7 @@ def lines_of(strands: Strands) -> Polylines:
     return Polylines.of(strands.start + np.searchsorted(alone, np.arange(len(strands.start))), xy_m)
 
 
-class BesideRows(NamedTuple):
+class RowDeviations(NamedTuple):
     """How far plants stand beside the lines of their rows.
 
     ``left_m (n,)`` to the left of the line through all of them, below 0 to its right;
@@ -128,10 +128,10 @@ class BesideRows(NamedTuple):
     free: float
 
     def __repr__(self) -> str:
-        return f"<BesideRows: {len(self.left_m)} plants>"
+        return f"<RowDeviations: {len(self.left_m)} plants>"
 
 
-def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> BesideRows:
+def row_deviations(xy_m: Float, row: NDArray[np.integer]) -> RowDeviations:
     """Return how far plants stand beside their rows; they come row by row, along each."""
     n_plants = np.bincount(row)
     n_plants = n_plants[n_plants > 0]
@@ -143,4 +143,4 @@ def beside_their_rows(xy_m: Float, row: NDArray[np.integer]) -> BesideRows:
     off = xy_m - line_m
     left_m: Float = ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0]
     alone_m: Float = np.abs(left_m) / np.maximum(1.0 - own, 0.2)
-    return BesideRows(left_m, alone_m, float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum()))
+    return RowDeviations(left_m, alone_m, float(np.maximum(0.75 * n_plants - 2.0, 0.0).sum()))

@@ -12,7 +12,7 @@ import shapely
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
-from fieldmon.plot.clearance import Clearance, told_shut
+from fieldmon.plot.clearance import Clearance, shut_sentence
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.obstacles import row_lines
 from fieldmon.plot.road_network import RoadNetwork, find_roads
@@ -134,11 +134,11 @@ class Aisles:
             return read_only(np.zeros(len(self.grid), np.bool_))
         return read_only(self.clearance.shut(self.grid)[self.grid.row])
 
-    def told_shut(self) -> str:
+    def shut_sentence(self) -> str:
         """Return for people which rows the robot cannot enter, in a sentence; "" if none."""
         if self.clearance is None or not self.shut.any():
             return ""
-        return told_shut(self.shut[self.grid.row_start[:-1]], self.grid, self.clearance)
+        return shut_sentence(self.shut[self.grid.row_start[:-1]], self.grid, self.clearance)
 
     def __repr__(self) -> str:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"

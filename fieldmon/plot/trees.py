@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # the ways between all trees are kept as a table: these take 290 MB
 _MOST = 3_000
 # one stands so far beside a tree, in metres and in parts of the way to the nearest one
-_BESIDE_M, _BESIDE = 0.5, 0.2
+_STAND_OFF_M, _STAND_OFF = 0.5, 0.2
 # trees this many usual distances apart are no neighbours
 _NEXT = 1.5
 # one walks this many usual distances about each tree where nobody drew a boundary
@@ -73,7 +73,9 @@ def trees_grid(lonlat: Float, field: Field | None = None) -> PlantGrid:
     order = _in_bands(xy_m, 2 * usual_m)
     xy_m, place = xy_m[order], np.argsort(order)
     near = place[pairs[length_m <= _NEXT * usual_m]]
-    beside_m = min(_BESIDE_M, _BESIDE * float(length_m.min())) if len(pairs) else _BESIDE_M
+    stand_off_m = (
+        min(_STAND_OFF_M, _STAND_OFF * float(length_m.min())) if len(pairs) else _STAND_OFF_M
+    )
     alone = np.arange(n + 1)
     nobody = np.zeros(n + 1, np.int32), np.empty(0, np.int32)
     return PlantGrid(
@@ -81,7 +83,7 @@ def trees_grid(lonlat: Float, field: Field | None = None) -> PlantGrid:
         xy_m,
         alone.astype(np.int64),
         np.zeros(n, np.int32),
-        xy_m[:, 1] + beside_m,
+        xy_m[:, 1] + stand_off_m,
         np.repeat(xy_m[:, :1], 2, axis=1),
         alone[:-1].astype(np.int32),
         np.full(n, _UPPER, np.int8),

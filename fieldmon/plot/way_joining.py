@@ -181,7 +181,7 @@ def _round_corners(net: Net, needed: Index, obstacles: Obstacles, where: Where) 
     Each way has corners of its own: if two shared one, they would be a way off the plot between
     places of one part.
     """
-    corners_m = np.concatenate([obstacles.corners(where), _beside_stranded(net, needed)])
+    corners_m = np.concatenate([obstacles.corners(where), _near_stranded(net, needed)])
     while len(corners_m) and net.apart(needed):
         part = net.component()
         for own in np.unique(part[needed]):
@@ -199,7 +199,7 @@ def _round_corners(net: Net, needed: Index, obstacles: Obstacles, where: Where) 
     return net
 
 
-def _beside_stranded(net: Net, needed: Index) -> Float:
+def _near_stranded(net: Net, needed: Index) -> Float:
     """Return the places at row ends that are off the plot, near those that cannot be reached.
 
     A row along the boundary may be passed at its end only off the plot.

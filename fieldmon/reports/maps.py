@@ -123,7 +123,7 @@ class PlotMap:
 
 
 @dataclass(frozen=True, eq=False)
-class _Placed:
+class _ToPaper:
     """From metres of the plot to millimetres of paper: turned, mirrored, scaled, moved."""
 
     turn: Floats
@@ -149,7 +149,7 @@ def _northward(grid: PlantGrid) -> Floats:
     return north
 
 
-def _fitted(grid: PlantGrid, gate_m: Floats, size: Size) -> _Placed:
+def _fitted(grid: PlantGrid, gate_m: Floats, size: Size) -> _ToPaper:
     """Return how the plot comes on paper: north up, unless it is much larger turned to its rows."""
     north = _northward(grid)
     upright = np.pi / 2 - np.arctan2(north[1], north[0])
@@ -164,7 +164,7 @@ def _fitted(grid: PlantGrid, gate_m: Floats, size: Size) -> _Placed:
         low, span = flat.min(axis=0), np.maximum(np.ptp(flat, axis=0), 1.0)
         scale = float((room / span).min())
         corner = [_MARGIN_MM, _MARGIN_MM] + (room - span * scale) / 2 - low * scale
-        ways.append(_Placed(_turn(angle), scale, corner))
+        ways.append(_ToPaper(_turn(angle), scale, corner))
     best = max(ways, key=lambda way: way.scale)
     return best if best.scale > _TURNED_GAINS * ways[0].scale else ways[0]
 
@@ -175,13 +175,13 @@ def _hull(grid: PlantGrid, gate_m: Floats) -> Floats:
     return np.concatenate([corners, gate_m[None], grid.xy_m[:1]])
 
 
-def _ground(grid: PlantGrid, placed: _Placed) -> list[Part]:
+def _ground(grid: PlantGrid, placed: _ToPaper) -> list[Part]:
     rings = shapely.get_rings(shapely.get_parts(grid.drivable_m))
     corners = tuple(placed(shapely.get_coordinates(ring)) for ring in rings)
     return [Areas(corners, fill=colours.GROUND, edge=colours.SOFT, width=0.3)]
 
 
-def _plants(what: PlotMap, placed: _Placed, size: Size) -> list[Part]:
+def _plants(what: PlotMap, placed: _ToPaper, size: Size) -> list[Part]:
     """Return the plants by chance, likelier ones over others: lines, or a picture of very many."""
     if len(what.grid) > MOST_LINES:
         return [Bitmap(0.0, 0.0, *size, _picture(what, placed, size))]
@@ -194,12 +194,12 @@ def _plants(what: PlotMap, placed: _Placed, size: Size) -> list[Part]:
     ]
 
 
-def _plant_width(grid: PlantGrid, placed: _Placed) -> float:
+def _plant_width(grid: PlantGrid, placed: _ToPaper) -> float:
     return max(0.6 * grid.row_spacing_m * placed.scale, 0.15)
 
 
 def _runs(
-    grid: PlantGrid, rank: NDArray[np.intp], placed: _Placed
+    grid: PlantGrid, rank: NDArray[np.intp], placed: _ToPaper
 ) -> tuple[Floats, NDArray[np.intp]]:
     """Return lines ``(k, 4)`` along the rows, metres, and their classes ``(k,)``.
 
@@ -218,7 +218,7 @@ def _runs(
     return np.stack([x[first] - half_m, y[first], x[last] + half_m, y[last]], axis=1), rank[first]
 
 
-def _picture(what: PlotMap, placed: _Placed, size: Size) -> bytes:
+def _picture(what: PlotMap, placed: _ToPaper, size: Size) -> bytes:
     """Return the plants as a PNG; the likeliest plant wins a dot."""
     from PIL import Image  # noqa: PLC0415 - only for very many plants
 
@@ -241,7 +241,7 @@ def _picture(what: PlotMap, placed: _Placed, size: Size) -> bytes:
     return file.getvalue()
 
 
-def _hot(what: PlotMap, placed: _Placed) -> list[Part]:
+def _hot(what: PlotMap, placed: _ToPaper) -> list[Part]:
     rings = tuple(
         placed(shapely.get_coordinates(shape.exterior))
         for shape in outlines_m(what.grid, what.spots)
@@ -250,7 +250,7 @@ def _hot(what: PlotMap, placed: _Placed) -> list[Part]:
     return [*lines] if rings else []
 
 
-def _sprayed(what: PlotMap, placed: _Placed) -> list[Part]:
+def _sprayed(what: PlotMap, placed: _ToPaper) -> list[Part]:
     """Return the outlines of the zones, each with its number in its middle."""
     rings = tuple(
         placed(shapely.get_coordinates(part.exterior))
@@ -272,7 +272,7 @@ def _sprayed(what: PlotMap, placed: _Placed) -> list[Part]:
     return parts
 
 
-def _hot_numbers(what: PlotMap, placed: _Placed) -> list[Part]:
+def _hot_numbers(what: PlotMap, placed: _ToPaper) -> list[Part]:
     """Return the number of each hot spot at the upper left of its outline, where it has room."""
     parts: list[Part] = []
     taken = np.empty((0, 3))
@@ -291,7 +291,7 @@ def _hot_numbers(what: PlotMap, placed: _Placed) -> list[Part]:
     return parts
 
 
-def _way(route: Route, placed: _Placed) -> list[Part]:
+def _way(route: Route, placed: _ToPaper) -> list[Part]:
     """Return the route with its stops and arrows that show where it goes."""
     if len(route.line_m) < 2:
         return []
@@ -323,7 +323,7 @@ def _arrows(line: Floats) -> list[Part]:
     return [Areas((tip,), fill=colours.ROUTE, edge=colours.PAPER, width=0.2) for tip in tips]
 
 
-def _finds(what: PlotMap, placed: _Placed) -> list[Part]:
+def _finds(what: PlotMap, placed: _ToPaper) -> list[Part]:
     places = placed(what.grid.xy_m[what.state == PRESENT])
     radius = float(np.clip(0.35 * what.grid.row_spacing_m * placed.scale, 0.55, 1.3))
     if not len(places):
@@ -334,7 +334,7 @@ def _finds(what: PlotMap, placed: _Placed) -> list[Part]:
     ]
 
 
-def _gate(gate_m: Floats, placed: _Placed) -> list[Part]:
+def _gate(gate_m: Floats, placed: _ToPaper) -> list[Part]:
     place = placed(gate_m)
     return [
         Discs(place, 1.9, fill=colours.PAPER),
@@ -342,7 +342,7 @@ def _gate(gate_m: Floats, placed: _Placed) -> list[Part]:
     ]
 
 
-def _row_numbers(grid: PlantGrid, placed: _Placed) -> list[Part]:
+def _row_numbers(grid: PlantGrid, placed: _ToPaper) -> list[Part]:
     """Return the numbers of the rows before their first plants, as many as have room."""
     if not grid.in_rows:
         return []
@@ -357,7 +357,7 @@ def _row_numbers(grid: PlantGrid, placed: _Placed) -> list[Part]:
     ]
 
 
-def _scale(units: Units, placed: _Placed, size: Size) -> list[Part]:
+def _scale(units: Units, placed: _ToPaper, size: Size) -> list[Part]:
     """Return a bar of a round length in the lower left corner."""
     bar_m, text = units.bar_m((size[0] - 2 * _MARGIN_MM) / placed.scale / 4)
     y, end = size[1] - 2.5, 2.0 + bar_m * placed.scale
@@ -365,7 +365,7 @@ def _scale(units: Units, placed: _Placed, size: Size) -> list[Part]:
     return [Strokes((bar,), colours.INK, 0.4), Lettering(end + 1.5, y - 0.6, text, 7.0)]
 
 
-def _north(grid: PlantGrid, placed: _Placed, size: Size) -> list[Part]:
+def _north(grid: PlantGrid, placed: _ToPaper, size: Size) -> list[Part]:
     """Return an arrow to true north in the lower right corner."""
     ahead = _northward(grid) @ placed.turn
     aside = np.array([-ahead[1], ahead[0]])

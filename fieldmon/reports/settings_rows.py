@@ -47,7 +47,7 @@ class WorkSettings:
         What is made of findings and nights; None where there is no season.
     guessed
         What the import of the plot had to guess, in sentences.
-    living
+    pest_in_weather
         The pest in its weather, by which nights go; None: as `belief` has them.
     """
 
@@ -58,7 +58,7 @@ class WorkSettings:
     assumed: tuple[Assumed, ...] = ()
     belief: BeliefSettings | None = None
     guessed: tuple[str, ...] = ()
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
     @classmethod
     def of_season(cls, season: Season) -> WorkSettings:
@@ -68,7 +68,7 @@ class WorkSettings:
         return cls(
             settings.robot, settings.sampler, settings.prior,
             (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(), settings.belief,
-            tuple(one.sentence for one in guessed), settings.living(),
+            tuple(one.sentence for one in guessed), settings.pest_in_weather(),
         )  # fmt: skip
 
     def origin(self, setting: str) -> str:
@@ -133,10 +133,10 @@ def _of_belief(settings: WorkSettings, units: Units) -> Iterator[Row]:
     yield words.BACKGROUND, background, settings.origin("background_chance")
     if settings.belief is None:
         return
-    if settings.living is None:
+    if settings.pest_in_weather is None:
         yield from _of_nights(settings, settings.belief.spread)
     else:
-        yield from _of_pest(settings.living, units)
+        yield from _of_pest(settings.pest_in_weather, units)
     treated, usual = settings.belief.treated, BeliefSettings()
     yield words.TREATED, words.TREATED_VALUES[treated], _from(treated == usual.treated)
 
@@ -149,8 +149,8 @@ def _of_nights(settings: WorkSettings, spread: Spread) -> Iterator[Row]:
     yield words.ARRIVALS, said, _from(arrive == usual)
 
 
-def _of_pest(living: PestInWeather, units: Units) -> Iterator[Row]:
-    pest, weather = living.pest, living.weather
+def _of_pest(pest_in_weather: PestInWeather, units: Units) -> Iterator[Row]:
+    pest, weather = pest_in_weather.pest, pest_in_weather.weather
     yield words.PEST, Worded(words.isolated(pest.title or pest.name)), words.FROM_CHOSEN
     if weather is None or not len(weather):
         yield words.WEATHER, words.WEATHER_NONE, words.FROM_USUAL

@@ -64,9 +64,11 @@ class NightInsects:
 class PestInsects:
     """Insects of a pest in its weather: by the night, or hour by hour."""
 
-    def __init__(self, grid: PlantGrid, infested: NDArray[np.bool_], living: PestInWeather) -> None:
-        self.living = living
-        self.colonies = Colonies.grown(grid, living.pest, infested)
+    def __init__(
+        self, grid: PlantGrid, infested: NDArray[np.bool_], pest_in_weather: PestInWeather
+    ) -> None:
+        self.pest_in_weather = pest_in_weather
+        self.colonies = Colonies.grown(grid, pest_in_weather.pest, infested)
         self._hour = 0
         self._hours_of: tuple[int, list[Spell]] = (-1, [])
 
@@ -78,7 +80,7 @@ class PestInsects:
     @property
     def by_hour(self) -> bool:
         """Tell whether the pest is simulated hour by hour."""
-        return self.living.pest.movement.by_hour
+        return self.pest_in_weather.pest.movement.by_hour
 
     def showing(self, number: int) -> NDArray[np.bool_]:  # noqa: ARG002 - as the others
         """Return where an inspection may find something now, ``(n,)``."""
@@ -99,7 +101,7 @@ class PestInsects:
         """Destroy those on the plants found, let the others go on; return how many are new."""
         frame = self.colonies.grid.frame
         self.colonies = self.colonies.without(found)
-        spells = [self.living.night(number, frame)]
+        spells = [self.pest_in_weather.night(number, frame)]
         if self.by_hour:
             spells = self._hours(number)[self._hour :]
         new, turn = 0, self._hour
@@ -114,7 +116,7 @@ class PestInsects:
     def _hours(self, number: int) -> list[Spell]:
         """Return the hours of a day, made once."""
         if self._hours_of[0] != number:
-            self._hours_of = number, self.living.hours(number, self.colonies.grid.frame)
+            self._hours_of = number, self.pest_in_weather.hours(number, self.colonies.grid.frame)
         return self._hours_of[1]
 
 

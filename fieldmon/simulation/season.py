@@ -94,19 +94,29 @@ class SeasonSettings:
     def night(
         self, grid: PlantGrid, infested: NDArray[np.bool_], key: np.uint64
     ) -> NDArray[np.bool_]:
-        """Return who is infested the next morning, ``(n,)``."""
+        """Return who is infested the next morning, ``(n,)``.
+
+        Parameters
+        ----------
+        grid
+            The plants.
+        infested
+            ``(n,)`` who is infested in the evening.
+        key
+            The night's stream, see `RandomStreams.key`.
+        """
         if self.pests is not None:
             return self.pests(grid, infested, key)
         return night(grid, infested, self.spread, key)
 
     def insects(self, grid: PlantGrid, infested: NDArray[np.bool_]) -> PlotInsects:
-        """Return what lives on a plot where plants ``(n,)`` are infested on the first morning."""
+        """Return what lives on a `grid` of plants, `infested` ``(n,)`` on the first morning."""
         if self.pest is not None:
             return PestInsects(grid, infested, self.pest)
         return NightInsects(grid, infested, self.night, self.hidden_nights)
 
     def believed_night(self, grid: PlantGrid) -> Callable[[int], Spread]:
-        """Return what a chance map takes the insects to do in the night after a day."""
+        """Return what a chance map of a `grid` takes insects to do in the night after a day."""
         pest = self.believed_pest or self.pest
         if pest is not None and self.believed_spread is None:
             return lambda number: pest.spread(number, grid.frame)
@@ -265,7 +275,7 @@ def simulated_days(
     insects, and would find the same ones on a plant.
     """
     check_start(aisles, start)
-    season = SeasonOnItsWay(aisles, robot, sampler, start, settings)
+    season = RunningSeason(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
         if season.moves_by_day:
@@ -276,7 +286,7 @@ def simulated_days(
         season.pass_night(day, overnight)
 
 
-class SeasonOnItsWay:
+class RunningSeason:
     """A season on its way: what a day changes, and how."""
 
     def __init__(

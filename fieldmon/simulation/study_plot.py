@@ -36,7 +36,7 @@ class StudyPlot:
         Records on it, from which the first morning's chances follow.
     day
         The day they are seen from.
-    living
+    pest_in_weather
         The pest, in the weather of the season's days; None: nights are as the levels have them.
     """
 
@@ -44,15 +44,15 @@ class StudyPlot:
     planting: Planting
     observations: Observations
     day: np.datetime64
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
     @cached_property
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
-        parts = (*self.field.told, *vars(self.observations).values())
+        parts = (*self.field.content, *vars(self.observations).values())
         # unsaid, it leaves a plot what it was before pests could be named
-        living = () if self.living is None else self.living.told
-        return digest(*parts, as_written(self.planting), str(self.day), *living, length=DIGITS)
+        pest = () if self.pest_in_weather is None else self.pest_in_weather.content
+        return digest(*parts, as_written(self.planting), str(self.day), *pest, length=DIGITS)
 
     @cached_property
     def about_plants(self) -> int:

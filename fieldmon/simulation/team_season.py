@@ -10,10 +10,11 @@ import numpy as np
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.planning.members import Teamwork, team_of
-from fieldmon.planning.team_day import Posted, merged, team_day
+from fieldmon.planning.team_day import merged, team_day
+from fieldmon.planning.team_worker import Posted
 from fieldmon.planning.workday import draw_detections
 from fieldmon.samplers.base import resting_place
-from fieldmon.simulation.season import SeasonOnItsWay, check_start, simulated_days
+from fieldmon.simulation.season import RunningSeason, check_start, simulated_days
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.infestation.belief import Belief
     from fieldmon.planning.members import TeamMember
-    from fieldmon.planning.team_day import Learn
+    from fieldmon.planning.team_news import Learn
     from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
@@ -94,7 +95,7 @@ def simulated_team_days(
         season.pass_night(day, overnight)
 
 
-class _TeamSeason(SeasonOnItsWay):
+class _TeamSeason(RunningSeason):
     """A season of a team on its way."""
 
     def __init__(

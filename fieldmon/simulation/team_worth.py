@@ -64,14 +64,14 @@ def marginal_gains(losses: Mapping[int, NDArray[np.float64]]) -> list[MarginalGa
     ]
 
 
-def told(gains: Sequence[MarginalGain]) -> str:
+def worth_sentence(gains: Sequence[MarginalGain]) -> str:
     """Return for people what each further robot would save; empty without gains.
 
     Examples
     --------
     >>> import numpy as np
     >>> losses = {1: np.array([70.0, 80.0, 90.0]), 2: np.array([10.0, 22.0, 28.0])}
-    >>> told(marginal_gains(losses))
+    >>> worth_sentence(marginal_gains(losses))
     'A second robot would save 60 (55 to 65) infested plant-days.'
     """
     if not gains:

@@ -52,13 +52,13 @@ class LaidPlot(NamedTuple):
         Its plants.
     chance
         ``(n,)`` of infestation on the first morning.
-    living
+    pest_in_weather
         The pest in its weather; None: nights are as the levels have them.
     """
 
     plot: Plot
     chance: NDArray[np.float64]
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
 
 ChunkSeasons = list[dict[str, Any]] | RefusedPlot
@@ -93,12 +93,12 @@ def simulated_season(
     team: Team = ONE,
 ) -> SeasonMetrics:
     """Return what one season comes to, on a plot with its chances of infestation."""
-    plot, chance, living = laid
+    plot, chance, pest_in_weather = laid
     streams = RandomStreams(seed)
     start = season_start(plot.grid, chance, levels.infested, streams)
-    settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread), pest=living)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread), pest=pest_in_weather)
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
-    robot = robot if living is None else living.pest.seen_by(robot)
+    robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
     decides = sampler(levels.sampler)
     return season_metrics(team.days((plot, robot), decides, start, settings, streams))
 
@@ -120,11 +120,13 @@ class _Unhashed:
 def _laid(digest: str, of: _Unhashed) -> LaidPlot:  # noqa: ARG001 - the key
     """Return a plot with its plants, and their chances of infestation."""
     plot = Plot.of(of.plot.field, of.plot.planting)
-    records, day, living = of.plot.observations, of.plot.day, of.plot.living
+    records, day, pest_in_weather = of.plot.observations, of.plot.day, of.plot.pest_in_weather
     prior = PriorSettings()
-    if living is not None:
-        prior = prior_for(prior, living.pest, living.weather, living.begins)
-    return LaidPlot(plot, prior_chance(plot.grid, plot.field, records, day, prior), living)
+    if pest_in_weather is not None:
+        prior = prior_for(
+            prior, pest_in_weather.pest, pest_in_weather.weather, pest_in_weather.begins
+        )
+    return LaidPlot(plot, prior_chance(plot.grid, plot.field, records, day, prior), pest_in_weather)
 
 
 def _measures(season: SeasonMetrics) -> dict[str, Any]:

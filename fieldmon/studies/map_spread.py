@@ -162,7 +162,7 @@ def scores(of: Interval) -> MapScores:
         chances = {
             "no_change": _chance(_nothing, np.zeros(1), of),
             "evenly": each[0].chance,
-            "thesis": _fitted((1, _beside(of)), of, told).chance,
+            "thesis": _fitted((1, _from_adjacent(of)), of, told).chance,
             "kernel": each[best].chance,
             "weighed": _weighed(each, before),
         }
@@ -205,7 +205,7 @@ def _evenly(numbers: Floats) -> Floats:
     return rate
 
 
-def _beside(of: Interval) -> Callable[[Floats], Floats]:
+def _from_adjacent(of: Interval) -> Callable[[Floats], Floats]:
     """Return what the thesis's rule brings to each plant, by the rate."""
     start, other = of.grid.adjacent
     plants = np.repeat(np.arange(len(of.before)), np.diff(start))

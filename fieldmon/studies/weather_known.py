@@ -167,12 +167,12 @@ def worth_of_weather(
 def paired_seasons(pest: Pest, shape: Shape, seed: int, n_days: int) -> KnownOrNot:
     """Return what a season comes to for one that knows the weather and for one that does not."""
     streams = RandomStreams(seed)
-    living = PestInWeather(pest, season_weather(shape, streams, n_days + 1), _BEGINS)
+    pest_in_weather = PestInWeather(pest, season_weather(shape, streams, n_days + 1), _BEGINS)
     averages = PestInWeather(pest, usual_weather(), _BEGINS)
     start = _grown(pest, streams)
     columns = []
-    for believed in (living, averages):
-        settings = SeasonSettings(n_days=n_days, pest=living, believed_pest=believed)
+    for believed in (pest_in_weather, averages):
+        settings = SeasonSettings(n_days=n_days, pest=pest_in_weather, believed_pest=believed)
         columns.append(_season(start, settings, streams))
     (knows, held), (other, held_by_averages) = columns
     return KnownOrNot(knows, other, held, held_by_averages)

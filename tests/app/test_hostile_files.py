@@ -25,8 +25,8 @@ from fieldmon.reports.html import html_text
 from fieldmon.reports.season import season_report
 from tests.app.test_hostile_texts import EVERY, EVIL, LEADS
 from tests.awkward import DAY, HERE, SECOND, SQUARE
+from tests.awkward_real_files import _TASKS, ods, pfd, pln
 from tests.monitoring.seasons import a_plot
-from tests.more_awkward import _TASKS, ods, pfd, pln
 from tests.old_workbook import xls
 from tests.pages import held
 from tests.paths import ROOT

@@ -18,9 +18,9 @@ from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
 from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
 from tests.app.test_hostile_texts import EVIL, NAMES, hostile_season
+from tests.monitoring.phone import told
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
-from tests.monitoring.telling import told
 
 PLANTS = int(os.environ.get("FIELDMON_DAY", "12"))
 PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "3"))

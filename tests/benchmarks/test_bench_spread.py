@@ -39,8 +39,10 @@ def test_night_of_a_pest_that_goes_far_on_100_489_plants(benchmark, by_hour, sha
     """A night of one that moves at night, or the 24 hours of whitefly."""
     far = Pest("mite", movement=Movement("cauchy", 0.5, reach_m=15.0))
     pest = pest_of("whitefly") if by_hour else far
-    living, before = PestInWeather(pest), Colonies.grown(GRID, pest, infested(share))
-    spells = living.hours(0, GRID.frame) if by_hour else [living.night(0, GRID.frame)]
+    pest_in_weather, before = PestInWeather(pest), Colonies.grown(GRID, pest, infested(share))
+    spells = (
+        pest_in_weather.hours(0, GRID.frame) if by_hour else [pest_in_weather.night(0, GRID.frame)]
+    )
 
     def night():
         colonies = before
@@ -68,9 +70,11 @@ def test_a_long_kernel_in_a_new_wind_on_100_489_plants(benchmark):
 def test_25_days_of_a_pest_on_scenario_c(benchmark, by_hour):
     grid = rectangle(91, 91)
     pest = Pest("mite", movement=Movement("cauchy", 0.1, reach_m=6.0, by_hour=by_hour))
-    living = PestInWeather(pest)
+    pest_in_weather = PestInWeather(pest)
     start = RandomStreams(1).of("start").random(len(grid)) < 0.02
-    days = [living.hours(0, grid.frame) if by_hour else [living.night(0, grid.frame)]] * 25
+    days = [
+        pest_in_weather.hours(0, grid.frame) if by_hour else [pest_in_weather.night(0, grid.frame)]
+    ] * 25
     streams = RandomStreams(1)
 
     def season():
@@ -85,9 +89,11 @@ def test_25_days_of_a_pest_on_scenario_c(benchmark, by_hour):
 
 def test_a_night_of_the_chance_map_of_a_pest_on_scenario_c(benchmark):
     grid = rectangle(91, 91)
-    living = PestInWeather(Pest("mite", movement=Movement("exponential", 0.3, reach_m=6.0)))
-    belief = TracedPairs.of(grid, np.full(len(grid), 0.02)).of_pest(living.pest)
-    spread = living.spread(0, grid.frame)
+    pest_in_weather = PestInWeather(
+        Pest("mite", movement=Movement("exponential", 0.3, reach_m=6.0))
+    )
+    belief = TracedPairs.of(grid, np.full(len(grid), 0.02)).of_pest(pest_in_weather.pest)
+    spread = pest_in_weather.spread(0, grid.frame)
     assert benchmark(belief.overnight, spread).chance.sum() > belief.chance.sum()
 
 

@@ -5,7 +5,7 @@ import io
 from datetime import date
 from pathlib import Path
 
-from fieldmon.drive.account import day_table, in_words, stop_table, stops_beside
+from fieldmon.drive.account import day_table, in_words, stop_table, stops_path
 from fieldmon.drive.day import DrivenDay, DrivenStop
 from fieldmon.drive.errand import Visit
 from fieldmon.monitoring.monitor import PlantToInspect
@@ -43,7 +43,7 @@ def test_each_stop_is_a_line_beside_it():
     assert [line["found"] for line in lines] == ["1", ""]
     assert lines[0]["touched"] == "3 9"
     assert [line["stuck"] for line in lines] == ["0", "1"]
-    assert stops_beside(Path("a/day.csv")) == Path("a/day.stops.csv")
+    assert stops_path(Path("a/day.csv")) == Path("a/day.stops.csv")
 
 
 def test_the_day_in_words_says_what_went_wrong():

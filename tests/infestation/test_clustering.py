@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.infestation.clustering import (
-    _BESIDE,
     _LIKELY,
+    _NEIGHBOUR,
     CLUSTERING,
     ClusterEstimate,
     chance_apart,
@@ -107,7 +107,7 @@ def evidence_told(inspections, lean):
             across = int(GRID.row[i] != GRID.row[j])
             p, q = MORNING.chance[i], MORNING.chance[j]
             beyond_chance = min(max((both / p - q) / fresh[across], 0.0), 1.0)
-            finds = detects * (q + (1 - q) * _BESIDE[:, across] * beyond_chance)
+            finds = detects * (q + (1 - q) * _NEIGHBOUR[:, across] * beyond_chance)
             told += 0.5 * np.log(finds if found else 1.0 - finds)
     return told
 
@@ -127,7 +127,7 @@ def test_ways_to_stand_are_weighed_by_bayes_rule(evidence):
     likely = np.exp(_LIKELY + evidence)
     likely /= likely.sum()
     assert chance_apart.py_func(evidence) == pytest.approx(likely[3])
-    lean = likely @ (_BESIDE[:, 0] / _BESIDE.sum(axis=1))
+    lean = likely @ (_NEIGHBOUR[:, 0] / _NEIGHBOUR.sum(axis=1))
     assert leaning.py_func(evidence) == pytest.approx(lean)
     kept = kept_evidence(evidence)
     assert kept.max() == 0.0
@@ -138,8 +138,8 @@ def test_ways_to_stand_are_weighed_by_bayes_rule(evidence):
 
 def test_ways_to_stand_at_first_are_chances_and_rows_are_the_mirror_of_columns():
     assert np.exp(_LIKELY).sum() == pytest.approx(1.0)
-    assert _BESIDE[1].tolist() == _BESIDE[2, ::-1].tolist()
-    assert _BESIDE[[0, 3], 0].tolist() == _BESIDE[[0, 3], 1].tolist()
+    assert _NEIGHBOUR[1].tolist() == _NEIGHBOUR[2, ::-1].tolist()
+    assert _NEIGHBOUR[[0, 3], 0].tolist() == _NEIGHBOUR[[0, 3], 1].tolist()
 
 
 @given(some_inspections, st.sampled_from((0.0, 0.4, 0.7)))

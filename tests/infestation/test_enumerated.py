@@ -159,7 +159,7 @@ def a_night_by_pencil(belief, truth, spread):
     grid, reach, scale = belief.grid, belief.reach, belief.counts.scale
     degree = np.diff(grid.adjacent.start).mean()
     sends = spread.rate_per_day * (degree if spread.to != "one" else 1.0)
-    beside = min(1.0, 1.0 - belief.jumps * (1.0 - reach.beside))
+    beside = min(1.0, 1.0 - belief.jumps * (1.0 - reach.adjacent))
     near = Spread(spread.rate_per_day * beside, spread.to)
     # rows are a little likelier at first to be what the infested stand in
     lean = leaning(belief.evidence)

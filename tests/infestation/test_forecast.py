@@ -37,9 +37,9 @@ def test_each_morning_is_that_of_the_chance_map():
 def test_the_interval_holds_the_number_after_fourteen_nights():
     """Plots drawn from the chance map itself, then simulated: nine in ten, give or take."""
     pest = Pest("mite", movement=Movement("exponential", 0.15, reach_m=6.0))
-    living = PestInWeather(pest)
+    pest_in_weather = PestInWeather(pest)
     belief = TracedPairs.of(GRID, np.full(784, 0.02)).of_pest(pest)
-    ahead = forecast(belief, GRID, [living.spread(k, GRID.frame) for k in range(14)])
+    ahead = forecast(belief, GRID, [pest_in_weather.spread(k, GRID.frame) for k in range(14)])
     plots = np.zeros((60, 784), bool)
     believed = belief.chance, belief.pair_chance
     draw_fields(believed, GRID.adjacent, RandomStreams(1).key("fields"), plots)
@@ -48,7 +48,7 @@ def test_the_interval_holds_the_number_after_fourteen_nights():
         colonies = Colonies.grown(GRID, pest, infested)
         for k in range(14):
             key = RandomStreams(seed).key("spread", k)
-            colonies = colonies.after(living.night(k, GRID.frame), key)
+            colonies = colonies.after(pest_in_weather.night(k, GRID.frame), key)
         held.append(ahead.low[-1] <= colonies.infested.sum() <= ahead.high[-1])
     assert 0.8 <= np.mean(held) <= 1.0
 

@@ -36,20 +36,20 @@ def weather(temperature=30.0, wind=0.0):
     )  # fmt: skip
 
 
-def believed(living, infested, nights):
-    belief = TracedPairs.of(GRID, np.where(infested, 0.98, 1e-6)).of_pest(living.pest)
+def believed(pest_in_weather, infested, nights):
+    belief = TracedPairs.of(GRID, np.where(infested, 0.98, 1e-6)).of_pest(pest_in_weather.pest)
     for number in range(nights):
-        belief = belief.overnight(living.spread(number, GRID.frame))
+        belief = belief.overnight(pest_in_weather.spread(number, GRID.frame))
     return belief
 
 
-def simulated(living, infested, nights, runs=150):
+def simulated(pest_in_weather, infested, nights, runs=150):
     total = np.zeros(N)
     for seed in range(runs):
-        colonies = Colonies.grown(GRID, living.pest, infested)
+        colonies = Colonies.grown(GRID, pest_in_weather.pest, infested)
         for number in range(nights):
             key = RandomStreams(seed).key("spread", number)
-            colonies = colonies.after(living.night(number, GRID.frame), key)
+            colonies = colonies.after(pest_in_weather.night(number, GRID.frame), key)
         total += colonies.infested
     return total / runs
 
@@ -65,34 +65,43 @@ def some():
     [("exponential", True), ("exponential", False), ("cauchy", True), ("adjacent", False)],
 )
 def test_the_chance_map_expects_as_many_as_are_simulated(kernel, eggs):
-    living = PestInWeather(pest(kernel=kernel, per_day=0.3), None)
+    pest_in_weather = PestInWeather(pest(kernel=kernel, per_day=0.3), None)
     if not eggs:
-        living = replace(living, pest=replace(living.pest, stages=()))
-    said, made = believed(living, some(), 4).chance.sum(), simulated(living, some(), 4).sum()
+        pest_in_weather = replace(pest_in_weather, pest=replace(pest_in_weather.pest, stages=()))
+    said, made = (
+        believed(pest_in_weather, some(), 4).chance.sum(),
+        simulated(pest_in_weather, some(), 4).sum(),
+    )
     # arrivals, and the candidates beside the pest's own kernel, are the chance map's own
     assert said == pytest.approx(made, rel=0.15, abs=0.5)
 
 
 def test_of_adjacent_plants_it_expects_a_quarter_too_many_while_there_are_eggs():
     """It takes them to send as much beside grown plants as elsewhere; see docs/pests."""
-    living = PestInWeather(pest(kernel="adjacent", per_day=0.3), None)
-    said, made = believed(living, some(), 4).chance.sum(), simulated(living, some(), 4).sum()
+    pest_in_weather = PestInWeather(pest(kernel="adjacent", per_day=0.3), None)
+    said, made = (
+        believed(pest_in_weather, some(), 4).chance.sum(),
+        simulated(pest_in_weather, some(), 4).sum(),
+    )
     assert made < said < 1.3 * made
 
 
 def test_eggs_send_nothing_out_in_the_chance_map_either():
     """Three nights of eggs grow by sums, not by powers; without stages all send at once."""
-    living = PestInWeather(pest(), None)
+    pest_in_weather = PestInWeather(pest(), None)
     grown = PestInWeather(Pest("grown", movement=Movement("exponential", 0.6, reach_m=6.0)), None)
-    slow, fast = (believed(each, some(), 3).chance.sum() for each in (living, grown))
+    slow, fast = (believed(each, some(), 3).chance.sum() for each in (pest_in_weather, grown))
     assert slow < 0.85 * fast
-    assert slow == pytest.approx(simulated(living, some(), 3).sum(), rel=0.15, abs=0.5)
+    assert slow == pytest.approx(simulated(pest_in_weather, some(), 3).sum(), rel=0.15, abs=0.5)
 
 
 def test_what_predators_end_the_chance_map_ends_too():
     grown = replace(pest(), stages=(), mortality_per_day=0.2)
-    living = PestInWeather(grown, None)
-    said, made = believed(living, some(), 3).chance.sum(), simulated(living, some(), 3).sum()
+    pest_in_weather = PestInWeather(grown, None)
+    said, made = (
+        believed(pest_in_weather, some(), 3).chance.sum(),
+        simulated(pest_in_weather, some(), 3).sum(),
+    )
     assert said == pytest.approx(made, rel=0.15, abs=0.5)
 
 
@@ -105,9 +114,9 @@ def test_nights_are_as_warm_as_they_were():
 
 
 def test_the_wind_carries_the_chance_map_where_it_goes():
-    living = PestInWeather(pest(wind="with"), weather(wind=4.0), date(2026, 6, 1))
-    chance = believed(living, some(), 2).chance
-    made = simulated(living, some(), 2)
+    pest_in_weather = PestInWeather(pest(wind="with"), weather(wind=4.0), date(2026, 6, 1))
+    chance = believed(pest_in_weather, some(), 2).chance
+    made = simulated(pest_in_weather, some(), 2)
     x = GRID.xy_m[:, 0]
     west, east = x < x[12 * 24 + 12], x > x[12 * 24 + 12]
     near = np.abs(GRID.xy_m - GRID.xy_m[12 * 24 + 12]).max(axis=1) < 13.0
@@ -116,8 +125,8 @@ def test_the_wind_carries_the_chance_map_where_it_goes():
 
 
 def test_a_clean_look_says_less_of_what_cannot_be_seen_yet():
-    living = PestInWeather(pest(), None)
-    morning = believed(living, some(), 2)
+    pest_in_weather = PestInWeather(pest(), None)
+    morning = believed(pest_in_weather, some(), 2)
     beside = np.array([12 * 24 + 13], np.int32)
     after = morning.learn(beside, np.array([False]), Learning(0.84))
     # all of it can be seen, whatever inspections may tell
@@ -131,10 +140,12 @@ def test_a_clean_look_says_less_of_what_cannot_be_seen_yet():
 
 def test_finds_far_from_others_are_explained_by_the_pest_s_kernel():
     """A find raises plants within the kernel's reach, downwind more than upwind."""
-    living = PestInWeather(pest(wind="with", reach_m=9.0), weather(wind=6.0), date(2026, 6, 1))
-    belief = TracedPairs.of(GRID, np.full(N, 0.01)).of_pest(living.pest)
+    pest_in_weather = PestInWeather(
+        pest(wind="with", reach_m=9.0), weather(wind=6.0), date(2026, 6, 1)
+    )
+    belief = TracedPairs.of(GRID, np.full(N, 0.01)).of_pest(pest_in_weather.pest)
     for number in range(2):
-        belief = belief.overnight(living.spread(number, GRID.frame))
+        belief = belief.overnight(pest_in_weather.spread(number, GRID.frame))
     find = 12 * 24 + 12
     after = belief.learn(np.array([find], np.int32), np.array([True]), Learning(0.84))
     gain = after.chance - belief.chance
@@ -151,8 +162,8 @@ def test_without_a_pest_nothing_is_different():
 
 def test_a_day_is_planned_by_what_can_be_seen():
     """Of the plants that the last nights infested, nothing shows yet; of the others all does."""
-    living = PestInWeather(pest(), None)
-    morning = believed(living, some(), 2)
+    pest_in_weather = PestInWeather(pest(), None)
+    morning = believed(pest_in_weather, some(), 2)
     seen = morning.in_sight
     hidden = morning.cohorts.hidden
     assert seen.chance == pytest.approx(np.maximum(morning.chance * (1.0 - hidden), 1e-6))

@@ -38,9 +38,9 @@ def daily(first="2026-06-01", days=3, **measured):
 
 
 def test_an_hour_s_degree_days_add_up_to_the_day_s():
-    living = PestInWeather(MITE, hourly(temperature_c=np.linspace(10.0, 30.0, 24)), BEGINS)
-    day = living.night(0, FRAME)
-    hours = living.hours(0, FRAME, starts=0)
+    pest_in_weather = PestInWeather(MITE, hourly(temperature_c=np.linspace(10.0, 30.0, 24)), BEGINS)
+    day = pest_in_weather.night(0, FRAME)
+    hours = pest_in_weather.hours(0, FRAME, starts=0)
     assert sum(hour.warmth[0] for hour in hours) == pytest.approx(day.warmth[0])
     by_hand = np.maximum(np.linspace(10.0, 30.0, 24) - 12.5, 0.0).sum() / 24
     assert day.warmth[0] == pytest.approx(by_hand)
@@ -57,8 +57,8 @@ def test_a_warm_night_sends_more_than_a_cold_one():
 
 
 def test_insects_move_in_their_hours_only():
-    living = PestInWeather(MITE, None, BEGINS)
-    moving = [hour.sends > 0 for hour in living.hours(0, FRAME, starts=6)]
+    pest_in_weather = PestInWeather(MITE, None, BEGINS)
+    moving = [hour.sends > 0 for hour in pest_in_weather.hours(0, FRAME, starts=6)]
     assert moving == [False] * 2 + [True] * 10 + [False] * 12
     night = hours_of_movement(Movement(hours=(22.5, 2.0)))
     assert night[[22, 23, 0, 1]] == pytest.approx(np.array([0.5, 1.0, 1.0, 1.0]) / 3.5)
@@ -67,9 +67,9 @@ def test_insects_move_in_their_hours_only():
 
 def test_the_hours_that_follow_are_of_today_until_midnight_then_of_tomorrow():
     """It is as many degrees warm as hours have passed since the first midnight."""
-    living = PestInWeather(MITE, hourly(temperature_c=np.arange(48.0)), BEGINS)
+    pest_in_weather = PestInWeather(MITE, hourly(temperature_c=np.arange(48.0)), BEGINS)
     for starts in (0, 6, 23):
-        hours = living.hours(0, FRAME, starts=starts)
+        hours = pest_in_weather.hours(0, FRAME, starts=starts)
         by_hand = np.maximum(np.arange(starts, starts + 24.0) - 12.5, 0.0) / 24
         assert [hour.warmth[0] for hour in hours] == pytest.approx(by_hand)
 
@@ -111,17 +111,17 @@ def test_days_beyond_the_file_are_the_usual_of_their_date():
 def test_a_disease_of_splashes_moves_in_rain_only_and_unmeasured_rain_holds_nothing_back():
     splash = Pest("splash", movement=Movement("adjacent", 0.3, least_rain_mm=2.0))
     wet = daily(days=2, temperature_c=[20.0], rain_mm=[5.0, 0.0])
-    living = PestInWeather(splash, wet, BEGINS)
-    assert living.night(0, FRAME).sends == pytest.approx(-np.log(0.7))
-    assert living.night(1, FRAME).sends == 0.0
+    pest_in_weather = PestInWeather(splash, wet, BEGINS)
+    assert pest_in_weather.night(0, FRAME).sends == pytest.approx(-np.log(0.7))
+    assert pest_in_weather.night(1, FRAME).sends == 0.0
     dry = PestInWeather(splash, daily(temperature_c=[20.0]), BEGINS)
     assert dry.night(0, FRAME).sends > 0.0
 
 
 def test_the_chance_map_is_told_the_same_rate_wind_and_warmth():
     windy = daily(temperature_c=[25.0], wind_speed_m_s=[4.0], wind_from_deg=[270.0])
-    living = PestInWeather(MITE, windy, BEGINS)
-    spread, spell = living.spread(0, FRAME), living.night(0, FRAME)
+    pest_in_weather = PestInWeather(MITE, windy, BEGINS)
+    spread, spell = pest_in_weather.spread(0, FRAME), pest_in_weather.night(0, FRAME)
     assert (spread.warmth, spread.sends, spread.wind_m_s) == spell[1:]
     assert spread.arrivals_per_day == 1e-4
     beside = Pest("beside", movement=Movement("adjacent", 0.3))
@@ -134,6 +134,6 @@ def test_a_movement_s_reach_is_its_mean_or_its_median_jump():
 
 
 def test_a_night_is_a_day_long_and_an_hour_a_twenty_fourth_of_it():
-    living = PestInWeather(MITE, None, BEGINS)
-    assert living.night(0, FRAME).days == 1.0
-    assert [hour.days for hour in living.hours(0, FRAME)] == pytest.approx([1 / 24] * 24)
+    pest_in_weather = PestInWeather(MITE, None, BEGINS)
+    assert pest_in_weather.night(0, FRAME).days == 1.0
+    assert [hour.days for hour in pest_in_weather.hours(0, FRAME)] == pytest.approx([1 / 24] * 24)

@@ -7,9 +7,9 @@ from hypothesis import given
 from fieldmon.infestation.cells import Cells
 from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.infestation.reach import (
-    BESIDE,
     BEYOND,
     RADIUS,
+    TO_ADJACENT,
     kernel_means,
     kernels,
     pest_kernels,
@@ -52,7 +52,7 @@ def test_each_kernel_hands_on_all_it_is_given_and_none_to_the_plant_itself():
     made = kernels(np.array([4.0, 3.0]))
     assert made.sum(axis=(1, 2)) == pytest.approx(1.0)
     assert (made[:, RADIUS, RADIUS] == 0.0).all()
-    assert BEYOND.sum() + BESIDE == pytest.approx(1.0)
+    assert BEYOND.sum() + TO_ADJACENT == pytest.approx(1.0)
 
 
 def test_the_four_ways_mirror_each_other_and_kernels_reach_as_far_as_they_are_named():
@@ -71,7 +71,7 @@ def test_all_that_a_pest_s_plant_sends_lands_somewhere_and_only_once():
         kernel = DistanceKernel("exponential", 6.0, long_share=share)
         reach = pest_reach_of(rectangle(6, 9), kernel)
         assert reach.anywhere == share
-        assert reach.beside + reach.beyond.sum() + reach.anywhere == pytest.approx(1.0)
+        assert reach.adjacent + reach.beyond.sum() + reach.anywhere == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_what_a_pest_brings_to_the_plants_beside_and_beyond_is_its_kernels_own(w
     first = 0.8 * np.array([0.6, 0.1, 0.1, 0.05, 0.05, 0.1])
     whole = np.einsum("k,kij->ij", first, made)
     cross = [(h - 1, h), (h + 1, h), (h, h - 1), (h, h + 1)]
-    assert reach.beside == pytest.approx(sum(whole[at] for at in cross))
+    assert reach.adjacent == pytest.approx(sum(whole[at] for at in cross))
     left = np.einsum("k,kij->ij", reach.beyond, reach.kernels)
     for at in cross:
         whole[at] = 0.0

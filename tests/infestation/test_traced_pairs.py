@@ -11,7 +11,7 @@ from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.origins import (
     ANYWHERE,
     AT_START,
-    BESIDE_IT,
+    BY_ADJACENT,
     BY_EDGE,
     JUMPED,
     N_ORIGINS,
@@ -195,7 +195,7 @@ def test_a_night_brings_each_plant_what_each_origin_sends_it(to, arrivals):
     sends = 0.2 if to == "one" else 0.2 * n_beside  # of a plant, in a night
     # half of what jumpers send goes beside; others send all of it there
     beside = jumps * 0.5 + (1.0 - jumps)
-    near = Spread(0.2 * min(1.0, beside * scale[BESIDE_IT]), to)
+    near = Spread(0.2 * min(1.0, beside * scale[BY_ADJACENT]), to)
     pairs, lean = (belief.chance, belief.pair_chance), leaning(belief.evidence)
     chance, pair_chance = night_of_pairs(pairs, FEW.linked, near, lean)
     brought = np.zeros((N_ORIGINS, 12))
@@ -211,7 +211,7 @@ def test_a_night_brings_each_plant_what_each_origin_sends_it(to, arrivals):
     assert morning.pair_chance == pytest.approx(both)
     assert morning.unseen == pytest.approx(np.minimum(belief.unseen + sends, 7.0))
     parts = belief.shares * belief.chance[:, None]
-    parts[:, BESIDE_IT] += chance - belief.chance
+    parts[:, BY_ADJACENT] += chance - belief.chance
     parts += (brought / brought.sum(axis=0) * (morning.chance - chance)).T
     assert morning.shares == pytest.approx(parts / morning.chance[:, None], abs=1e-6)
 
@@ -273,7 +273,7 @@ def test_what_a_chance_rises_by_came_from_the_plant_beside_and_what_falls_tells_
         _share.py_func(day, chance, 5)
         parts = belief.shares[5] * belief.chance[5]
         if now > 1.0:
-            parts[BESIDE_IT] += 0.5 * belief.chance[5]
+            parts[BY_ADJACENT] += 0.5 * belief.chance[5]
             assert day.shares[5] == pytest.approx(parts / chance[5], rel=1e-5)
         else:
             assert day.shares[5] == pytest.approx(belief.shares[5])
@@ -324,9 +324,9 @@ def test_without_arrivals_their_offspring_is_left_out_in_the_same_share():
     belief = mid_season()
     left = belief.without_arrivals
     brought = belief.chance @ belief.shares
-    outside = brought[[ANYWHERE, BY_EDGE]].sum() / (brought.sum() - brought[BESIDE_IT])
+    outside = brought[[ANYWHERE, BY_EDGE]].sum() / (brought.sum() - brought[BY_ADJACENT])
     inside = 1.0 - belief.shares[:, [ANYWHERE, BY_EDGE]].sum(axis=1)
-    inside -= belief.shares[:, BESIDE_IT] * outside
+    inside -= belief.shares[:, BY_ADJACENT] * outside
     assert left.chance == pytest.approx(belief.chance * inside, rel=1e-5)
     assert left.counts.scale[[ANYWHERE, BY_EDGE]] == pytest.approx(0.0, abs=1e-9)
     others = np.setdiff1d(range(N_ORIGINS), [ANYWHERE, BY_EDGE])

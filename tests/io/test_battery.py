@@ -114,7 +114,7 @@ def test_every_answer_that_is_suggested_is_taken_and_is_not_asked_for_again(case
 
 def test_a_number_of_the_record_is_never_offered_as_its_count():
     with pytest.raises(ChoiceNeeded) as asked:
-        read.read_records(awkward.more_awkward.a_number_of_the_record_is_no_count())
+        read.read_records(awkward.awkward_real_files.a_number_of_the_record_is_no_count())
     assert asked.value.choices == ("count=eggs", "present=")
 
 

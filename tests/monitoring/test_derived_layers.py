@@ -101,7 +101,9 @@ def test_a_gap_in_a_row_is_no_ground_of_a_hot_spot(season):
     middle = Point(grid.xy_m[row].mean(axis=0))
     apart = derived_layers._ground_around(np.concatenate(at).tobytes(), (0, 3), grid.row_spacing_m)
     assert not apart.covers(middle)
-    assert derived_layers._beside_the_next(grid, ends).tolist() == [True] * 2 + [False] + [True] * 2
+    assert (
+        derived_layers._adjacent_to_next(grid, ends).tolist() == [True] * 2 + [False] + [True] * 2
+    )
 
 
 def test_a_tap_writes_only_the_plants_of_which_something_else_is_known(season, monkeypatch):

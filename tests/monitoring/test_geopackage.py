@@ -18,6 +18,7 @@ from shapely import LineString, MultiPolygon, Point, box
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, geopackage, photos, scouts
+from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.geopackage import (
     GeoPackageTable,
     blob,
@@ -27,9 +28,8 @@ from fieldmon.monitoring.geopackage import (
     touch,
 )
 from fieldmon.monitoring.photos_asked import ask_no_more, ask_photo
-from fieldmon.monitoring.tellings import take
+from tests.monitoring.phone import JPEG, NOW, a_finding
 from tests.monitoring.seasons import BEGINS, on, some_results
-from tests.monitoring.telling import JPEG, NOW, a_telling
 from tests.monitoring.test_drafts import add
 
 TABLE = GeoPackageTable("spots", ("number INTEGER", "name TEXT NOT NULL"), "POINT", "Some spots.")
@@ -96,18 +96,18 @@ def test_a_table_names_its_geometry_first():
 
 
 def _look(season):
-    take(season, scouts.let_in(season, "Ann"), [a_telling(30, FOUND, lonlat=(35.15, 30.36))], NOW)
+    take(season, scouts.let_in(season, "Ann"), [a_finding(30, FOUND, lonlat=(35.15, 30.36))], NOW)
 
 
 def _take_back(season):
-    key, told = scouts.let_in(season, "Ann"), a_telling(30)
+    key, told = scouts.let_in(season, "Ann"), a_finding(30)
     take(season, key, [told], NOW)
     yield
-    take(season, key, [a_telling(None, None, undoes=told.id)], NOW)
+    take(season, key, [a_finding(None, None, undoes=told.id)], NOW)
 
 
 def _photograph(season):
-    key, told = scouts.let_in(season, "Ann"), a_telling(30)
+    key, told = scouts.let_in(season, "Ann"), a_finding(30)
     take(season, key, [told], NOW)
     yield
     photos.keep(season, key, photos.Photo("one", told.id, JPEG, NOW))

@@ -5,12 +5,12 @@ import sqlite3
 from contextlib import closing
 
 from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos import Photo, keep, photos_of, picture
 from fieldmon.monitoring.salvage import salvage
-from fieldmon.monitoring.tellings import take
+from tests.monitoring.phone import JPEG, NOW, a_finding, told, without_phones
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, state
-from tests.monitoring.telling import JPEG, NOW, a_telling, told, without_phones
 
 
 def schema_of(path):
@@ -27,13 +27,13 @@ def test_a_file_of_version_5_becomes_what_a_new_one_is(path, tmp_path):
     season = Season(old)
     assert schema_of(old) == schema_of(path)
     assert season.status(BEGINS).found == 3
-    take(season, scouts.let_in(season, "Ann"), [a_telling(3)], NOW)
+    take(season, scouts.let_in(season, "Ann"), [a_finding(3)], NOW)
     assert state(old) == 13
 
 
 def test_what_phones_brought_is_saved_from_a_damaged_file(path, tmp_path):
     season = Season(path)
-    key, one = scouts.let_in(season, "Ann"), a_telling(3)
+    key, one = scouts.let_in(season, "Ann"), a_finding(3)
     take(season, key, [one], NOW)
     keep(season, key, Photo("one", one.id, JPEG, NOW))
     assert salvage(path, tmp_path / "rescued.gpkg").whole
@@ -46,18 +46,18 @@ def test_what_phones_brought_is_saved_from_a_damaged_file(path, tmp_path):
 def test_what_phones_brought_to_two_copies_is_in_the_merged_one_once_each(path, tmp_path):
     here = Season(path)
     ann = scouts.let_in(here, "Ann")
-    both, taken_back = a_telling(30), a_telling(31)
+    both, taken_back = a_finding(30), a_finding(31)
     take(here, ann, [both, taken_back], NOW)
     there = Season(shutil.copy(path, tmp_path / "season.gpkg.copy"))
     ben = scouts.let_in(here, "Ben")
-    one = a_telling(32, 1)
+    one = a_finding(32, 1)
     take(here, ben, [one], NOW)
     keep(here, ben, Photo("one", one.id, JPEG, NOW))
     with there.store.writing() as db:  # a copy knows no key of another file
         db.execute("UPDATE scouts SET ended = '2026-04-06'")
     cem = scouts.let_in(there, "Ann")
-    other = a_telling(33, 1)
-    take(there, cem, [other, a_telling(None, None, undoes=taken_back.id)], NOW)
+    other = a_finding(33, 1)
+    take(there, cem, [other, a_finding(None, None, undoes=taken_back.id)], NOW)
     keep(there, cem, Photo("two", other.id, JPEG + b"2", NOW))
     here.merge(there)
     ids, rows = told(here)

@@ -12,10 +12,10 @@ import pytest
 from fieldmon.errors import AccessError, LimitError, ObservationError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, photos, scouts
+from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos import Photo, keep, photos_of, picture
 from fieldmon.monitoring.photos_asked import ask_photo
-from fieldmon.monitoring.tellings import take
-from tests.monitoring.telling import JPEG, NOW, a_telling
+from tests.monitoring.phone import JPEG, NOW, a_finding
 
 
 @pytest.fixture
@@ -28,12 +28,12 @@ def key(season):
     return scouts.let_in(season, "Ann")
 
 
-def a_photo(telling, name="one", data=JPEG):
-    return Photo(name, telling, data, NOW, (35.1501, 30.3601), 4.0)
+def a_photo(finding, name="one", data=JPEG):
+    return Photo(name, finding, data, NOW, (35.1501, 30.3601), 4.0)
 
 
 def test_a_photo_comes_out_byte_for_byte_and_is_kept_once(season, key):
-    one = a_telling(3, FOUND)
+    one = a_finding(3, FOUND)
     take(season, key, [one], NOW)
     assert keep(season, key, a_photo(one.id))
     assert not keep(season, key, a_photo(one.id))
@@ -45,7 +45,7 @@ def test_a_photo_comes_out_byte_for_byte_and_is_kept_once(season, key):
 
 
 def test_a_photo_may_come_before_what_it_belongs_to(season, key):
-    one = a_telling(3, FOUND)
+    one = a_finding(3, FOUND)
     keep(season, key, a_photo(one.id))
     assert photos_of(season) == ()
     take(season, key, [one], NOW)
@@ -84,7 +84,7 @@ def test_photos_have_a_limit_in_number_and_need_a_key(season, key, monkeypatch):
 
 
 def test_gdal_finds_the_photo_at_its_plant(season, key):
-    one = a_telling(3, FOUND)
+    one = a_finding(3, FOUND)
     take(season, key, [one], NOW)
     keep(season, key, a_photo(one.id))
     places = pyogrio.read_dataframe(season.path, layer="photo_places")
@@ -95,7 +95,7 @@ def test_gdal_finds_the_photo_at_its_plant(season, key):
 
 def test_photos_are_related_to_inspections_as_the_standard_asks(season, key):
     """OGC 18-000, clauses 7.2 to 7.4: relations, extensions, mapping and media tables."""
-    one = a_telling(3, FOUND)
+    one = a_finding(3, FOUND)
     take(season, key, [one], NOW)
     keep(season, key, a_photo(one.id))
     with closing(sqlite3.connect(season.path)) as db:
@@ -146,7 +146,7 @@ app.exitQgis()
 @pytest.mark.skipif(not os.path.isdir("/usr/lib/python3/dist-packages/qgis"),  # noqa: PTH112
                     reason="QGIS (Debian's python3-qgis) is not on this machine")  # fmt: skip
 def test_qgis_opens_the_season_and_shows_the_photo_at_its_plant(season, key, tmp_path):
-    one = a_telling(3, FOUND)
+    one = a_finding(3, FOUND)
     take(season, key, [one], NOW)
     keep(season, key, a_photo(one.id))
     ask_photo(season, 5, "the lower leaves", "Office")

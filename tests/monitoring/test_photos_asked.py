@@ -8,13 +8,13 @@ import pytest
 from fieldmon.errors import LimitError, ObservationError, SettingError
 from fieldmon.monitoring import Season, photos_asked, scouts
 from fieldmon.monitoring.day_ahead import Part, asked_of, planned_again, route_ahead
+from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos import Photo, keep
 from fieldmon.monitoring.photos_asked import ask_no_more, ask_photo
-from fieldmon.monitoring.tellings import take
 from fieldmon.planning.members import team_of
+from tests.monitoring.phone import JPEG, NOW, a_finding
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
-from tests.monitoring.telling import JPEG, NOW, a_telling
 
 
 def asked(season):
@@ -31,12 +31,12 @@ def test_it_is_asked_for_until_a_photo_of_the_plant_counts(season):
     ask_photo(season, 30, " webs  here? ", "Office")
     one = photos_asked.photos_asked(season)[0]
     assert (one.plant, one.note, one.who) == (30, "webs here?", "Office")
-    told = a_telling(30)
+    told = a_finding(30)
     take(season, key, [told], NOW)
     assert asked(season) == [30], "without a photo it was not taken"
     keep(season, key, Photo("one", told.id, JPEG, NOW))
     assert asked(season) == []
-    take(season, key, [a_telling(None, None, undoes=told.id)], NOW)
+    take(season, key, [a_finding(None, None, undoes=told.id)], NOW)
     assert asked(season) == [30], "what was taken back does not count"
     keeps_the_rules(season.path)
 

@@ -11,8 +11,8 @@ import pytest
 
 from fieldmon.monitoring import Season, schema
 from fieldmon.planning.members import team_of
+from tests.monitoring.phone import without_phones
 from tests.monitoring.seasons import BEGINS, state
-from tests.monitoring.telling import without_phones
 
 
 def test_every_table_is_laid_out_with_its_columns_and_told_of(db):

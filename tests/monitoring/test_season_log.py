@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Application, Season, schema, season_log
+from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.scouts import let_in
-from fieldmon.monitoring.tellings import take
+from tests.monitoring.phone import NOW, a_finding, without_records
 from tests.monitoring.seasons import BEGINS, state, three_results
-from tests.monitoring.telling import NOW, a_telling, without_records
 
 N = 7
 
@@ -163,9 +163,9 @@ def test_a_file_that_says_otherwise_than_its_log_is_found(path, change, said):
 def test_what_phones_tell_and_take_back_is_in_the_log(path):
     season = Season(path)
     key = let_in(season, "Ben")
-    one = a_telling(3, FOUND)
-    take(season, key, [one, a_telling(4, CLEAN)], NOW)
-    take(season, key, [a_telling(None, None, undoes=one.id)], NOW)
+    one = a_finding(3, FOUND)
+    take(season, key, [one, a_finding(4, CLEAN)], NOW)
+    take(season, key, [a_finding(None, None, undoes=one.id)], NOW)
     take(season, key, [one], NOW)  # once more, as networks do
     told = [entry for entry in season.log() if entry.who == "Ben"]
     assert [entry.kind for entry in told] == ["seen", "undone"]

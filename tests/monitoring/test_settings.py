@@ -119,9 +119,9 @@ def test_a_pest_in_its_weather_is_laid_out_once_for_a_season():
     weather = weather_of(at, DAY_S, temperature_c=np.array([20.0, 21.0]))
     chosen = MonitoringSettings(date(2026, 11, 18), pest=shipped_pest("thesis"), weather=weather)
     again = from_json(as_json(chosen))
-    assert again.living() is from_json(as_json(chosen)).living()
+    assert again.pest_in_weather() is from_json(as_json(chosen)).pest_in_weather()
     assert again.pest == chosen.pest
-    assert MonitoringSettings(date(2026, 11, 18)).living() is None
+    assert MonitoringSettings(date(2026, 11, 18)).pest_in_weather() is None
 
 
 def test_more_weather_than_a_season_can_carry_is_refused():

@@ -95,8 +95,8 @@ def test_measured_plants_come_back_with_the_names_of_their_rows_and_blocks(db):
 def check_comes_back(db, plot):
     tables.write_plot(db, plot)
     again = tables.read_plot(db)
-    assert [block.told for block in again.field.blocks] == [
-        block.told for block in plot.field.blocks
+    assert [block.content for block in again.field.blocks] == [
+        block.content for block in plot.field.blocks
     ]
     for name in (each.name for each in fields(plot.grid)):
         value, other = getattr(plot.grid, name), getattr(again.grid, name)

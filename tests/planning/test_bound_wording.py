@@ -6,30 +6,33 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.planning.bound_wording import share_above, told
+from fieldmon.planning.bound_wording import bound_sentence, share_above
 
 
 def test_it_says_what_is_expected_what_is_the_most_and_the_share():
-    said = told(42.31, 42.97)
+    said = bound_sentence(42.31, 42.97)
     assert said == "42.3 finds expected; no route of these hours can expect more than 43.0 (1.6 %)."
 
 
 def test_where_the_bound_is_met_nothing_more_is_said():
-    assert told(20.0, 20.0) == "20.0 finds expected; no route of these hours can expect more."
+    assert (
+        bound_sentence(20.0, 20.0)
+        == "20.0 finds expected; no route of these hours can expect more."
+    )
 
 
 def test_few_finds_have_two_digits():
-    assert told(0.0123, 0.0131).startswith("0.012 finds expected; ")
+    assert bound_sentence(0.0123, 0.0131).startswith("0.012 finds expected; ")
 
 
 def test_of_nothing_no_share_is_said():
     assert share_above(0.0, 0.5) == math.inf
-    assert told(0.0, 0.5).endswith("more than 0.50.")
+    assert bound_sentence(0.0, 0.5).endswith("more than 0.50.")
 
 
 @given(st.floats(1e-4, 1e5), st.floats(1e-5, 1.0))
 def test_the_bound_and_the_share_are_rounded_up(held, gap):
     bound = held * (1.0 + gap)
-    numbers = re.search(r"more than ([\d.]+) \(([\d.]+) %\)", told(held, bound))
+    numbers = re.search(r"more than ([\d.]+) \(([\d.]+) %\)", bound_sentence(held, bound))
     assert float(numbers[1]) >= bound * (1 - 1e-8)
     assert float(numbers[2]) >= 100 * gap * (1 - 1e-6)

@@ -18,8 +18,8 @@ from fieldmon.planning.team import (
     _kept_apart,
     _met_s,
     _of,
-    _Search,
     _shortened,
+    _StopSearch,
     _Task,
     bound_of_days,
     plan_team,
@@ -241,7 +241,7 @@ def test_of_two_who_meet_the_later_in_the_team_waits_until_the_first_has_left():
 def test_routes_are_looked_for_where_the_others_are_not_and_never_get_worse():
     plot, told = plot_of(8, 8), []
     tasks = two_tasks(plot, 0.15)
-    search = _Search(plot, tasks, lambda done, of: told.append((done, of)))
+    search = _StopSearch(plot, tasks, lambda done, of: told.append((done, of)))
     in_turn = search.in_turn()
     exclusive = search.aisle_by_aisle(in_turn)
     shared = search.plant_by_plant(exclusive)
@@ -267,7 +267,7 @@ def test_routes_are_looked_for_where_the_others_are_not_and_never_get_worse():
 def test_where_two_would_meet_the_poorer_looks_elsewhere_and_the_other_stays():
     plot = plot_of(6, 10)
     tasks = two_tasks(plot, 0.3)
-    search = _Search(plot, tasks, lambda *_: None)
+    search = _StopSearch(plot, tasks, lambda *_: None)
     value = tasks[0].value
     by_row = np.argsort([value[plot.grid.row == row].sum() for row in range(6)])
     here = np.flatnonzero(plot.grid.row == by_row[-1])

@@ -11,7 +11,8 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.planning.members import Teamwork
 from fieldmon.planning.route import route_of
-from fieldmon.planning.team_day import Posted, _Day, _Done, merged, team_day
+from fieldmon.planning.team_day import merged, team_day
+from fieldmon.planning.team_worker import Posted
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
@@ -216,19 +217,6 @@ def test_in_narrow_headlands_nobody_meets_head_on():
 def test_whoever_decides_nobody_meets_head_on(name, returns):
     day = Day(n=4, robot=Robot(hours=0.7, detection=1.0, returns=returns), infested=0.1)
     day.check(day.work(Teamwork(passing_m=30.0), name), 30.0)
-
-
-def test_of_a_visit_to_an_aisle_only_the_stop_under_way_is_spent_already():
-    """Those yet to be made there may be left out: seconds are shared out without them."""
-    day = Day()
-    posts = [Posted(day.scene(), start_s, day.would_find) for start_s in (0.0, 400.0)]
-    team = _Day(posts, sampler("adaptive"), AT_ONCE, day.learn, None)
-    stops = [(5, 60.0, 100.0), (6, 110.0, 150.0), (7, 160.0, 200.0)]
-    team.workers[0].done = [_Done(*stop, False, 1.0, 0.0) for stop in stops]
-    for now_s, free_s in ((0.0, 100.0), (99.0, 100.0), (105.0, 150.0), (199.0, 200.0)):
-        # the other one has not begun yet: its whole day is left
-        assert team._left_s(now_s).tolist() == [3600.0 - free_s, 3600.0]
-    assert team._left_s(500.0).tolist() == [3100.0, 3500.0]
 
 
 def test_days_of_a_team_are_one_in_order_of_the_clock():

@@ -69,7 +69,7 @@ def test_what_cannot_be_reached_is_told(plot, chance):
 
 def test_pairs_beside_a_wanted_plant_are_as_likely_as_the_other_plant(usual):
     scene = usual.scene
-    told = Wishes((100,)).told(scene)
+    told = Wishes((100,)).applied_to(scene)
     start, second = scene.grid.adjacent
     own = slice(start[100], start[101])
     assert told.pair_chance[own] == pytest.approx(scene.chance[second[own]])

@@ -16,7 +16,7 @@ def test_a_block_without_area_is_refused():
 
 
 def test_all_that_is_said_of_a_block_is_told():
-    told = Block("north", AREA).told
+    told = Block("north", AREA).content
     others = [Block("south", AREA), Block("north", AREA, 20.0), Block("north", AREA, None, 3.0)]
-    assert all(other.told != told for other in others)
-    assert Block("north", AREA, None, None, 1.5).told != told
+    assert all(other.content != told for other in others)
+    assert Block("north", AREA, None, None, 1.5).content != told

@@ -113,7 +113,7 @@ def test_a_ragged_outline_is_looked_at_in_time_and_not_parted():
 
 def test_what_is_said_of_blocks_is_told_to_digests():
     field = plot(BOX)
-    told = field.told
+    told = field.content
     parted = replace(field, blocks=cut_blocks(field, line((40, -5), (40, 65))))
-    assert parted.told[: len(told)] == told
-    assert len(parted.told) == len(told) + 10
+    assert parted.content[: len(told)] == told
+    assert len(parted.content) == len(told) + 10

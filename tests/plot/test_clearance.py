@@ -40,14 +40,14 @@ def test_without_a_width_nothing_changes():
     aisles = Aisles.of(rectangle(4, 6))
     assert aisles.for_robot(Robot()) is aisles
     assert not aisles.shut.any()
-    assert aisles.told_shut() == ""
+    assert aisles.shut_sentence() == ""
 
 
 def test_of_a_robot_with_room_everywhere_nothing_is_said():
     aisles = Aisles.of(rectangle(4, 6, Planting(row_spacing_m=4.0))).for_robot(Robot(width_m=0.5))
     assert aisles.clearance is not None
     assert not aisles.shut.any()
-    assert aisles.told_shut() == ""
+    assert aisles.shut_sentence() == ""
 
 
 def test_half_the_width_the_canopy_and_a_little_are_kept_off_plants():
@@ -104,8 +104,8 @@ def test_nobody_is_sent_into_an_aisle_that_is_too_narrow(name):
     stops = sampler(name).walk(scene, np.zeros(len(grid), np.bool_))
     assert len(stops.plant) > 10
     assert 3 not in grid.row[stops.plant]
-    assert "1 row of 8 cannot be inspected" in scene.aisles.told_shut()
-    assert "12 plants are not visited" in scene.aisles.told_shut()
+    assert "1 row of 8 cannot be inspected" in scene.aisles.shut_sentence()
+    assert "12 plants are not visited" in scene.aisles.shut_sentence()
 
 
 def test_a_canopy_that_was_said_opens_or_shuts_aisles():

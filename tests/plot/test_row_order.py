@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.plot.row_order import StrandRows, in_line, strands_beside
+from fieldmon.plot.row_order import StrandRows, in_line, neighbouring_strands
 from fieldmon.plot.strands import ordered
 from tests.bent import turned
 
@@ -21,7 +21,7 @@ def strands_of(*lines_m):
 
 
 def rows_of(strands):
-    return StrandRows.of(strands, strands_beside(strands, 1.0))
+    return StrandRows.of(strands, neighbouring_strands(strands, 1.0))
 
 
 def test_rows_rise_to_the_left_of_their_direction_whichever_way_they_were_drawn():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.plot.strands import Strands, beside_their_rows, lines_of, ordered
+from fieldmon.plot.strands import Strands, lines_of, ordered, row_deviations
 from tests.plot.test_row_tracing import arcs
 
 
@@ -11,9 +11,9 @@ def test_how_far_plants_stand_beside_a_bent_row_is_what_they_were_moved_by():
     rng = np.random.default_rng(4)
     xy_m, row = arcs(6, 60, (2.5, 1.4), 80.0)
     moved = xy_m + rng.normal(0, 0.2, xy_m.shape)
-    left_m, alone_m, free = beside_their_rows(moved, row)
+    left_m, alone_m, free = row_deviations(moved, row)
     assert np.sqrt((left_m**2).sum() / free) == pytest.approx(0.2, rel=0.1)
-    assert np.abs(beside_their_rows(xy_m, row).left_m).max() < 0.01
+    assert np.abs(row_deviations(xy_m, row).left_m).max() < 0.01
     # to the line of the others, which is itself not sure, it is a little more
     assert np.sqrt((alone_m**2).mean()) == pytest.approx(0.23, rel=0.12)
 

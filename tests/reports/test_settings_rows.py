@@ -100,11 +100,11 @@ def test_a_named_pest_and_its_weather_stand_in_the_place_of_the_usual_nights():
     at = np.datetime64("2026-11-01", "s") + 86_400 * np.arange(9)
     weather = weather_of(at, DAY_S, temperature_c=np.full(9, 20.0))
     mite = shipped_pest("spider-mite")
-    with_weather = rows(replace(TOLD, living=PestInWeather(mite, weather)))
+    with_weather = rows(replace(TOLD, pest_in_weather=PestInWeather(mite, weather)))
     assert "Two-spotted spider mite, by degree-days" in str(
         with_weather["Pest, by which nights go"]
     )
     assert with_weather["Its weather"][0] == "2026-11-01 to 2026-11-09"
     assert "Spread to a neighbour, a night" not in with_weather
-    without = rows(replace(TOLD, living=PestInWeather(mite)))
+    without = rows(replace(TOLD, pest_in_weather=PestInWeather(mite)))
     assert without["Its weather"][0] == "none: as its figures hold"

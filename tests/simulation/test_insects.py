@@ -18,7 +18,7 @@ from fieldmon.samplers import sampler
 from fieldmon.samplers.base import InspectionTimes, Stops
 from fieldmon.simulation.insects import NightInsects, PestInsects
 from fieldmon.simulation.season import (
-    SeasonOnItsWay,
+    RunningSeason,
     SeasonSettings,
     morning_beliefs,
     simulated_days,
@@ -130,7 +130,7 @@ def test_the_day_is_worked_anew_where_one_of_a_team_would_find_what_is_new():
     pest = Pest("fast", movement=Movement("adjacent", 1.0, hours=(8.0, 10.0), by_hour=True))
     settings = SeasonSettings(n_days=1, pest=PestInWeather(pest))
     start = Start(at(40), np.full(N, 0.01))
-    on_its_way = SeasonOnItsWay(AISLES, Robot(), sampler("naive"), start, settings)
+    on_its_way = RunningSeason(AISLES, Robot(), sampler("naive"), start, settings)
     one, walked = np.ones(1), []
 
     def walk(would_find):
@@ -150,7 +150,7 @@ def test_the_day_is_worked_anew_where_one_of_a_team_would_find_what_is_new():
 def test_an_hour_has_passed_once_somebody_worked_for_it_whole(end_s, passed):
     start = Start(at(40), np.full(N, 0.01))
     settings = SeasonSettings(n_days=1, pest=PestInWeather(BY_HOUR))
-    on_its_way = SeasonOnItsWay(AISLES, Robot(), sampler("naive"), start, settings)
+    on_its_way = RunningSeason(AISLES, Robot(), sampler("naive"), start, settings)
     hours, pass_hour = [], on_its_way.insects.pass_hour
     on_its_way.insects.pass_hour = lambda *of: hours.append(of[0].tolist()) or pass_hour(*of)
     one = np.ones(1)
@@ -174,9 +174,9 @@ def test_the_map_believes_of_the_pest_that_there_is_unless_told_of_another():
         kept = morning_beliefs(GRID, Robot(), start, SeasonSettings(**told), chooses_time=False)
         return kept.on(0).cohorts is not None
 
-    living = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
-    assert ages_of(pest=living)
-    assert ages_of(believed_pest=living)
+    pest_in_weather = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
+    assert ages_of(pest=pest_in_weather)
+    assert ages_of(believed_pest=pest_in_weather)
     assert not ages_of()
 
 
@@ -190,8 +190,8 @@ def test_without_hidden_nights_what_is_new_shows_the_next_morning():
 
 
 def test_a_map_that_is_told_no_rate_goes_by_the_pest_s_nights():
-    living = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
-    settings = SeasonSettings(pest=living)
-    assert settings.believed_night(GRID)(3) == living.spread(3, GRID.frame)
-    told = SeasonSettings(pest=living, believed_spread=Spread(0.3))
+    pest_in_weather = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
+    settings = SeasonSettings(pest=pest_in_weather)
+    assert settings.believed_night(GRID)(3) == pest_in_weather.spread(3, GRID.frame)
+    told = SeasonSettings(pest=pest_in_weather, believed_spread=Spread(0.3))
     assert told.believed_night(GRID)(3) == Spread(0.3)

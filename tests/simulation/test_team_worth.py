@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.simulation.team_worth import _round, marginal_gains, told
+from fieldmon.simulation.team_worth import _round, marginal_gains, worth_sentence
 
 
 def losses(**changes):
@@ -24,7 +24,7 @@ def test_gains_are_taken_seed_by_seed():
 
 
 def test_each_further_robot_is_told_with_its_interval():
-    said = told(marginal_gains(losses()))
+    said = worth_sentence(marginal_gains(losses()))
     assert said.startswith("A second robot would save 60 (5")
     assert said.endswith(").")
     assert "; a third 4." in said
@@ -33,7 +33,7 @@ def test_each_further_robot_is_told_with_its_interval():
 
 def test_numbers_that_do_not_follow_each_other_are_compared_as_they_are():
     made = losses()
-    assert told(marginal_gains({1: made[1], 3: made[3]})).startswith(
+    assert worth_sentence(marginal_gains({1: made[1], 3: made[3]})).startswith(
         "3 robots instead of 1 would save 6"
     )
 
@@ -42,17 +42,19 @@ def test_what_saves_nothing_is_not_known_to_save():
     made = losses()
     (gain,) = marginal_gains({1: made[1], 2: made[1].copy()})
     assert not gain.known
-    assert told([gain]) == "A second robot would save 0.0 (0.0 to 0.0) infested plant-days."
+    assert (
+        worth_sentence([gain]) == "A second robot would save 0.0 (0.0 to 0.0) infested plant-days."
+    )
 
 
 def test_of_one_season_there_is_no_interval_and_of_one_team_nothing_to_say():
     (gain,) = marginal_gains({1: np.array([10.0]), 2: np.array([4.0])})
-    assert told([gain]) == "A second robot would save 6.0 infested plant-days."
-    assert told(marginal_gains({1: np.array([10.0])})) == ""
+    assert worth_sentence([gain]) == "A second robot would save 6.0 infested plant-days."
+    assert worth_sentence(marginal_gains({1: np.array([10.0])})) == ""
 
 
 def test_the_second_to_the_eighth_have_words_of_their_own_and_the_ninth_is_counted():
-    said = told(marginal_gains({k: np.array([100.0 - k]) for k in range(1, 10)}))
+    said = worth_sentence(marginal_gains({k: np.array([100.0 - k]) for k in range(1, 10)}))
     words = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
     assert [said.count(word) for word in words] == [1] * 7
     assert "9 robots instead of 8" in said

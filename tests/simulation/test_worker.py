@@ -102,8 +102,8 @@ def test_a_plot_with_a_pest_meets_that_pest_and_is_another_to_the_study():
     def at(temperature_c):
         warm = np.full(len(days), float(temperature_c))
         weather = weather_of(days.astype("datetime64[s]"), DAY_S, temperature_c=warm)
-        living = PestInWeather(shipped_pest("spider-mite"), weather, DAY.astype(object))
-        return replace(plot(), living=living)
+        pest_in_weather = PestInWeather(shipped_pest("spider-mite"), weather, DAY.astype(object))
+        return replace(plot(), pest_in_weather=pest_in_weather)
 
     cold, hot = at(13), at(30)
     assert len({plot().digest, cold.digest, hot.digest}) == 3

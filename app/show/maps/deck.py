@@ -44,7 +44,7 @@ def published(layer: Layer) -> dict[str, str]:
     text = _WRITTEN.get(layer)
     if text is None:
         text = _WRITTEN[layer] = _json(layer).encode()
-    parts = getattr(layer, "arrays", {})
+    parts = layer.arrays if isinstance(layer, ArraysLayer) else {}
     return {
         "id": layer.id,
         "url": STORE.publish(text, JSON),

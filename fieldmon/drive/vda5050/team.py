@@ -48,7 +48,10 @@ def drive_team(
     def one(member: TeamMember) -> DrivenDay:
         own, noted = day.member(member.name), (recordings or {}).get(member.name)
         robot = RobotName(names.manufacturer, member.name, names.version)
-        tell = lambda told: say(f"{member.name}: {told}")  # noqa: E731
+
+        def tell(told: str) -> None:
+            say(f"{member.name}: {told}")
+
         watch = None if noted is None else noted.note
         try:
             with live_robot(broker, robot, str(day.on), tell, day.keeper) as live:

@@ -18,13 +18,15 @@ from fieldmon.io.formats.tables import read_sheet, read_text_table
 from fieldmon.io.formats.workbooks import sheet_names
 from fieldmon.io.import_report import seen
 from fieldmon.io.options import ReadOptions, Source, source_name
-from fieldmon.io.sandbox.unpack import Member, Workroom, choose_member, members
+from fieldmon.io.sandbox.unpack import choose_member, members
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
     from fieldmon.io.formats.gdal import GdalLayer
+    from fieldmon.io.sandbox.file_entries import Member
+    from fieldmon.io.sandbox.workroom import Workroom
 
 _MAPINFO = frozenset({FileKind.MAPINFO_TAB, FileKind.MAPINFO_MIF})
 _NOTES = (".txt", ".md", ".html", ".xml", ".json.txt")
@@ -77,13 +79,13 @@ def _listed(staged: StagedMember) -> list[LayerInfo]:
     if kind in WORKBOOKS:
         names = sheet_names(staged.path, staged.name)
         return [LayerInfo(staged.name, sheet, None) for sheet in names]
-    if kind in {FileKind.GEOJSON, FileKind.PARQUET, FileKind.ISOXML}:
-        return [LayerInfo(staged.name, staged.member.stem, "Unknown")]
-    if kind is FileKind.TABLE:
-        return [LayerInfo(staged.name, staged.member.stem, None)]
-    listed = _gdal_layers(staged)
     if kind in {FileKind.SHAPEFILE, *_MAPINFO}:
-        return [LayerInfo(staged.name, staged.member.stem, listed[0].geometry_type)]
+        shapes = _gdal_layers(staged)[0].geometry_type
+        return [LayerInfo(staged.name, staged.member.stem, shapes)]
+    if kind in _READERS:
+        shapes = None if kind is FileKind.TABLE else "Unknown"
+        return [LayerInfo(staged.name, staged.member.stem, shapes)]
+    listed = _gdal_layers(staged)
     return [LayerInfo(staged.name, one.name, one.geometry_type) for one in listed]
 
 

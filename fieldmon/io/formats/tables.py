@@ -51,10 +51,10 @@ def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
             worded("{name} must be a text table, but it cannot be read: {bad}.", name=name, bad=bad)
         ) from bad
     layer = _table(rows, name, options.header)
-    return with_shapes(replace(layer, messages=(*messages, *layer.messages)), _system_beside(path))
+    return with_shapes(replace(layer, messages=(*messages, *layer.messages)), _system_of_prj(path))
 
 
-def _system_beside(path: Path) -> str | None:
+def _system_of_prj(path: Path) -> str | None:
     """Return the coordinate system in the .prj that some programs write beside a table."""
     beside = path.with_suffix(".prj")
     return beside.read_bytes()[:10_000].decode("utf-8", "ignore") if beside.exists() else None

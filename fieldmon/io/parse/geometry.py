@@ -47,19 +47,19 @@ def area_m2(geometry: shapely.Geometry) -> float:
     return float(_measured(geometry).area_m2.sum())
 
 
-class _Measured(NamedTuple):
+class _PolygonSizes(NamedTuple):
     """Area without holes, and length of the outlines, of each polygon ``(n,)``."""
 
     area_m2: Floats
     perimeter_m: Floats
 
 
-def _measured(geometry: shapely.Geometry) -> _Measured:
+def _measured(geometry: shapely.Geometry) -> _PolygonSizes:
     """Return the measures of a lon/lat geometry's polygons."""
     return _measured_parts(shapely.get_parts(_polygons(geometry)))
 
 
-def _measured_parts(polygons: NDArray[np.object_]) -> _Measured:
+def _measured_parts(polygons: NDArray[np.object_]) -> _PolygonSizes:
     """Return the measures of lon/lat polygons ``(n,)``.
 
     The area between a parallel and the equator has a closed form on the ellipsoid (Snyder 1987,
@@ -87,7 +87,7 @@ def _measured_parts(polygons: NDArray[np.object_]) -> _Measured:
     length = np.bincount(ring[1:], np.hypot(x, y), len(rings))
     n = len(polygons)
     of_polygon = (np.bincount(polygon, values, n).astype(np.float64) for values in (area, length))
-    return _Measured(*of_polygon)
+    return _PolygonSizes(*of_polygon)
 
 
 class GeometryKinds(NamedTuple):
@@ -186,7 +186,7 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Impo
 
 
 def _repaired(
-    drawn: MultiPolygon, whole: MultiPolygon, now: _Measured, name: str, why: str
+    drawn: MultiPolygon, whole: MultiPolygon, now: _PolygonSizes, name: str, why: str
 ) -> ImportMessage:
     """Return what to say of an area made valid: parts that overlap are one, holes stay holes."""
     parts = "" if len(whole.geoms) == len(drawn.geoms) else f" in {len(whole.geoms)} part(s)"
@@ -206,7 +206,7 @@ def _polygons(geometry: shapely.Geometry) -> MultiPolygon:
     return MultiPolygon(list(kept))
 
 
-def _is_wide(measured: _Measured) -> NDArray[np.bool_]:
+def _is_wide(measured: _PolygonSizes) -> NDArray[np.bool_]:
     """Return which parts ``(n,)`` have room for a plant."""
     width_m = 2 * measured.area_m2 / np.maximum(measured.perimeter_m, 1e-9)
     return (measured.area_m2 >= _SLIVER_M2) & (width_m >= _SLIVER_WIDTH_M)

@@ -31,7 +31,8 @@ from fieldmon.io.parse.crs import (
 )
 from fieldmon.io.rasters.values import Affine, map_xy, pixel_xy, projected
 from fieldmon.io.sandbox import limits
-from fieldmon.io.sandbox.unpack import Workroom, choose_member, members
+from fieldmon.io.sandbox.unpack import choose_member, members
+from fieldmon.io.sandbox.workroom import Workroom
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -2,16 +2,10 @@
 
 Decisions
 ---------
-- A plant is known by its number in the grid, as every file given out has it (column ``plant``);
-  else by row and number in it, as people count; else by position. Where a file has a row but no
-  number in it, ``plant`` is read as that number.
 - What was not filled in stays unknown: blank records are no inspections. "Could not inspect" is
   one, and is kept with its note.
-- Where a plot has several blocks and a file names them, rows may be counted from 1 in each. How
-  they were counted is said.
-- A position is snapped to the nearest plant. It is doubtful where, within its accuracy, another
-  plant could be the nearest, or where it lies further than half the spacing from the nearest,
-  along the row or across. Doubtful records are listed and left out unless one asks for them.
+- Which plant is meant `inspection_places` says. Doubtful records are listed and left out unless
+  one asks for them.
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
 - Of two inspections of one file that are the same but for their notes, one is taken. What a season
@@ -21,10 +15,9 @@ Decisions
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
@@ -40,7 +33,13 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.read import read_inspection_rows
 from fieldmon.io.readers.inspection_options import InspectionOptions
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.io.readers.inspection_places import (
+    by_label,
+    by_number,
+    by_position,
+    from_zero,
+    misplaced,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,9 +52,6 @@ if TYPE_CHECKING:
 
 _RESULTS = {PRESENT: FOUND, ABSENT: CLEAN, UNKNOWN: SKIPPED}
 _LISTED = 20  # doubtful records that are named one by one
-_NEIGHBOURS = 13  # plants among which the nearest and its rivals are: two rings, or both faces
-_FARTHEST_DEG = 1.0
-_TOUCH_M = 1e-3
 _TAKE = Remedy("take_doubtful", "yes", worded("Take it all the same"))
 
 
@@ -102,18 +98,18 @@ def look_up(
     rows: InspectionRows, grid: PlantGrid, options: InspectionOptions
 ) -> tuple[Inspections, tuple[ImportMessage, ...]]:
     """Return what a file says with its plants, and what was left out or guessed on the way."""
-    named = _by_number(rows, grid)
+    named = by_number(rows, grid)
     plant, problems, doubts = named.plant, named.problems, named.doubts
-    labelled = _by_label(rows, grid, plant < 0)
+    labelled = by_label(rows, grid, plant < 0)
     plant = np.where(labelled.plant >= 0, labelled.plant, plant)
     problems |= labelled.problems
-    doubts = _misplaced(rows, grid, plant) | doubts
+    doubts = misplaced(rows, grid, plant) | doubts
     open_yet = (plant < 0) & np.isfinite(rows.lonlat).all(axis=1)
     open_yet &= ~np.isin(np.arange(len(rows)), list(problems))
-    snapped = _by_position(rows, grid, np.flatnonzero(open_yet), options)
+    snapped = by_position(rows, grid, np.flatnonzero(open_yet), options)
     plant = np.where(snapped.plant >= 0, snapped.plant, plant)
     problems |= snapped.problems
-    doubts = doubts | _from_zero(rows, labelled.plant) | snapped.doubts | _own_doubts(rows)
+    doubts = doubts | from_zero(rows, labelled.plant) | snapped.doubts | _own_doubts(rows)
     for i in np.flatnonzero(plant < 0).tolist():
         problems.setdefault(i, _nowhere(below_one=rows.line[i] < 0))
     taken = plant >= 0
@@ -143,271 +139,11 @@ def look_up(
     return once, tuple(said)
 
 
-class _Placed(NamedTuple):
-    """Plants ``(m,)``, -1 for none; why records cannot be placed, or are doubtful, by index.
-
-    And what else there is to say.
-    """
-
-    plant: NDArray[np.int64]
-    problems: dict[int, str]
-    doubts: dict[int, str]
-    said: tuple[ImportMessage, ...] = ()
-
-
-def _by_number(rows: InspectionRows, grid: PlantGrid) -> _Placed:
-    """Place records that name the plant's number, and hold it against whatever else they say."""
-    stated = rows.plant
-    plant = np.where((stated >= 0) & (stated < len(grid)), stated, -1)
-    problems: dict[int, str] = {
-        i: worded(
-            "plant {plant} is none of 0 to {last} on this plot",
-            plant=stated[i],
-            last=len(grid) - 1,
-        )
-        for i in np.flatnonzero((stated >= len(grid)) | (stated < -1)).tolist()
-    }
-    doubts: dict[int, str] = {}
-    here = np.flatnonzero(plant >= 0)
-    label = row_label(grid, plant[here])
-    line, number = rows.line[here], rows.number[here]
-    other = (line > 0) & ((label.line != line) | (label.number != number))
-    for k in np.flatnonzero(other).tolist():
-        doubts[int(here[k])] = worded(
-            "plant {plant} is {label} on this plot, but the record says row {row}, number {number}",
-            plant=plant[here[k]],
-            label=_label(grid, plant[here[k]]),
-            row=line[k],
-            number=number[k],
-        )
-    return _Placed(plant, problems, doubts)
-
-
-def _misplaced(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) -> dict[int, str]:
-    """Return which records name a plant ``(m,)`` that stands elsewhere than their position."""
-    here = np.flatnonzero(plant >= 0)
-    far_m = _away_m(rows, grid, here, plant[here])
-    spacing_m = max(grid.row_spacing_m, grid.plant_spacing_m)
-    reach_m = spacing_m + 3 * np.nan_to_num(rows.accuracy_m[here])
-    return {
-        int(here[k]): worded(
-            "{plant} is {far_m:.1f} m from the record's position: is it a file for another plot?",
-            plant=_label(grid, plant[here[k]]),
-            far_m=far_m[k],
-        )
-        for k in np.flatnonzero(far_m > reach_m).tolist()
-    }
-
-
-def _away_m(
-    rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp], plant: NDArray[np.int64]
-) -> NDArray[np.float64]:
-    """Return how far records lie from plants, NaN without a position, infinity beyond a degree."""
-    lonlat = rows.lonlat[records]
-    near = _is_near(lonlat, grid)
-    away_m = np.where(np.isfinite(lonlat).all(axis=1), np.inf, np.nan)
-    if near.any():
-        step = grid.frame.xy_m(lonlat[near]) - grid.xy_m[plant[near]]
-        away_m[near] = np.hypot(step[:, 0], step[:, 1])
-    return away_m
-
-
-def _is_near(lonlat: NDArray[np.float64], grid: PlantGrid) -> NDArray[np.bool_]:
-    with np.errstate(invalid="ignore"):
-        off = np.abs(lonlat - (grid.frame.lon, grid.frame.lat))
-        return np.asarray((off < _FARTHEST_DEG).all(axis=1), dtype=bool)
-
-
-def _by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> _Placed:
-    """Place records that name a row and a number in it."""
-    plant = np.full(len(rows), -1, np.int64)
-    records = np.flatnonzero(wanted & (rows.line > 0) & (rows.number > 0))
-    if not len(records):
-        return _Placed(plant, {}, {})
-    first, said = _labelled(rows, grid, records)
-    is_there = first >= 0
-    second = (rows.face[records] == 2) & (grid.twin[first] >= 0)
-    plant[records] = np.where(is_there, np.where(second, grid.twin[first], first), -1)
-    problems: dict[int, str] = {
-        i: worded(
-            "there is no plant {number} in row {row}{of_block}",
-            number=rows.number[i],
-            row=rows.line[i],
-            of_block=_of_block(rows, grid, i),
-        )
-        for i in records[~is_there].tolist()
-    }
-    return _Placed(plant, problems, {}, said)
-
-
-def _from_zero(rows: InspectionRows, plant: NDArray[np.int64]) -> dict[int, str]:
-    """Return a doubt for each plant ``(m,)`` named by its row where others of the file say row 0.
-
-    Who counts from 0 means the next plant or row each time, and only the first of them shows it.
-    """
-    if not (rows.line < 0).any():
-        return {}
-    why: str = worded(
-        "others in the file say row 0 or plant 0: rows and plants are counted from 1 here. Add 1 "
-        "where they were counted from 0"
-    )
-    return dict.fromkeys(np.flatnonzero(plant >= 0).tolist(), why)
-
-
 def _nowhere(*, below_one: bool) -> str:
     """Return why a record has no plant."""
     if below_one:
         return worded("rows and plants are counted from 1, but it says 0 or less")
     return worded("it names no plant and has no position")
-
-
-def _of_block(rows: InspectionRows, grid: PlantGrid, record: int) -> str:
-    if grid.n_blocks == 1 or not rows.block[record]:
-        return worded(" on this plot")
-    return worded(
-        " of block {block} (blocks are 1 to {last} on this plot)",
-        block=rows.block[record],
-        last=grid.n_blocks,
-    )
-
-
-def _labelled(
-    rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp]
-) -> tuple[NDArray[np.int64], tuple[ImportMessage, ...]]:
-    """Return the first face of the plant that each record names by row and number; -1 for none.
-
-    Where it names the block too, rows of all records are counted on from block to block, as files
-    given out have them, or from 1 in each if more of them are found so.
-    """
-    label = row_label(grid)
-    known, line = _key(label.line, label.number), rows.line[records]
-    first = _found(known, _key(line, rows.number[records]))
-    named = np.flatnonzero((rows.block[records] != "") & (grid.n_blocks > 1))
-    said = _about_blocks(grid, len(records) - len(named), int(label.line.max()))
-    if not len(named):
-        return first, said
-    # the first and the last row of each block, as counted on
-    of_plant = block_label(grid) - 1
-    low = np.full(grid.n_blocks, np.iinfo(np.int64).max)
-    high = np.zeros(grid.n_blocks, np.int64)
-    np.minimum.at(low, of_plant, label.line)
-    np.maximum.at(high, of_plant, label.line)
-    numbers = {str(k + 1): k for k in range(grid.n_blocks)}
-    block = np.array([numbers.get(name, -1) for name in rows.block[records[named]]])
-    low, high, line = low[block], high[block], line[named]
-    on = (block >= 0) & (low <= line) & (line <= high)
-    within = (block >= 0) & (line <= high - low + 1)
-    first[named] = np.where(on, first[named], -1)
-    also = _found(known, _key(low + line - 1, rows.number[records[named]]))
-    also = np.where(within, also, -1)
-    if np.count_nonzero(also >= 0) > np.count_nonzero(first[named] >= 0):
-        first[named] = also
-        said = (*said, guessed(worded("Rows were taken as counted from 1 in each block.")))
-    return first, said
-
-
-def _about_blocks(grid: PlantGrid, unnamed: int, last: int) -> tuple[ImportMessage, ...]:
-    """Return what to say of records that name a row, but not which block's."""
-    if grid.n_blocks == 1 or not unnamed:
-        return ()
-    said = worded(
-        "{n} record(s) name no block: their rows were taken as counted on from block to block, 1 "
-        "to {last}. Where each block counts its rows from 1, give a column of blocks.",
-        n=unnamed,
-        last=last,
-    )
-    return (guessed(said),)
-
-
-def _found(known: NDArray[np.int64], wished: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the first place at which each wished key is known; -1 for none."""
-    keys, first = np.unique(known, return_index=True)
-    at = np.minimum(np.searchsorted(keys, wished), len(keys) - 1)
-    return np.where(keys[at] == wished, first[at], -1)
-
-
-def _key(line: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return one number for a row and a number in it; both have 31 bits at most."""
-    key: NDArray[np.int64] = (line << 31) | number
-    return key
-
-
-def _by_position(
-    rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp], options: InspectionOptions
-) -> _Placed:
-    """Snap records to the nearest plant, and tell where that is doubtful.
-
-    Another plant could be the nearest if the line halfway between the two is closer to the
-    position than its accuracy.
-    """
-    plant = np.full(len(rows), -1, np.int64)
-    near = _is_near(rows.lonlat[records], grid)
-    far: str = worded("it lies far from the plot")
-    problems: dict[int, str] = dict.fromkeys(records[~near].tolist(), far)
-    records = records[near]
-    if not len(records):
-        return _Placed(plant, problems, {})
-    xy_m = grid.frame.xy_m(rows.lonlat[records])
-    first, rival, margin_m = _nearest(grid, xy_m)
-    plant[records] = first
-    step = np.abs(_along_and_across(grid, first, xy_m - grid.xy_m[first]))
-    half = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 + _TOUCH_M
-    stated = rows.accuracy_m[records]
-    told = 0.0 if options.accuracy_m is None else options.accuracy_m
-    accuracy_m = np.where(np.isnan(stated), told, stated)
-    doubts: dict[int, str] = {}
-    for k in np.flatnonzero(margin_m <= accuracy_m + _TOUCH_M).tolist():
-        doubts[int(records[k])] = worded(
-            "with an accuracy of {accuracy_m:.2g} m it may be {plant} or {other}",
-            accuracy_m=accuracy_m[k],
-            plant=_label(grid, first[k]),
-            other=_label(grid, rival[k]),
-        )
-    for k in np.flatnonzero((step > half).any(axis=1)).tolist():
-        doubts[int(records[k])] = worded(
-            "it lies {away_m:.1f} m from the nearest plant, {plant}, which is more than half the "
-            "spacing",
-            away_m=np.hypot(*step[k]),
-            plant=_label(grid, first[k]),
-        )
-    return _Placed(plant, problems, doubts)
-
-
-def _along_and_across(
-    grid: PlantGrid, plant: NDArray[np.int64], way_m: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return ways ``(m, 2)`` from plants as metres along their rows and across."""
-    if grid.aisles_m is None or grid.aisle is None:
-        return way_m
-    ahead = grid.aisles_m.ahead(grid.aisle[grid.row[plant]], grid.along_m[plant])
-    aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
-    return np.stack([(way_m * ahead).sum(axis=1), (way_m * aside).sum(axis=1)], axis=1)
-
-
-def _nearest(
-    grid: PlantGrid, xy_m: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    """Return the nearest plant ``(m,)``, the rival nearest to taking its place, and by how much."""
-    among = min(_NEIGHBOURS, len(grid))
-    distance_m, near = cKDTree(grid.xy_m).query(xy_m, k=np.arange(1, among + 1))
-    vine = grid.vine[near]
-    first = vine[:, 0].astype(np.int64)
-    apart = np.hypot(*(grid.xy_m[near] - grid.xy_m[near[:, :1]]).transpose(2, 0, 1))
-    gap = distance_m**2 - distance_m[:, :1] ** 2
-    other = (vine != vine[:, :1]) & (apart > 0)
-    margin_m = np.divide(gap, 2 * apart, out=np.full_like(gap, np.inf), where=other)
-    best = np.argmin(margin_m, axis=1)
-    at = np.arange(len(xy_m))
-    return first, vine[at, best].astype(np.int64), margin_m[at, best]
-
-
-def _label(grid: PlantGrid, plant: int) -> str:
-    label = row_label(grid, np.array([plant]))
-    return worded(
-        "row {line}, number {number}",
-        line=label.line[0],
-        number=label.number[0],
-    )
 
 
 def _own_doubts(rows: InspectionRows) -> dict[int, str]:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import Layer
     from fieldmon.io.options import Source
     from fieldmon.io.readers.weather_options import WeatherOptions
-    from fieldmon.io.sandbox.unpack import Workroom
+    from fieldmon.io.sandbox.workroom import Workroom
     from fieldmon.pests.weather import Floats, Weather
 
 # as a share of what was measured: more than so much nonsense is a wrong unit
@@ -113,7 +113,7 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
 
 
-class _Timed(NamedTuple):
+class _TimesRead(NamedTuple):
     """Times ``(n,)`` UTC, the zone of the place, and what there is to say."""
 
     at: NDArray[np.datetime64]
@@ -121,7 +121,7 @@ class _Timed(NamedTuple):
     messages: list[ImportMessage]
 
 
-def _times(layer: Layer, options: WeatherOptions, taken: set[str]) -> _Timed:
+def _times(layer: Layer, options: WeatherOptions, taken: set[str]) -> _TimesRead:
     zone = zone_of(options.zone) if options.zone else UTC
     cells, is_utc = _time_cells(layer, frozenset(taken))
     distinct = np.array(cells, dtype=object)
@@ -157,7 +157,7 @@ def _times(layer: Layer, options: WeatherOptions, taken: set[str]) -> _Timed:
         messages.append(
             dropped(worded("{n} time(s) are none ({shown}).", n=read.n_broken, shown=shown))
         )
-    return _Timed(at, zone, messages)
+    return _TimesRead(at, zone, messages)
 
 
 def _time_cells(layer: Layer, taken: frozenset[str]) -> tuple[list[str], bool]:

@@ -12,7 +12,7 @@ from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.readers.inspection_file.rows import rows_of
 from fieldmon.io.readers.records import records_by_plot, records_of
 from fieldmon.io.readers.weather import weather_in
-from fieldmon.io.sandbox.unpack import Workroom
+from fieldmon.io.sandbox.workroom import Workroom
 
 if TYPE_CHECKING:
     from shapely import MultiLineString, MultiPolygon

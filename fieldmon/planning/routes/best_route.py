@@ -12,7 +12,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
-from fieldmon.planning.bound_wording import FINDS, PROVED, share_above, told
+from fieldmon.planning.bound_wording import FINDS, PROVED, bound_sentence, share_above
 from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.blocks import Blocks, blockings
 from fieldmon.planning.routes.improve import Tour, fit, ruin
@@ -94,7 +94,7 @@ class BestRoute:
 
     def sentence(self, what: str = FINDS) -> str:
         """Return for people what the route holds and what no other can exceed."""
-        return told(self.reward, self.bound, what)
+        return bound_sentence(self.reward, self.bound, what)
 
 
 class _Posed(NamedTuple):

@@ -15,8 +15,9 @@ import numpy as np
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
+from fieldmon.planning.routes.aisle_ways import Costs
 from fieldmon.planning.routes.binned import proposals
-from fieldmon.planning.routes.priced import REACH, Costs, Priced, least_by_kind
+from fieldmon.planning.routes.priced import REACH, Priced, least_by_kind
 from fieldmon.planning.routes.stops import stops_of
 
 if TYPE_CHECKING:

@@ -123,10 +123,10 @@ def best_walk(reward: ArrayLike, budget: int) -> Walk:
     if budget < 0:
         raise SettingError(f"A budget must be 0 steps or more, but it is {budget}.")
     # more steps than that bring nothing
-    return _Search(values).best(min(budget, full_budget(*values.shape)) // 2)
+    return _WalkSearch(values).best(min(budget, full_budget(*values.shape)) // 2)
 
 
-class _Search:
+class _WalkSearch:
     """Looks for the best walk on a matrix of rewards."""
 
     def __init__(self, reward: Float) -> None:

@@ -94,7 +94,7 @@ def seasons(scenario: Scenario, seeds: range, hours: float = 12.0) -> Iterator[P
             )
 
 
-def told(made: list[PairedSeason]) -> list[str]:
+def season_sentences(made: list[PairedSeason]) -> list[str]:
     """Return the means, and the difference from Adaptive with its 95 % interval."""
     by = {
         who: np.array([one.infested_plant_days for one in made if one.who == who])

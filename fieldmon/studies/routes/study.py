@@ -99,7 +99,7 @@ def run_teams(
         yield MethodOutcome(*about, *held, team.bound, proved)
 
 
-def told_of_teams(outcomes: Sequence[MethodOutcome]) -> list[str]:
+def team_sentences(outcomes: Sequence[MethodOutcome]) -> list[str]:
     """Return one line a team: its share of all reward, and what none can exceed."""
     return [
         f"{one.instance}, {one.method}, each {one.share:.0%} of the full budget: {one.of_all:.1%} "

@@ -38,7 +38,7 @@ class TeamWalks(NamedTuple):
 
 def team_walks(reward: Float, budget: int, n_walks: int) -> TeamWalks:
     """Return walks that hold much together, nobody meeting another in a row, and a bound."""
-    search = _Search(reward, budget, n_walks)
+    search = _TeamWalkSearch(reward, budget, n_walks)
     most = _all_steps(reward, budget, n_walks)
     search.improve()
     search.shake(most)
@@ -66,7 +66,7 @@ def meetings(places: Sequence[Int], n_plants: int) -> list[tuple[int, int, int]]
     return found
 
 
-class _Search:
+class _TeamWalkSearch:
     """Walks on their way to be good ones."""
 
     def __init__(self, reward: Float, budget: int, n_walks: int) -> None:

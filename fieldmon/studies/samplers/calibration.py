@@ -170,8 +170,8 @@ def _mornings(
 
     def watched(grid: PlantGrid, chance: NDArray[np.float64]) -> Belief:
         first = believe(grid, chance)
-        if scenario.living is not None and isinstance(first, TracedPairs):
-            first = first.of_pest(scenario.living.pest)
+        if scenario.pest_in_weather is not None and isinstance(first, TracedPairs):
+            first = first.of_pest(scenario.pest_in_weather.pest)
         believed.append(first)
         return _Watched(first, believed, seconds)
 

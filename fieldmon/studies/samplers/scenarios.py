@@ -71,7 +71,7 @@ class Scenario:
         it. Empty: they do as is believed.
     hours
         The working day.
-    living
+    pest_in_weather
         The pest in its weather, which has nights of its own and is known to the belief; then
         `spread` is not read, and there is neither a world nor a wrong spread. None: as `spread` has
         it.
@@ -84,7 +84,7 @@ class Scenario:
     flaw: str = ""
     world: str = ""
     hours: float = 12.0
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
     def __post_init__(self) -> None:
         known: dict[str, Iterable[str]] = {
@@ -96,7 +96,7 @@ class Scenario:
                     f"The {name} must be one of {', '.join(map(repr, values))}, "
                     f"but it is {getattr(self, name)!r}."
                 )
-        if self.living is not None and (self.world or self.flaw == "spread"):
+        if self.pest_in_weather is not None and (self.world or self.flaw == "spread"):
             raise SettingError("A pest has nights of its own: it goes without a world or spread.")
 
     @property
@@ -105,12 +105,14 @@ class Scenario:
         if self.world:
             return f"world, {self.plot}, {self.hours:g} h, {self.world}"
         nights = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
-        if self.living is not None:
-            nights = self.living.pest.name
+        if self.pest_in_weather is not None:
+            nights = self.pest_in_weather.pest.name
         words = f"{self.plot}, {nights}, {self.start}, prior {self.prior}"
         words = f"{words}, {self.flaw} wrong" if self.flaw else words
         # two files may give a pest the same name
-        return words if self.living is None else f"{words}, {of_pest(self.living)}"
+        return (
+            words if self.pest_in_weather is None else f"{words}, {of_pest(self.pest_in_weather)}"
+        )
 
     @property
     def aisles(self) -> Aisles:
@@ -126,7 +128,9 @@ class Scenario:
     @property
     def believed_robot(self) -> Robot:
         """Return who inspects, with the chance of detection that is believed."""
-        return Robot() if self.living is None else self.living.pest.seen_by(Robot())
+        return (
+            Robot() if self.pest_in_weather is None else self.pest_in_weather.pest.seen_by(Robot())
+        )
 
     @property
     def settings(self) -> SeasonSettings:
@@ -137,7 +141,10 @@ class Scenario:
             believed = Spread(rate, self.spread.to)
         learning = Learning(detection=self.believed_robot.detects)
         settings = SeasonSettings(
-            spread=self.spread, believed_spread=believed, learning=learning, pest=self.living
+            spread=self.spread,
+            believed_spread=believed,
+            learning=learning,
+            pest=self.pest_in_weather,
         )
         if not self.world:
             return settings
@@ -194,23 +201,23 @@ def all_scenarios() -> list[Scenario]:
     return list(dict.fromkeys([*usual_scenarios(), *crossed]))
 
 
-def with_pest(scenarios: Iterable[Scenario], living: PestInWeather) -> list[Scenario]:
+def with_pest(scenarios: Iterable[Scenario], pest_in_weather: PestInWeather) -> list[Scenario]:
     """Return scenarios with a pest instead of a rate of spread, each once.
 
     Worlds and a wrong rate are left out: a pest has nights of its own.
     """
     return list(
         dict.fromkeys(
-            replace(each, spread=Scenario().spread, living=living)
+            replace(each, spread=Scenario().spread, pest_in_weather=pest_in_weather)
             for each in scenarios
             if not each.world and each.flaw != "spread"
         )
     )
 
 
-def of_pest(living: PestInWeather) -> str:
+def of_pest(pest_in_weather: PestInWeather) -> str:
     """Return digits that tell a pest in its weather from any other."""
-    return digest(*living.told, length=_DIGITS)
+    return digest(*pest_in_weather.content, length=_DIGITS)
 
 
 def infested_at_start(

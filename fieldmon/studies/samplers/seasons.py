@@ -81,10 +81,10 @@ def outcomes(scenario: Scenario, seed: int) -> list[SeasonOutcome]:
     start = scenario.draw_start(streams)
     made = [
         _outcome(scenario, seed, each.name, season_metrics(season(scenario, each, start, streams)))
-        for each in (CONTENDERS if scenario.living is None else OF_PESTS)
+        for each in (CONTENDERS if scenario.pest_in_weather is None else OF_PESTS)
         if seed % each.every == 0
     ]
-    if seed % SOME or scenario.living is not None:
+    if seed % SOME or scenario.pest_in_weather is not None:
         return made
     seen = season_metrics(_clairvoyant(scenario, start, streams))
     return [*made, _outcome(scenario, seed, CLAIRVOYANT, seen)]

@@ -30,7 +30,7 @@ _DEPTH = 2.0
 _STEPS = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
 
 
-def _to_one_beside(draws: np.random.Generator, n: int) -> Floats:
+def _to_one_adjacent(draws: np.random.Generator, n: int) -> Floats:
     return _STEPS[draws.integers(0, 4, n)]
 
 
@@ -81,7 +81,7 @@ class World:
         Chance that an infested plant sends one infestation in a night.
     """
 
-    jump: Jump = _to_one_beside
+    jump: Jump = _to_one_adjacent
     anywhere: float = 0.0
     arrivals: float = 0.0
     at_edge: bool = False

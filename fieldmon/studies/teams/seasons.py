@@ -56,7 +56,7 @@ class TeamScenario:
         Share of plants infested on the first morning.
     n_days
         Working days.
-    living
+    pest_in_weather
         The pest in its weather; None: nights are as `spread` says.
     """
 
@@ -66,7 +66,7 @@ class TeamScenario:
     robot: Robot = field(default_factory=Robot)
     infested: float = 0.02
     n_days: int = 25
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
     @property
     def hectares(self) -> float:
@@ -80,15 +80,15 @@ class TeamScenario:
         settings = (self.robot, self.infested, self.n_days, self.spread)
         parts = (self.plot.grid.xy_m, self.chance, repr(settings).encode())
         # unsaid, it leaves a scenario what it was before pests could be named
-        living = () if self.living is None else self.living.told
+        pest = () if self.pest_in_weather is None else self.pest_in_weather.content
         nights = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
-        nights = nights if self.living is None else self.living.pest.name
-        return f"{self.plot.field.name} {nights} {digest(*parts, *living, length=_DIGITS)}"
+        nights = nights if self.pest_in_weather is None else self.pest_in_weather.pest.name
+        return f"{self.plot.field.name} {nights} {digest(*parts, *pest, length=_DIGITS)}"
 
     @property
     def rate_per_day(self) -> float:
         """Return the chance a night to infest a neighbour; NaN where a pest has its own nights."""
-        return self.spread.rate_per_day if self.living is None else np.nan
+        return self.spread.rate_per_day if self.pest_in_weather is None else np.nan
 
 
 class TeamSetting(NamedTuple):
@@ -185,7 +185,9 @@ def outcome(setting: TeamSetting, seed: int) -> TeamOutcome:
     scenario, streams = setting.scenario, RandomStreams(seed)
     plot = scenario.plot
     start = season_start(plot.grid, scenario.chance, scenario.infested, streams)
-    season = SeasonSettings(n_days=scenario.n_days, spread=scenario.spread, pest=scenario.living)
+    season = SeasonSettings(
+        n_days=scenario.n_days, spread=scenario.spread, pest=scenario.pest_in_weather
+    )
     decides = sampler_of(setting.sampler)
     works = plot, scenario.robot
     made = season_metrics(setting.team.days(works, decides, start, season, streams))

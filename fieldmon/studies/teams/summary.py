@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.simulation.statistics import summary_statistics
-from fieldmon.simulation.team_worth import MarginalGain, marginal_gains, told
+from fieldmon.simulation.team_worth import MarginalGain, marginal_gains, worth_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -94,7 +94,7 @@ def sentences(made: Sequence[TeamRow]) -> list[str]:
     for scenario, who in dict.fromkeys((row.scenario, row.who) for row in made):
         gains = [r.gain for r in made if (r.scenario, r.who) == (scenario, who) and r.gain]
         if gains:
-            said.append(f"{short(scenario)} ({who}): {told(gains)}")
+            said.append(f"{short(scenario)} ({who}): {worth_sentence(gains)}")
     return said
 
 

@@ -67,10 +67,13 @@ class TreatedSeason:
         return self.scenario, self.seed
 
 
-def treated_scenarios(living: PestInWeather | None = None) -> list[Scenario]:
+def treated_scenarios(pest_in_weather: PestInWeather | None = None) -> list[Scenario]:
     """Return 5 ha with clusters, with infested edges, and with scattered infested plants."""
     starts = ("clusters", "edge", "scattered")
-    return [Scenario("B", start=start, hours=_HOURS, living=living) for start in starts]
+    return [
+        Scenario("B", start=start, hours=_HOURS, pest_in_weather=pest_in_weather)
+        for start in starts
+    ]
 
 
 def study_of_treatments(

@@ -3,11 +3,11 @@
 import base64
 
 from app.words import texts
-from fieldmon.monitoring import photos, scouts, tellings
+from fieldmon.monitoring import findings, photos, scouts
 from fieldmon.monitoring.photos_asked import photos_asked
 from tests.app.actions.test_picking import select, stops
 from tests.app.driving import press, texts_of
-from tests.monitoring.telling import JPEG, NOW, a_telling
+from tests.monitoring.phone import JPEG, NOW, a_finding
 
 PLANT = 39 * 85
 
@@ -30,8 +30,8 @@ def test_a_photo_of_a_picked_plant_is_asked_for_and_taken_back(season_app, seaso
 
 
 def test_a_photo_that_has_come_is_shown_with_its_plant_though_it_does_not_open(season_app, season):
-    key, one = scouts.let_in(season(), "Ann"), a_telling(PLANT, on=season().settings.begins)
-    tellings.take(season(), key, [one], NOW)
+    key, one = scouts.let_in(season(), "Ann"), a_finding(PLANT, on=season().settings.begins)
+    findings.take(season(), key, [one], NOW)
     photos.keep(season(), key, photos.Photo("one", one.id, JPEG, NOW))
     season_app.session_state["history row"], season_app.session_state["history plant"] = 40, 1
     season_app.session_state["history tapped"] = True

@@ -2,7 +2,7 @@
 
 from datetime import date, timedelta
 
-from app.state import living
+from app.state import chosen_pest
 from app.words import texts
 from tests.app.driving import begun, go, press, texts_of
 
@@ -24,8 +24,8 @@ def bring(app, kind, name, data):
 
 def test_a_pest_is_chosen_with_its_figures_sources_and_doubts(app):
     go(app, "plot")
-    assert texts.LIVING_NOTE in texts_of(app)
-    app.selectbox(key=living.WHICH).set_value("spider-mite").run()
+    assert texts.PEST_NOTE in texts_of(app)
+    app.selectbox(key=chosen_pest.WHICH).set_value("spider-mite").run()
     assert not app.exception
     said = texts_of(app)
     assert "Bounfour & Tanigoshi 2001" in said
@@ -36,15 +36,15 @@ def test_a_pest_is_chosen_with_its_figures_sources_and_doubts(app):
 
 def test_a_pest_of_ones_own_that_is_wrong_is_refused_with_its_line(app):
     go(app, "plot")
-    app.selectbox(key=living.WHICH).set_value(living.OWN).run()
-    bring(app, living.PEST, "mite.toml", OWN)
+    app.selectbox(key=chosen_pest.WHICH).set_value(chosen_pest.OWN).run()
+    bring(app, chosen_pest.PEST, "mite.toml", OWN)
     assert any("mite.toml, line 3" in one.value for one in app.error)
 
 
 def test_weather_says_what_its_import_says_and_ages_the_records(app):
     go(app, "plot")
-    app.selectbox(key=living.WHICH).set_value("spider-mite").run()
-    bring(app, living.WEATHER, "station.csv", station())
+    app.selectbox(key=chosen_pest.WHICH).set_value("spider-mite").run()
+    bring(app, chosen_pest.WEATHER, "station.csv", station())
     assert "Columns of weather" in texts_of(app)
     # one generation of 15 days: records count half after that
     assert "taken as forecast" in texts_of(app)
@@ -52,8 +52,8 @@ def test_weather_says_what_its_import_says_and_ages_the_records(app):
 
 def test_a_season_begun_with_a_pest_says_when_its_next_generation_is_due(app):
     go(app, "plot")
-    app.selectbox(key=living.WHICH).set_value("spider-mite").run()
-    bring(app, living.WEATHER, "station.csv", station())
+    app.selectbox(key=chosen_pest.WHICH).set_value("spider-mite").run()
+    bring(app, chosen_pest.WEATHER, "station.csv", station())
     begun(app)
     go(app, "season")
     assert not app.exception
@@ -67,14 +67,14 @@ def test_a_season_begun_with_a_pest_says_when_its_next_generation_is_due(app):
 
 def test_a_season_takes_a_pest_later_and_weather_alone_is_refused(season_app, season):
     go(season_app, "plot")
-    season_app.selectbox(key=living.WHICH).set_value("whitefly").run()
-    press(season_app, texts.LIVING_USE)
+    season_app.selectbox(key=chosen_pest.WHICH).set_value("whitefly").run()
+    press(season_app, texts.PEST_USE)
     assert not season_app.exception
     assert season().settings.pest.name == "whitefly"
     go(season_app, "season")
     assert texts.NEEDS_WEATHER in texts_of(season_app)
     go(season_app, "plot")
-    season_app.selectbox(key=living.WHICH).set_value(living.NONE).run()
-    bring(season_app, living.WEATHER, "station.csv", station())
-    press(season_app, texts.LIVING_USE)
+    season_app.selectbox(key=chosen_pest.WHICH).set_value(chosen_pest.NONE).run()
+    bring(season_app, chosen_pest.WEATHER, "station.csv", station())
+    press(season_app, texts.PEST_USE)
     assert any(texts.WEATHER_NEEDS_PEST in one.value for one in season_app.error)

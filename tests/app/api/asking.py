@@ -80,8 +80,8 @@ def of_season(what, season="season"):
     return f"{PATH}/seasons/{season}/{what}"
 
 
-def as_sent(*tellings, sent=None):
-    """Return tellings as a phone sends them."""
+def as_sent(*findings, sent=None):
+    """Return findings as a phone sends them."""
     names = {0: "clean", 1: "found", 2: "skipped", None: None}
     return {
         "sent": (sent or datetime.now(UTC)).isoformat(),
@@ -91,6 +91,6 @@ def as_sent(*tellings, sent=None):
                 "result": names[one.result], "count": one.count, "notes": one.notes,
                 "on": None if one.on is None else str(one.on), "undoes": one.undoes,
             }
-            for one in tellings
+            for one in findings
         ],
     }  # fmt: skip

@@ -11,9 +11,9 @@ from app.api import description
 from app.api.documents import day_document, plot_document, rest_document
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.day_ahead import route_ahead
-from fieldmon.monitoring.tellings import take
+from fieldmon.monitoring.findings import take
+from tests.monitoring.phone import NOW, a_finding
 from tests.monitoring.seasons import BEGINS
-from tests.monitoring.telling import NOW, a_telling
 
 
 @pytest.fixture
@@ -74,8 +74,8 @@ def test_who_has_a_part_is_sent_to_its_rows(served):
 
 def test_where_two_say_otherwise_everybody_is_told(served, scout):
     other = scouts.let_in(served.season, "Ben")
-    take(served.season, served.key, [a_telling(40, 1, on=BEGINS)], NOW)
-    take(served.season, other, [a_telling(40, 0, on=BEGINS)], NOW)
+    take(served.season, served.key, [a_finding(40, 1, on=BEGINS)], NOW)
+    take(served.season, other, [a_finding(40, 0, on=BEGINS)], NOW)
     day = json.loads(day_document(served.season, scout, BEGINS))
     said = {(one["plant"], one["who"], one["result"]) for one in day["contradicting"]}
     assert said == {(40, "Ann", "found"), (40, "Ben", "clean")}

@@ -12,8 +12,8 @@ import pytest
 from fieldmon.monitoring import Season, photos, scouts
 from tests.app.api.asking import in_own_loop
 from tests.app.api.phone import ENDINGS, Phone
+from tests.monitoring.phone import told
 from tests.monitoring.rules import keeps_the_rules
-from tests.monitoring.telling import told
 
 DISCONNECTS = int(os.environ.get("FIELDMON_DISCONNECTS", "60"))
 ROUNDS = int(os.environ.get("FIELDMON_ROUNDS", "8"))

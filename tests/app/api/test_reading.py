@@ -8,7 +8,7 @@ import pytest
 from app.api import reading
 from fieldmon.errors import ObservationError
 from tests.app.api.asking import as_sent
-from tests.monitoring.telling import JPEG, NOW, a_telling
+from tests.monitoring.phone import JPEG, NOW, a_finding
 
 ID = str(uuid.UUID(int=1))
 GOOD = {"id": ID, "at": "2026-04-06T06:00:00Z", "plant": 3, "result": "found"}
@@ -19,7 +19,7 @@ def sent(**changes):
 
 
 def test_what_a_phone_tells_comes_out_as_it_was_told():
-    told = [a_telling(3, 1, count=4.0, notes="ב"), a_telling(None, None, undoes=ID)]
+    told = [a_finding(3, 1, count=4.0, notes="ב"), a_finding(None, None, undoes=ID)]
     read, at = reading.findings(json.dumps(as_sent(*told, sent=NOW)).encode())
     assert read == told
     assert at == NOW
@@ -58,7 +58,7 @@ def test_more_than_is_taken_at_once_is_refused():
 def test_a_photos_address_says_what_it_is_of():
     query = {"finding": ID, "at": GOOD["at"], "lon": "35.1", "lat": "30.3", "accuracy_m": "4"}
     photo = reading.photo(ID, query, JPEG)
-    assert (photo.telling, photo.lonlat, photo.accuracy_m) == (ID, (35.1, 30.3), 4.0)
+    assert (photo.finding, photo.lonlat, photo.accuracy_m) == (ID, (35.1, 30.3), 4.0)
     assert reading.photo(ID, {"finding": ID, "at": GOOD["at"]}, JPEG).lonlat is None
 
 

@@ -12,8 +12,8 @@ from app.api.season_api import application
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, photos, scouts
 from tests.app.api.asking import Cut, as_sent, ask, exchange, in_own_loop, of_season, scope_of
+from tests.monitoring.phone import JPEG, a_finding, told
 from tests.monitoring.seasons import BEGINS
-from tests.monitoring.telling import JPEG, a_telling, told
 
 PHOTO = str(uuid.UUID(int=7))
 ABOUT = f"finding={uuid.UUID(int=8)}&at=2026-04-06T06:00:00Z&lon=35.15&lat=30.36&accuracy_m=4"
@@ -22,7 +22,7 @@ WAYS = {
     ("GET", "plot"): {},
     ("GET", "day"): {"query": "on=2026-04-06"},
     ("POST", "route"): {"body": {"on": "2026-04-06"}},
-    ("POST", "findings"): {"body": as_sent(a_telling(3, on=BEGINS))},
+    ("POST", "findings"): {"body": as_sent(a_finding(3, on=BEGINS))},
     ("PUT", f"photos/{PHOTO}"): {"body": JPEG, "query": ABOUT},
     ("GET", f"photos/{PHOTO}"): {},
     ("PUT", f"photos_asked/{PHOTO}"): {"body": {"plant": 3, "note": "webs?"}},
@@ -107,7 +107,7 @@ def test_a_browser_that_asks_whether_another_site_may_is_told_nothing(served, pa
 
 
 def test_findings_are_taken_once_and_what_is_answered_is_in_the_file(served):
-    told_now = [a_telling(k, FOUND if k % 3 else 0, on=BEGINS) for k in range(20, 26)]
+    told_now = [a_finding(k, FOUND if k % 3 else 0, on=BEGINS) for k in range(20, 26)]
     for _ in range(3):
         answer = ask("POST", of_season("findings"), key=served.key, body=as_sent(*told_now))
         assert [one["id"] for one in answer.json["taken"]] == [one.id for one in told_now]
@@ -143,7 +143,7 @@ def test_a_photo_is_asked_for_until_it_has_come(served):
     assert ask("PUT", address, key=served.key, body={"plant": 10**6}).status == 422
     ask("PUT", of_season(f"photos/{PHOTO}"), key=served.key, body=JPEG, query=ABOUT)
     assert asked(), "a photo of a plant that nobody told yet"
-    one = a_telling(3, id=str(uuid.UUID(int=8)), on=BEGINS)
+    one = a_finding(3, id=str(uuid.UUID(int=8)), on=BEGINS)
     ask("POST", of_season("findings"), key=served.key, body=as_sent(one))
     assert asked() == []
     again = of_season(f"photos_asked/{uuid.UUID(int=9)}")

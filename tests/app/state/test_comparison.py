@@ -27,11 +27,11 @@ def plot():
     return Plot.of(Field("square", SQUARE, gate=(35.15, 30.36)))
 
 
-def compared(plot, strategies, seeds=4, living=None):
+def compared(plot, strategies, seeds=4, pest_in_weather=None):
     rng = np.random.default_rng(3)
     chance = np.where(rng.random(len(plot.grid)) < 0.1, 0.5, 0.001)
     settings = ComparisonSettings(tuple(strategies), n_days=5, share=0.05, rate=0.1, seeds=seeds)
-    running = Comparison(settings, LaidPlot(plot, chance, living), Robot())
+    running = Comparison(settings, LaidPlot(plot, chance, pest_in_weather), Robot())
     running.start()
     running.wait(180)
     assert running.done == running.total
@@ -54,7 +54,9 @@ def test_every_strategy_meets_the_same_insects_on_the_first_morning(plot):
 
 def test_seasons_of_a_pest_are_its_own_whatever_a_chance_a_night_says(plot):
     usual = compared(plot, SHORT[:1]).seasons()[SHORT[0]]
-    of_pest = compared(plot, SHORT[:1], living=PestInWeather(shipped_pest("whitefly"))).seasons()
+    of_pest = compared(
+        plot, SHORT[:1], pest_in_weather=PestInWeather(shipped_pest("whitefly"))
+    ).seasons()
     starts = [[int(season.new[0]) for season in made] for made in (usual, of_pest[SHORT[0]])]
     assert starts[0] == starts[1]
     assert [s.left.tolist() for s in usual] != [s.left.tolist() for s in of_pest[SHORT[0]]]

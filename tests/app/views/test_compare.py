@@ -1,6 +1,6 @@
 """Strategies are compared while the page waits for nothing."""
 
-from app.state import living
+from app.state import chosen_pest
 from app.state.comparison import Comparison
 from tests.app.driving import go, press, texts_of
 
@@ -46,9 +46,9 @@ def test_what_a_second_robot_would_save_on_this_plot_is_said(app):
 
 def test_seasons_are_those_of_the_pest_that_was_chosen(app, monkeypatch):
     begun = []
-    monkeypatch.setattr(Comparison, "start", lambda self: begun.append(self._laid.living))
+    monkeypatch.setattr(Comparison, "start", lambda self: begun.append(self._laid.pest_in_weather))
     go(app, "plot")
-    app.selectbox(key=living.WHICH).set_value("whitefly").run()
+    app.selectbox(key=chosen_pest.WHICH).set_value("whitefly").run()
     go(app, "compare")
     assert not app.exception
     assert "rate" not in {one.key for one in app.number_input}

@@ -5,8 +5,8 @@ import shapely
 
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.isoxml import read_isoxml
+from tests.awkward_real_files import _TASKS, GUIDE, POND, SECOND, SQUARE, lsg, pfd, pln
 from tests.io.tables_of_cells import sentences
-from tests.more_awkward import _TASKS, GUIDE, POND, SECOND, SQUARE, lsg, pfd, pln
 
 
 def read(folder, *partfields, **others):

@@ -12,7 +12,7 @@ from shapely import Point
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.options import ReadOptions, Upload
-from fieldmon.io.sandbox.unpack import Workroom
+from fieldmon.io.sandbox.workroom import Workroom
 from tests.io.tables_of_cells import sentences
 
 POINTS = gpd.GeoDataFrame({"name": ["a", "b"]}, geometry=[Point(1, 2), Point(3, 4)], crs=4326)

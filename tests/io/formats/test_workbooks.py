@@ -6,7 +6,7 @@ import pytest
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.workbooks import sheet_names, sheet_rows
 from fieldmon.io.sandbox import limits
-from tests.more_awkward import ods
+from tests.awkward_real_files import ods
 from tests.old_workbook import xls
 
 CELLS = [["name", "n", "when"], ["north", 2.5, None], [None, None, None], ["south", None, "x"]]

@@ -7,10 +7,8 @@ import numpy as np
 import pandas as pd
 import pyogrio
 import pytest
-import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import MultiPolygon, Polygon
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
@@ -20,11 +18,8 @@ from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_file.rows import rows_in
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import dated, look_up, read_inspections
-from fieldmon.plot.block import Block
-from fieldmon.plot.field import Field
-from fieldmon.plot.grid import plant_at, row_label
-from fieldmon.plot.layout import lay, rectangle
-from fieldmon.plot.planting import Planting
+from fieldmon.plot.grid import row_label
+from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(6, 10)
 
@@ -42,12 +37,6 @@ def when(inspections):
     since = np.where(np.isnan(inspections.second), 0, inspections.second).astype("timedelta64[s]")
     noted = inspections.date.astype("datetime64[s]") + since
     return np.where(np.isnan(inspections.second), np.datetime64("NaT"), noted)
-
-
-def two_faced():
-    corners = np.array([(0, 0), (0, 30), (40, 30), (40, 0)]) / 111_320
-    field = Field("faces", MultiPolygon([Polygon(corners + np.array([35.0, 30.0]))]))
-    return lay(field, Planting(faces=2, row_spacing_m=3.0, plant_spacing_m=2.0))
 
 
 def test_counts_alone_say_whether_and_how_many():
@@ -94,76 +83,6 @@ def test_plants_that_the_plot_does_not_have_are_named_and_left_out():
     assert "plant 60 is none of 0 to 59" in said
     assert "there is no plant 1 in row 9" in said
     assert "there is no plant 11 in row 1" in said
-
-
-def test_a_file_of_another_plot_is_noticed():
-    lon, lat = GRID.lonlat(np.array([7]))[0]
-    text = f"plant,row,number,lon,lat,found\n7,1,8,{lon},{lat},x\n7,1,8,{lon + 0.001},{lat},x\n"
-    text += f"7,3,8,{lon},{lat},x\n7,1,8,{lon + 90},{lat},x\n,2,8,{lon + 0.001},{lat},x\n"
-    imported = read(text)
-    assert len(imported.value) == 1
-    assert [f.feature for f in imported.of(Severity.DOUBTFUL)] == [
-        f"record {i}" for i in range(2, 6)
-    ]
-
-
-@given(
-    st.lists(st.integers(0, len(GRID) - 1), min_size=1, max_size=30, unique=True), st.integers(0)
-)
-@settings(max_examples=15)
-def test_positions_within_half_the_spacing_come_back_to_their_plant(plants, seed):
-    rng = np.random.default_rng(seed)
-    half = np.array([GRID.plant_spacing_m, GRID.row_spacing_m]) / 2
-    xy = GRID.xy_m[plants] + rng.uniform(-0.95, 0.95, (len(plants), 2)) * half
-    lonlat = GRID.frame.lonlat(xy)
-    rows = "\n".join(f"{lon:.9f},{lat:.9f},yes" for lon, lat in lonlat)
-    findings = read(f"lon,lat,found\n{rows}\n").value
-    assert findings.plant.tolist() == plants
-
-
-def test_a_position_between_two_plants_is_doubtful_as_far_as_it_is_inaccurate():
-    a, b = GRID.xy_m[12], GRID.xy_m[13]
-    at = a + 0.3 * (b - a)  # 0.2 of the spacing before the middle
-    (lon, lat), gap_m = GRID.frame.lonlat(at)[0], 0.2 * GRID.plant_spacing_m
-    for accuracy_m, is_sure in ((0.9 * gap_m, True), (1.1 * gap_m, False)):
-        text = f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},{accuracy_m},yes\n"
-        imported = read(text)
-        assert imported.value.plant.tolist() == ([12] if is_sure else [])
-        told = read(text, InspectionOptions(take_doubtful=True))
-        assert told.value.plant.tolist() == [12]
-        bare = f"lon,lat,found\n{lon:.9f},{lat:.9f},yes\n"
-        by_hand = read(bare, InspectionOptions(accuracy_m=accuracy_m))
-        assert by_hand.value.plant.tolist() == ([12] if is_sure else [])
-    (doubt,) = read(text).of(Severity.DOUBTFUL)
-    assert "row 2, number 3 or row 2, number 4" in doubt.sentence
-
-
-def test_a_position_off_the_plants_is_doubtful_and_one_far_away_is_none():
-    lon, lat = GRID.frame.lonlat(GRID.xy_m[0] - (0.6 * GRID.plant_spacing_m, 0))[0]
-    text = f"lon,lat,found\n{lon:.9f},{lat:.9f},yes\n{lon + 5:.9f},{lat:.9f},yes\n"
-    imported = read(text)
-    assert len(imported.value) == 0
-    assert "more than half the spacing" in imported.of(Severity.DOUBTFUL)[0].sentence
-    assert "far from the plot" in imported.of(Severity.DROPPED)[0].sentence
-    assert read(text, InspectionOptions(take_doubtful=True)).value.plant.tolist() == [0]
-
-
-def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
-    grid = two_faced()
-    twin = int(grid.twin[3])
-    label = row_label(grid, np.array([3]))
-    place = f"{label.line[0]},{label.number[0]}"
-    imported = read(
-        f"plant,row,number,face,found\n3,,,,x\n{twin},,,,x\n,{place},1,no\n,{place},2,no\n"
-        f",{place},,skipped\n",
-        grid=grid,
-    )
-    first, second = sorted((3, twin))
-    assert imported.value.plant.tolist() == [3, twin, first, second, first]
-    assert any("1 record(s) do not say which face" in f.sentence for f in imported.messages)
-    lon, lat = grid.lonlat(np.array([twin]))[0]
-    snapped = read(f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},0.1,x\n", grid=grid)
-    assert snapped.value.plant.tolist() == [first]
 
 
 # --- times -------------------------------------------------------------------------------------
@@ -397,65 +316,12 @@ def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, tak
     assert all(finding.sentence.endswith((".", "?")) for finding in said)
 
 
-@pytest.fixture(scope="module")
-def two_blocks():
-    """Return two blocks whose rows run north in one and east in the other."""
-    west, east = shapely.box(5.0, 45.0, 5.0003, 45.0003), shapely.box(5.0003, 45.0, 5.001, 45.0003)
-    blocks = Block("", MultiPolygon([west]), 0.0), Block("", MultiPolygon([east]), 90.0)
-    field = Field("two", MultiPolygon([shapely.box(5.0, 45.0, 5.001, 45.0003)]), blocks=blocks)
-    return lay(field, Planting(row_spacing_m=3.0, plant_spacing_m=2.0))
-
-
-def test_rows_of_a_named_block_may_be_counted_from_one_and_how_is_said(two_blocks):
-    grid = two_blocks
-    rows = int(grid.row_line[np.asarray(grid.block) == 0].max()) + 1
-    within = read("block,row,plant,found\n2,1,3,x\n1,2,1,x\n", grid=grid)
-    there = [plant_at(grid, rows + 1, 3), plant_at(grid, 2, 1)]
-    assert within.value.plant.tolist() == there
-    assert "counted from 1 in each block" in within.messages[-1].sentence
-    on = read(f"block,row,plant,found\n2,{rows + 1},3,x\n1,2,1,x\n", grid=grid)
-    assert on.value.plant.tolist() == there
-    unnamed = read(f"row,plant,found\n{rows + 1},3,x\n2,1,x\n", grid=grid)
-    assert unnamed.value.plant.tolist() == there
-    assert "2 record(s) name no block" in unnamed.messages[-1].sentence
-    wrong = read("block,row,plant,found\n7,1,1,x\n1,1,1,x\n", grid=grid)
-    assert wrong.value.plant.tolist() == [plant_at(grid, 1, 1)]
-    assert "row 1 of block 7 (blocks are 1 to 2" in wrong.of(Severity.DROPPED)[0].sentence
-
-
-def test_how_far_a_position_is_off_is_measured_along_its_row_and_across(two_blocks):
-    grid = two_blocks
-    for block, (east_m, north_m) in ((0, (1.3, 0.0)), (1, (0.0, 1.3))):
-        plant = int(np.flatnonzero(np.asarray(grid.block)[grid.row] == block)[40])
-        lon, lat = grid.lonlat(np.array([plant]))[0]
-        lon += east_m / (111_320 * np.cos(np.deg2rad(lat)))
-        lat += north_m / 111_132
-        read_one = read(f"lon,lat,found\n{lon:.9f},{lat:.9f},x\n", grid=grid)
-        assert read_one.value.plant.tolist() == [plant]
-        assert not read_one.of(Severity.DOUBTFUL)
-
-
 def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
     brought = dated(read("plant,result,date\n1,found,2026-04-06\n2,clean,\n3,clean,2026-04-07\n"))
     assert brought.value.plant.tolist() == [1, 3]
     assert any("1 record(s) have no date" in str(one) for one in brought.messages)
     none = read("plant,result\n1,found\n")
     assert dated(none) is none
-
-
-@pytest.mark.parametrize(
-    ("below", "other"),
-    [("0,3", "1,4"), ("3,0", "4,1"), ("0,0", "1,1"), ("-1,2", "2,2"), ("0/3", "1/4")],
-)
-def test_rows_or_plants_counted_from_zero_put_nobody_next_door(below, other):
-    head = "row,plant" if "," in below else "tree"
-    text = f"{head},count\n{below},2\n{other},2\n"
-    told = read(text)
-    assert not len(told.value)
-    dropped, doubted = (str(one) for one in told.messages if "record" in str(one.feature))
-    assert "counted from 1, but it says 0 or less" in dropped
-    assert "Add 1 where they were counted from 0" in doubted
-    assert len(read(text, InspectionOptions(take_doubtful=True)).value) == 1
 
 
 def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():

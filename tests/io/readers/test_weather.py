@@ -11,7 +11,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.weather import weather_in
 from fieldmon.io.readers.weather_options import WeatherOptions
-from fieldmon.io.sandbox.unpack import Workroom
+from fieldmon.io.sandbox.workroom import Workroom
 
 JERUSALEM = WeatherOptions(zone="Asia/Jerusalem")
 

@@ -12,7 +12,7 @@ from fieldmon.io.options import Upload
 from fieldmon.io.readers.weather import weather_in
 from fieldmon.io.readers.weather_json import is_weather_json
 from fieldmon.io.readers.weather_options import WeatherOptions
-from fieldmon.io.sandbox.unpack import Workroom
+from fieldmon.io.sandbox.workroom import Workroom
 
 #: the first hours of the example in docs/weather_service.md of the platform's weather service
 EXAMPLE = {

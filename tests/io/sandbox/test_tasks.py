@@ -11,7 +11,7 @@ from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.plots import plots_of
 from fieldmon.io.sandbox import process, tasks
-from fieldmon.io.sandbox.unpack import Workroom
+from fieldmon.io.sandbox.workroom import Workroom
 
 
 def feature(kind, coordinates, **properties):

@@ -14,8 +14,8 @@ from fieldmon.studies.routes.seasons import (
     MORNING,
     BestRouteSampler,
     MorningAdaptive,
+    season_sentences,
     seasons,
-    told,
     worth,
 )
 from fieldmon.studies.samplers.scenarios import Scenario
@@ -48,6 +48,6 @@ def test_all_three_meet_the_same_insects_and_are_told_apart():
     made = list(seasons(Scenario("A", Spread(0.3, "one")), range(2), hours=1.0))
     assert [one.who for one in made] == [AS_IT_IS, MORNING, BEST] * 2
     assert [one.seed for one in made] == [0, 0, 0, 1, 1, 1]
-    sentences = told(made)
+    sentences = season_sentences(made)
     assert sentences[0].startswith("adaptive: ")
     assert len(sentences) == 5

@@ -115,13 +115,13 @@ def test_what_is_believed_in_a_world_is_what_is_believed_elsewhere():
 
 
 def test_a_pest_takes_the_place_of_each_rate_and_keeps_the_rest():
-    living = PestInWeather(Pest("mite", detection=0.5))
-    made = with_pest([*all_scenarios(), *in_worlds()], living)
+    pest_in_weather = PestInWeather(Pest("mite", detection=0.5))
+    made = with_pest([*all_scenarios(), *in_worlds()], pest_in_weather)
     names = [each.name for each in made]
     assert len(set(names)) == len(names) == 3 * len(STARTS) * len(PRIORS) + 2
-    assert all(each.living is living and not each.world for each in made)
+    assert all(each.pest_in_weather is pest_in_weather and not each.world for each in made)
     assert {each.robot.detects for each in made} == {0.5}
-    assert all(each.settings.pest is living for each in made)
-    assert Scenario(living=PestInWeather(Pest("mite"))).name not in names
+    assert all(each.settings.pest is pest_in_weather for each in made)
+    assert Scenario(pest_in_weather=PestInWeather(Pest("mite"))).name not in names
     with pytest.raises(SettingError, match="goes without a world"):
-        Scenario(flaw="spread", living=living)
+        Scenario(flaw="spread", pest_in_weather=pest_in_weather)

@@ -55,7 +55,7 @@ def test_once_all_was_looked_at_zones_spray_at_least_60_percent_less(scenario):
 def test_a_pest_lives_in_a_treated_season_by_its_own_nights():
     """One that goes nowhere and is never found stays where it is, day by day."""
     still = Pest("still", movement=Movement(per_day=0.0), detection=0.0)
-    scenario = Scenario("A", hours=0.4, living=PestInWeather(still))
+    scenario = Scenario("A", hours=0.4, pest_in_weather=PestInWeather(still))
     nothing = treated_seasons(scenario, 1, ["naive"], n_days=5)[0]
     infested = scenario.draw_start(RandomStreams(1)).infested
     assert nothing.plant_days == 5 * infested.sum()

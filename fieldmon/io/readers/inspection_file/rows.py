@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.options import Source
     from fieldmon.io.readers.inspection_options import InspectionOptions
-    from fieldmon.io.sandbox.unpack import Workroom
+    from fieldmon.io.sandbox.workroom import Workroom
 
 # Layers of files given out and of a season's file: what to read where nobody chose
 _LAYERS = ("inspections", "stops", "plants", "waypoints")

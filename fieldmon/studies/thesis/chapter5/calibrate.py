@@ -143,7 +143,7 @@ def calibrate(
     the best joint fit and in the best fit of each part; the front-runners meet more seeds.
     """
     effort = effort or Effort()
-    search = _Search(effort, seed, progress)
+    search = _ChoiceSearch(effort, seed, progress)
     try:
         search.run()
     except KeyboardInterrupt:
@@ -153,7 +153,7 @@ def calibrate(
     return _fitted(search.final, search.all_parts, stopped=False)
 
 
-class _Search:
+class _ChoiceSearch:
     """The state of a search, so that it can be left at any time."""
 
     def __init__(self, effort: Effort, seed: int, progress: Progress | None) -> None:

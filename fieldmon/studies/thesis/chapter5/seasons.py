@@ -113,7 +113,7 @@ def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Fl
     last = np.full(len(infested), NEVER, np.int32)
     trail = np.empty(0, np.int32)
     new = count(infested)
-    living = None if choices.pest is None else PestInsects(site.grid, infested, choices.pest)
+    insects = None if choices.pest is None else PestInsects(site.grid, infested, choices.pest)
     for day in range(len(table)):
         here = count(infested)
         if here == 0 and choices.ends == "find":
@@ -121,7 +121,7 @@ def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Fl
             table[day:, EVER], table[day:, EVER_FOUND] = count(ever), count(ever_found)
             break
         scene = Scene(site.aisles, robot, belief, last, day, GATE, robot.day_s, trail)
-        showing = infested if living is None else living.showing(day)
+        showing = infested if insects is None else insects.showing(day)
         plants, found, at_s = _inspect(trial, scene, showing, keys.inspect[day])
         finds = plants[found]
         again = ever_found[finds]
@@ -140,11 +140,11 @@ def play_from(site: Site, trial: PriorTrial, start: Start, keys: SeedKeys) -> Fl
                 belief = _morning(site, choices, evening, (plants, found, missed))
             else:
                 belief = _morning_of_pest(site, choices.pest, evening, day)
-        if living is None:
+        if insects is None:
             after = _night(site, choices, infested, missed, keys.spread[day])
         else:
-            living.pass_night(finds, day, keys.spread[day])
-            after = living.infested.copy()
+            insects.pass_night(finds, day, keys.spread[day])
+            after = insects.infested.copy()
         new = count(after & ~infested)
         infested = after
         ever |= infested
@@ -219,14 +219,16 @@ def _morning(
     return np.clip(1.0 - (1.0 - evening) * spared, 1e-6, _MOST)
 
 
-def _morning_of_pest(site: Site, living: PestInWeather, evening: Floats, day: int) -> Floats:
+def _morning_of_pest(
+    site: Site, pest_in_weather: PestInWeather, evening: Floats, day: int
+) -> Floats:
     """Return the chance map of the next morning, plants taken as independent, as the thesis does.
 
     By the pest's kernel, warmth and wind; nothing is known of what comes over the edge, nor of
     what cannot be seen yet.
     """
-    frame, movement = site.grid.frame, living.pest.movement
-    spread = living.spread(day, frame)
+    frame, movement = site.grid.frame, pest_in_weather.pest.movement
+    spread = pest_in_weather.spread(day, frame)
     if movement.kernel == "adjacent":
         return overnight(evening, site.grid, spread)
     kernel = dispersal_of(site.grid, kernel_of(movement), spread.wind_m_s)

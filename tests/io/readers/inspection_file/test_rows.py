@@ -10,7 +10,7 @@ from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.readers.inspection_file.rows import rows_in, rows_of
 from fieldmon.io.readers.inspection_options import InspectionOptions
-from fieldmon.io.sandbox.unpack import Workroom
+from fieldmon.io.sandbox.workroom import Workroom
 from tests.io.tables_of_cells import column, sentences, table
 
 NOTHING = InspectionOptions()

@@ -1,4 +1,4 @@
-"""More awkward files: what went wrong when sixty real ones were tried that nobody had seen."""
+"""Awkward files as people have them: what went wrong when sixty real ones were tried."""
 
 import io
 import re

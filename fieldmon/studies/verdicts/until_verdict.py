@@ -74,22 +74,22 @@ class Question:
         believed to be as many as the threshold has it.
     real
         The real map; None: drawn.
-    living
+    pest_in_weather
         The pest, which is detected as its file says; None: as the thesis's table has it.
     """
 
     start: str
     prior: str = "none"
     real: DatedMap | None = None
-    living: PestInWeather | None = None
+    pest_in_weather: PestInWeather | None = None
 
     @property
     def name(self) -> str:
         """Return it in words, unique."""
         words = self.start if self.real is not None else f"{self.start}, prior {self.prior}"
-        if self.living is None:
+        if self.pest_in_weather is None:
             return words
-        return f"{words}, {self.living.pest.name}, {of_pest(self.living)}"
+        return f"{words}, {self.pest_in_weather.pest.name}, {of_pest(self.pest_in_weather)}"
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ def _drawn(question: Question, streams: RandomStreams) -> _Plot:
     else:
         aisles, infested = question.real.aisles, question.real.infested
         level = float(np.clip(infested.mean() / apart, 0.002, 0.45))
-    known = Scenario(prior=question.prior, living=question.living)
+    known = Scenario(prior=question.prior, pest_in_weather=question.pest_in_weather)
     robot = replace(known.believed_robot, returns=False, hours=24.0).with_times("thesis")
     shows = infested & (rng.random(len(infested)) < robot.detects)
     morning = known_chance(aisles.grid, known, infested, streams.of("records"), level)
@@ -202,12 +202,12 @@ def _wald(plot: _Plot) -> WaldPlan:
     )
 
 
-def fixed_looks(plan: WaldPlan) -> int:
+def fixed_inspections(plan: WaldPlan) -> int:
     """Return how many looks tell the two levels of a plan apart if all are made (normal law).
 
     Examples
     --------
-    >>> fixed_looks(WaldPlan(0.025, 0.1))
+    >>> fixed_inspections(WaldPlan(0.025, 0.1))
     61
     """
     low, high = plan.low, plan.high
@@ -219,7 +219,7 @@ def fixed_looks(plan: WaldPlan) -> int:
 def _w_all(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
     """Walk one W with as many looks as the two levels need, and count."""
     plan = _wald(plot)
-    looks = min(fixed_looks(plan), MOST, len(plot.shows))
+    looks = min(fixed_inspections(plan), MOST, len(plot.shows))
     seen = plot.shows[w_walk(plot.aisles.grid, looks, looks)]
     # half way between the levels, as far as their spreads go
     spreads = [np.sqrt(level * (1 - level)) for level in (plan.low, plan.high)]
@@ -229,14 +229,14 @@ def _w_all(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
 
 def _w_wald(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
     plan = _wald(plot)
-    walk = w_walk(plot.aisles.grid, fixed_looks(plan), MOST)
+    walk = w_walk(plot.aisles.grid, fixed_inspections(plan), MOST)
     return decided(plan, plot.shows[walk])
 
 
 def _w_iwao(plot: _Plot, _: np.random.Generator) -> tuple[Verdict, int]:
     # one side is wrong in a tenth
     plan = IwaoPlan(plot.level * plot.robot.detects, z=float(-ndtri(WRONG)))
-    walk = w_walk(plot.aisles.grid, fixed_looks(_wald(plot)), MOST)
+    walk = w_walk(plot.aisles.grid, fixed_inspections(_wald(plot)), MOST)
     return decided(plan, plot.shows[walk])
 
 

@@ -1,4 +1,4 @@
-"""Spread beside pops-core's: ``python -m tests.benchmarks.beside_pops PROGRAM``.
+"""Spread beside pops-core's: ``python -m tests.benchmarks.against_pops PROGRAM``.
 
 PROGRAM is a harness of one's own around the functions ``generate`` and ``disperse`` of its
 Simulation, which is in C++. It takes side, hosts a cell, days, rate a day, mean jump, size of a

@@ -12,7 +12,7 @@ import pytest
 
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.changes_beside import _is_of_the_last_transaction, _reaches
+from fieldmon.monitoring.journals import _is_of_the_last_transaction, _reaches
 from tests.monitoring.open_elsewhere import as_qgis, beside, left_by_a_crash
 from tests.monitoring.seasons import a_plot, a_season, state, three_results
 

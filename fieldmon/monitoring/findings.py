@@ -1,6 +1,6 @@
 """What phones and robots tell of plants: taken once each, whatever comes twice, late or never.
 
-Each telling has an id made where it was told. What is told may come in any order and as often as
+Each finding has an id made where it was told. What is told may come in any order and as often as
 a network breaks; once `take` returns, it is on the disk, and comes to no second inspection.
 """
 
@@ -45,8 +45,8 @@ _WRONG = timedelta(minutes=2)
 
 
 @dataclass(frozen=True)
-class Telling:
-    """What somebody tells of one plant, or that an earlier telling is taken back.
+class Finding:
+    """What somebody tells of one plant, or that an earlier finding is taken back.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Telling:
     off_route
         Whether the plant was not on the route.
     undoes
-        Id of the telling that it takes back.
+        Id of the finding that it takes back.
     """
 
     id: str
@@ -85,18 +85,18 @@ class Telling:
     undoes: str = ""
 
     def content(self) -> str:
-        """Return all of it as JSON, the same for the same telling only."""
+        """Return all of it as JSON, the same for the same finding only."""
         return json.dumps(asdict(self), default=str, sort_keys=True, ensure_ascii=False)
 
 
 @dataclass(frozen=True)
 class Taken:
-    """What became of a telling, which is on the disk.
+    """What became of a finding, which is on the disk.
 
     Parameters
     ----------
     id
-        Of the telling.
+        Of the finding.
     new
         Whether it was not there before.
     problem
@@ -109,11 +109,11 @@ class Taken:
 
 
 def take(
-    season: Season, key: str, tellings: Sequence[Telling], sent: datetime
+    season: Season, key: str, findings: Sequence[Finding], sent: datetime
 ) -> tuple[Taken, ...]:
-    """Keep what was told, each telling once; what is returned is on the disk.
+    """Keep what was told, each finding once; what is returned is on the disk.
 
-    Where a telling does not fit the season (no such plant, a day before its first), it is kept and
+    Where a finding does not fit the season (no such plant, a day before its first), it is kept and
     does not count. The same plant told by two people is kept twice: see `Season.contradicting`.
 
     Parameters
@@ -122,7 +122,7 @@ def take(
         The season.
     key
         Of whoever tells, see `fieldmon.monitoring.scouts`.
-    tellings
+    findings
         In the order in which they were told.
     sent
         The phone's clock as it sends: where it is wrong, times are put right by as much.
@@ -139,13 +139,13 @@ def take(
     shift = fast if abs(fast) > _WRONG else timedelta()
     with season.changing() as change:
         scout = scouts.who_in(change.db, season, key)
-        known = _known(change.db, [one.id for one in tellings])
-        news = {one.id: one for one in tellings if one.id not in known}
+        known = _known(change.db, [one.id for one in findings])
+        news = {one.id: one for one in findings if one.id not in known}
         _limit(change.db, scout, received, len(news))
         clocks = received, sent
         for one in news.values():
             known[one.id] = one.content(), ""
-        letter = _Letter(list(news.values()), clocks, shift)
+        letter = _SentFindings(list(news.values()), clocks, shift)
         problems, batch, made = _write(season, change, scout, letter)
         taken_back = _take_back(change) if news else set()
         if made:
@@ -162,30 +162,30 @@ def take(
         Taken(
             one.id, one.id in news, problems.get(one.id, known[one.id][1]) or _differs(one, known)
         )
-        for one in tellings
+        for one in findings
     )
 
 
 @dataclass(frozen=True)
-class _Letter:
+class _SentFindings:
     """What came at once, and by how much the phone's clock is ahead."""
 
-    tellings: list[Telling]
+    findings: list[Finding]
     clocks: tuple[datetime, datetime]
     shift: timedelta
 
 
 def _known(db: sqlite3.Connection, ids: list[str]) -> dict[str, tuple[str, str]]:
-    """Return content and problem of those of the tellings that are there, by id."""
+    """Return content and problem of those of the findings that are there, by id."""
     wanted = "SELECT content, coalesce(problem, '') FROM tellings WHERE id = ?"
     rows = ((one, db.execute(wanted, (one,)).fetchone()) for one in ids)
     return {one: row for one, row in rows if row is not None}
 
 
-def _differs(one: Telling, known: dict[str, tuple[str, str]]) -> str:
+def _differs(one: Finding, known: dict[str, tuple[str, str]]) -> str:
     if known[one.id][0] == one.content():
         return ""
-    return worded("Another telling has the same id; the first one was kept.")
+    return worded("Another finding has the same id; the first one was kept.")
 
 
 def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> None:
@@ -202,19 +202,19 @@ def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> No
 
 
 def _write(
-    season: Season, change: SeasonChange, scout: Scout, letter: _Letter
+    season: Season, change: SeasonChange, scout: Scout, letter: _SentFindings
 ) -> tuple[dict[str, str], int, list[Inspections]]:
-    """Write tellings and their inspections.
+    """Write findings and their inspections.
 
     Return what is wrong with those that do not count, the batch, and what was seen.
     """
     seen: list[Inspections] = []
-    if not letter.tellings:
+    if not letter.findings:
         return {}, 0, seen
     settings = settings_of(change.db)
     batch = batches.begin(change.db, "findings", SOURCE, scout.name)
     problems: dict[str, str] = {}
-    for one in letter.tellings:
+    for one in letter.findings:
         inspection = None
         if not one.undoes:
             try:
@@ -228,13 +228,13 @@ def _write(
                 problems[one.id] = str(error)
         _keep(change.db, scout, letter.clocks, (one, inspection, problems.get(one.id)))
     batches.end(change.db, batch, len(seen))
-    touch(change.db, phone_tables.TELLINGS.name)
+    touch(change.db, phone_tables.FINDINGS.name)
     touch(change.db, schema.INSPECTIONS.name)
     return problems, batch, seen
 
 
-def _inspection(season: Season, one: Telling, at: datetime) -> Inspections:
-    """Return a telling as an inspection; raise `ObservationError` where it names none."""
+def _inspection(season: Season, one: Finding, at: datetime) -> Inspections:
+    """Return a finding as an inspection; raise `ObservationError` where it names none."""
     if one.plant is None or one.result not in RESULT_NAMES:
         raise ObservationError(
             worded("A finding must name a plant and a result, but one of them is missing.")
@@ -269,14 +269,14 @@ def _keep(
     db: sqlite3.Connection,
     scout: Scout,
     clocks: tuple[datetime, datetime],
-    told: tuple[Telling, int | None, str | None],
+    told: tuple[Finding, int | None, str | None],
 ) -> None:
     received, sent = clocks
     one, inspection, problem = told
     place = None if one.lonlat is None else point_blobs(np.array([one.lonlat]))[0]
     insert(
         db,
-        phone_tables.TELLINGS,
+        phone_tables.FINDINGS,
         [
             (
                 *(place, one.id, scout.name, one.undoes or None),

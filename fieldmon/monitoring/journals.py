@@ -18,7 +18,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
 #: where a file says that changes may lie beside it, and how it says so
-_AT, _MAY_LIE_BESIDE = 18, b"\x02\x02"
+_AT, _WAL_MODE = 18, b"\x02\x02"
 _HEADER, _FRAME_HEADER = 32, 24
 #: of a season that was open elsewhere, and whose other file is not here
 PARTED = (
@@ -36,22 +36,22 @@ _COUNTER_AT, _PAGE_SIZE_AT = 24, 16
 _LOOKS, _LOOK_AGAIN_S = 4, 0.25
 
 
-def beside(path: Path) -> Path:
+def wal_of(path: Path) -> Path:
     """Return where such changes lie."""
     return path.with_name(f"{path.name}-wal")
 
 
-def refuse_foreign(path: Path) -> bool:
+def refuse_foreign_wal(path: Path) -> bool:
     """Return whether changes lie beside a season; raise `FileProblem` if they are not its own.
 
     SQLite would take them for its own and write them into the season.
     """
-    more = beside(path)
+    more = wal_of(path)
     if not more.is_file():
         return False
     try:
         with path.open("rb") as file:
-            may = file.read(100)[_AT : _AT + 2] == _MAY_LIE_BESIDE
+            may = file.read(100)[_AT : _AT + 2] == _WAL_MODE
         # twice: another program may write while the one is copied and then the other
         if not more.stat().st_size or (may and (_fit(path, more) or _fit(path, more))):
             return True
@@ -147,13 +147,13 @@ def _fit(path: Path, more: Path) -> bool:
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         copy = Path(folder) / "season.gpkg"
         shutil.copyfile(path, copy)
-        shutil.copyfile(more, beside(copy))
+        shutil.copyfile(more, wal_of(copy))
         try:
             alone = f"{copy.as_uri()}?immutable=1"
             with closing(sqlite3.connect(alone, uri=True)) as db:
                 before = _revision(db)
                 (n_pages,) = db.execute("PRAGMA page_count").fetchone()
-            if not _reaches(beside(copy).read_bytes(), n_pages):
+            if not _reaches(wal_of(copy).read_bytes(), n_pages):
                 return False
             with closing(sqlite3.connect(copy)) as db:
                 (said,) = db.execute("PRAGMA integrity_check(1)").fetchone()

@@ -6,13 +6,13 @@ from fieldmon.decisions.sequential import WaldPlan
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.pests.pest import Pest
-from fieldmon.studies.verdicts.looks import (
+from fieldmon.studies.verdicts.until_verdict import (
     CONTENDERS,
     DECIDE,
     W_FIXED,
     Question,
     answers,
-    fixed_looks,
+    fixed_inspections,
     summaries,
 )
 
@@ -39,7 +39,7 @@ def test_a_verdict_is_right_where_the_truth_is_on_its_side(answered):
 
 def test_the_whole_w_is_as_long_as_its_two_levels_need(answered):
     """By the normal law: (z (s1 + s2) / (p2 - p1))^2."""
-    assert fixed_looks(WaldPlan(0.025, 0.1)) == 61
+    assert fixed_inspections(WaldPlan(0.025, 0.1)) == 61
     assert {one.looks for one in answered if one.contender == W_FIXED} == {74.0}
 
 
@@ -54,11 +54,13 @@ def test_sums_are_means_over_seeds_and_over_the_whole_w(answered):
 
 def test_a_pest_is_asked_about_as_it_is_seen(answered):
     """One seen as by the thesis's table changes no answer; a whole W is longer for a shy one."""
-    alike = answers(Question("clusters", living=PestInWeather(Pest("alike"))), 1)
+    alike = answers(Question("clusters", pest_in_weather=PestInWeather(Pest("alike"))), 1)
     assert [(a.looks, a.verdict) for a in alike] == [
         (a.looks, a.verdict) for a in answered if a.seed == 1
     ]
-    (shy, *_) = answers(Question("clusters", living=PestInWeather(Pest("shy", detection=0.3))), 1)
+    (shy, *_) = answers(
+        Question("clusters", pest_in_weather=PestInWeather(Pest("shy", detection=0.3))), 1
+    )
     assert "shy" in shy.question
     assert shy.contender == alike[0].contender == W_FIXED
     assert shy.looks > alike[0].looks

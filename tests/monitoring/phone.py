@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import phone_tables, schema
-from fieldmon.monitoring.tellings import Telling
+from fieldmon.monitoring.findings import Finding
 from tests.monitoring.seasons import BEGINS
 
 #: 09:00 on the plot (Israel, summer time)
@@ -17,18 +17,18 @@ NOW = datetime(2026, 4, 6, 6, 0, tzinfo=UTC)
 JPEG = b"\xff\xd8\xff\xe0" + bytes(range(256)) * 8
 
 
-def a_telling(plant=0, result=CLEAN, **more):
-    return Telling(
+def a_finding(plant=0, result=CLEAN, **more):
+    return Finding(
         **({"id": str(uuid.uuid4()), "at": NOW, "plant": plant, "result": result} | more)
     )
 
 
-def a_days_tellings(season, n=12, seed=0):
+def a_days_findings(season, n=12, seed=0):
     """Return what a phone tells of the first plants of a day's route, a minute each."""
     rng = np.random.default_rng(seed)
     plants = season.plan(BEGINS, keep=False).route.plant[:n].tolist()
     return [
-        a_telling(plant, FOUND if rng.random() < 0.2 else CLEAN, at=NOW + timedelta(minutes=k))
+        a_finding(plant, FOUND if rng.random() < 0.2 else CLEAN, at=NOW + timedelta(minutes=k))
         for k, plant in enumerate(plants)
     ]
 

@@ -9,10 +9,10 @@ import pytest
 
 from fieldmon.errors import AccessError, LimitError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
-from fieldmon.monitoring import Season, scouts, tellings
-from fieldmon.monitoring.tellings import take
+from fieldmon.monitoring import Season, findings, scouts
+from fieldmon.monitoring.findings import take
+from tests.monitoring.phone import NOW, a_days_findings, a_finding, told
 from tests.monitoring.seasons import BEGINS, state
-from tests.monitoring.telling import NOW, a_days_tellings, a_telling, told
 
 
 @pytest.fixture
@@ -27,12 +27,12 @@ def key(season):
 
 @pytest.fixture(autouse=True)
 def _now(monkeypatch):
-    monkeypatch.setattr(tellings, "utc_now", lambda: NOW)
+    monkeypatch.setattr(findings, "utc_now", lambda: NOW)
 
 
-def test_each_telling_is_one_inspection_however_often_and_in_whatever_order_it_comes(season, key):
+def test_each_finding_is_one_inspection_however_often_and_in_whatever_order_it_comes(season, key):
     before = state(season.path)
-    day = a_days_tellings(season)
+    day = a_days_findings(season)
     rng = random.Random(1)
     for _ in range(6):
         some = rng.sample(day, rng.randint(1, len(day)))
@@ -48,10 +48,10 @@ def test_each_telling_is_one_inspection_however_often_and_in_whatever_order_it_c
 
 
 def test_what_is_taken_back_does_not_count_whichever_came_first(season, key):
-    kept, gone, early = a_telling(33), a_telling(34), a_telling(35)
-    take(season, key, [a_telling(None, None, undoes=early.id)], NOW)
+    kept, gone, early = a_finding(33), a_finding(34), a_finding(35)
+    take(season, key, [a_finding(None, None, undoes=early.id)], NOW)
     take(season, key, [kept, gone, early], NOW)
-    take(season, key, [a_telling(None, None, undoes=gone.id)], NOW)
+    take(season, key, [a_finding(None, None, undoes=gone.id)], NOW)
     ids, rows = told(season)
     assert len(ids) == 5
     assert [one for one, *_ in rows] == [kept.id]
@@ -61,17 +61,17 @@ def test_what_is_taken_back_does_not_count_whichever_came_first(season, key):
 
 
 def test_nobody_takes_back_what_somebody_else_told(season, key):
-    one = a_telling(3)
+    one = a_finding(3)
     take(season, key, [one], NOW)
     other = scouts.let_in(season, "Ben")
-    take(season, other, [a_telling(None, None, undoes=one.id)], NOW)
+    take(season, other, [a_finding(None, None, undoes=one.id)], NOW)
     assert [row[0] for row in told(season)[1]] == [one.id]
 
 
 def test_two_people_at_one_plant_are_both_kept_and_the_contradiction_shown(season, key):
     other = scouts.let_in(season, "Ben")
-    take(season, key, [a_telling(20, FOUND), a_telling(21)], NOW)
-    take(season, other, [a_telling(20, CLEAN), a_telling(21)], NOW)
+    take(season, key, [a_finding(20, FOUND), a_finding(21)], NOW)
+    take(season, other, [a_finding(20, CLEAN), a_finding(21)], NOW)
     assert len(told(season)[1]) == 4
     against = season.contradicting(BEGINS)
     assert against.plant.tolist() == [20, 20]
@@ -92,7 +92,7 @@ def test_two_people_at_one_plant_are_both_kept_and_the_contradiction_shown(seaso
     ],
 )
 def test_what_does_not_fit_is_kept_and_does_not_count(season, key, wrong, why):
-    good, bad = a_telling(3), a_telling(**({"plant": 4} | wrong))
+    good, bad = a_finding(3), a_finding(**({"plant": 4} | wrong))
     first, second = take(season, key, [bad, good], NOW)
     assert why in first.problem
     assert second.problem == ""
@@ -102,10 +102,10 @@ def test_what_does_not_fit_is_kept_and_does_not_count(season, key, wrong, why):
     assert why in take(season, key, [bad], NOW)[0].problem, "as often as it comes"
 
 
-def test_another_telling_with_the_same_id_does_not_replace_the_first(season, key):
-    one = a_telling(3)
+def test_another_finding_with_the_same_id_does_not_replace_the_first(season, key):
+    one = a_finding(3)
     take(season, key, [one], NOW)
-    (answer,) = take(season, key, [a_telling(4, id=one.id)], NOW)
+    (answer,) = take(season, key, [a_finding(4, id=one.id)], NOW)
     assert (answer.new, "same id" in answer.problem) == (False, True)
     assert [row[1] for row in told(season)[1]] == [3]
 
@@ -116,7 +116,7 @@ def test_another_telling_with_the_same_id_does_not_replace_the_first(season, key
 def test_a_wrong_clock_is_put_right_and_both_times_are_kept(season, key, ahead, clock):
     """The phone says when it sends; a clock that is hours off was set wrong."""
     phone = NOW + timedelta(seconds=ahead)
-    take(season, key, [a_telling(3, at=phone)], phone)
+    take(season, key, [a_finding(3, at=phone)], phone)
     with season.store.reading() as db:
         kept = db.execute("SELECT at_phone, sent_phone, received FROM tellings").fetchone()
         (row,) = db.execute(
@@ -129,7 +129,7 @@ def test_a_wrong_clock_is_put_right_and_both_times_are_kept(season, key, ahead, 
 
 def test_what_is_meant_for_another_day_has_no_time(season, key):
     other = BEGINS + timedelta(days=2)
-    take(season, key, [a_telling(3, on=other)], NOW)
+    take(season, key, [a_finding(3, on=other)], NOW)
     done = season.history.inspections.on(other)
     assert done.plant.tolist() == [3]
     assert np.isnan(done.second).all()
@@ -138,35 +138,35 @@ def test_what_is_meant_for_another_day_has_no_time(season, key):
 def test_a_key_that_was_taken_back_writes_nothing(season, key):
     scouts.take_back(season, "Ann")
     with pytest.raises(AccessError):
-        take(season, key, [a_telling(3)], NOW)
+        take(season, key, [a_finding(3)], NOW)
     assert told(season) == ([], [])
 
 
 def test_more_than_anybody_can_inspect_is_not_taken(season, key, monkeypatch):
-    monkeypatch.setattr(tellings, "MOST_A_DAY", 3)
-    take(season, key, [a_telling(k) for k in range(3)], NOW)
+    monkeypatch.setattr(findings, "MOST_A_DAY", 3)
+    take(season, key, [a_finding(k) for k in range(3)], NOW)
     with pytest.raises(LimitError, match="3 findings a day"):
-        take(season, key, [a_telling(4)], NOW)
+        take(season, key, [a_finding(4)], NOW)
     assert len(told(season)[0]) == 3
 
 
 def test_a_gis_sees_where_a_phone_stood_and_nothing_where_it_did_not_know(season, key):
     at = {0: (35.0123456, 32.5), 1: None, 2: (-70.25, -33.75)}
-    take(season, key, [a_telling(plant, lonlat=place) for plant, place in at.items()], NOW)
+    take(season, key, [a_finding(plant, lonlat=place) for plant, place in at.items()], NOW)
     points = pyogrio.read_dataframe(season.path, layer="tellings").geometry
     seen = [None if one is None else (one.x, one.y) for one in points]
     assert seen == [at[plant] for plant in sorted(at)]
 
 
-def test_each_field_of_a_telling_is_read_by_a_gis_as_it_was_told(season, key):
+def test_each_field_of_a_finding_is_read_by_a_gis_as_it_was_told(season, key):
     told = [
-        a_telling(3, FOUND, count=7.0, stage="eggs", leaves=12.0, accuracy_m=4.5, off_route=True,
+        a_finding(3, FOUND, count=7.0, stage="eggs", leaves=12.0, accuracy_m=4.5, off_route=True,
                   notes="underside", lonlat=(35.15, 30.36)),
-        a_telling(4, CLEAN, count=2.0),
-        a_telling(5, SKIPPED),
-        a_telling(9999, FOUND),
+        a_finding(4, CLEAN, count=2.0),
+        a_finding(5, SKIPPED),
+        a_finding(9999, FOUND),
     ]  # fmt: skip
-    told.append(a_telling(None, None, undoes=told[1].id))
+    told.append(a_finding(None, None, undoes=told[1].id))
     sent = NOW + timedelta(seconds=30)
     take(season, key, told, sent)
     table = pyogrio.read_dataframe(season.path, layer="tellings").astype(object)
@@ -195,15 +195,15 @@ def test_each_field_of_a_telling_is_read_by_a_gis_as_it_was_told(season, key):
 
 
 def test_a_day_later_as_much_may_be_told_again_but_not_a_moment_sooner(season, key, monkeypatch):
-    monkeypatch.setattr(tellings, "MOST_A_DAY", 2)
+    monkeypatch.setattr(findings, "MOST_A_DAY", 2)
     clock = [NOW]
-    monkeypatch.setattr(tellings, "utc_now", lambda: clock[0])
-    take(season, key, [a_telling(0), a_telling(1)], NOW)
+    monkeypatch.setattr(findings, "utc_now", lambda: clock[0])
+    take(season, key, [a_finding(0), a_finding(1)], NOW)
     clock[0] = NOW + timedelta(hours=24, seconds=-1)
     with pytest.raises(LimitError, match="but this makes 3"):
-        take(season, key, [a_telling(2)], clock[0])
+        take(season, key, [a_finding(2)], clock[0])
     clock[0] = NOW + timedelta(hours=24, seconds=1)
-    take(season, key, [a_telling(2), a_telling(3)], clock[0])
+    take(season, key, [a_finding(2), a_finding(3)], clock[0])
     assert len(told(season)[0]) == 4
 
 
@@ -211,8 +211,8 @@ def test_a_day_later_as_much_may_be_told_again_but_not_a_moment_sooner(season, k
 def test_a_clock_is_put_right_if_it_is_two_minutes_wrong_and_else_believed(
     season, key, monkeypatch, fast_s, shifted
 ):
-    monkeypatch.setattr(tellings, "utc_now", lambda: NOW)
+    monkeypatch.setattr(findings, "utc_now", lambda: NOW)
     fast = timedelta(seconds=fast_s)
-    take(season, key, [a_telling(0, at=NOW + fast)], NOW + fast)
+    take(season, key, [a_finding(0, at=NOW + fast)], NOW + fast)
     second = season.history.inspections.second
     assert second[~np.isnan(second)].tolist() == [9 * 3600.0 + (0.0 if shifted else fast_s)]

@@ -95,7 +95,7 @@ def in_weather(choices: Choices) -> PestInWeather | None:
 
 def key(known: PestInWeather | None) -> str:
     """Return what stands for a pest in its weather in cache keys."""
-    return "" if known is None else digest(*known.told, length=16)
+    return "" if known is None else digest(*known.content, length=16)
 
 
 def prior(settings: PriorSettings, plot: Plot, today: date, on: date) -> PriorSettings:

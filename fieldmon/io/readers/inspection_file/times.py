@@ -12,7 +12,7 @@ from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.values import dates
 from fieldmon.io.readers.date_doubts import in_future, mixed_dates
-from fieldmon.io.readers.inspection_file.columns import own_column, texts_in
+from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,7 +48,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
             when[i] = local_time(read.day[i], clock, zone)
             n_utc += clock.offset is not None and zone is None
     day = np.where(np.isnat(when), read.day, when.astype("datetime64[D]"))
-    planned = dates(_object(texts_in(layer, columns.arrive).tolist())).day
+    planned = dates(_object(arrivals_in(layer, columns).tolist())).day
     told = np.datetime64("NaT", "D") if options.day is None else options.day
     day = np.where(np.isnat(day), planned, day)
     day = np.where(np.isnat(day), told, day).astype("datetime64[D]")

@@ -107,6 +107,7 @@ class SeasonRecords(OpenSeason):
             made = inspection_table.rows(
                 news, self.plot.grid, self.label, settings_of(db), (batch, who)
             )
+            news = news.take(inspection_table.not_held(db, made))
             new = inspection_table.store(db, made)
             batches.end(db, batch, new, grows=into is not None)
             if new:

@@ -1,10 +1,12 @@
 """What was found is recorded once, and can be taken back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from tests.monitoring.seasons import (
     BEGINS,
     some_results,
@@ -21,6 +23,19 @@ def test_the_same_results_twice_change_nothing(season):
     assert len(season.history.inspections) == 5
     assert len(season.batches()) == 1
     assert len(season.path.read_bytes()) == len(before)
+
+
+def test_the_log_says_how_many_of_what_was_brought_were_new(season):
+    counted = some_results(season, 5, found=[1])
+    counted = replace(counted, count=np.where(counted.result == FOUND, 4.0, np.nan))
+    season.record(counted, "monday.csv")
+    plants = np.array([*counted.plant, 400, 401])
+    result = np.array([*counted.result, FOUND, CLEAN], np.int8)
+    count = np.array([*counted.count, 2.0, np.nan])
+    again = Inspections.of(plants, result, np.datetime64(BEGINS, "D"), count=count)
+    assert season.record(again, "copy.gpkg").new == 2
+    seen = [entry.what for entry in season.log() if entry.kind == "seen"]
+    assert [(one["found"], one["clean"]) for one in seen] == [(1, 4), (1, 1)]
 
 
 def test_what_was_not_inspected_stays_unknown(season):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.errors import ObservationError, SettingError
+from fieldmon.errors import ContradictionError, ObservationError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from tests.monitoring.seasons import (
     BEGINS,
@@ -128,3 +128,26 @@ def test_results_that_do_not_fit_are_a_sentence_and_leave_no_trace(
 def test_what_are_no_inspections_is_refused_in_a_sentence(season, results):
     with pytest.raises(SettingError, match="What is recorded must be Inspections"):
         season.record(results)
+
+
+def test_several_files_are_recorded_all_or_none(season):
+    good, more = some_results(season, 3), some_results(season, 3, day=1)
+    elsewhere = Inspections.of([10**6], [CLEAN], np.datetime64(BEGINS, "D"))
+    with pytest.raises(ObservationError, match="0 to"):
+        season.record_all([(good, "a.csv"), (elsewhere, "b.csv")])
+    assert not len(season.history.inspections)
+    assert season.batches() == ()
+    done = season.record_all([(good, "a.csv"), (more, "b.csv"), (good, "again.csv")], "Ann")
+    assert [(one.new, one.known) for one in done] == [(3, 0), (3, 0), (0, 3)]
+    assert [one.source for one in season.batches()] == ["b.csv", "a.csv"]
+    assert season.held_to_log() == ()
+    written = season.evening(BEGINS)
+    season.rebuild()
+    assert season.evening(BEGINS).tolist() == written.tolist()
+
+
+def test_files_that_contradict_one_another_are_refused_together(season):
+    found, clean = some_results(season, 3, found=[0]), some_results(season, 3)
+    with pytest.raises(ContradictionError):
+        season.record_all([(found, "a.csv"), (clean, "b.csv")])
+    assert season.batches() == ()

@@ -344,8 +344,8 @@ def _join(wanted: list[str], known: list[str]) -> tuple[NDArray[np.int64], list[
             continue
         index = {k: i for i, k in enumerate(keys)}
         match = np.array([index.get(key(name), -1) if name else -1 for name in wanted], dtype=int)
-        if np.count_nonzero(match >= 0) > most:
-            most, best, said = np.count_nonzero(match >= 0), match, how
+        if int((match >= 0).sum()) > most:
+            most, best, said = int((match >= 0).sum()), match, how
     return best, [guessed(worded("Names were compared {how}.", how=said))] if said else []
 
 

@@ -277,7 +277,7 @@ class SeasonRecords(OpenSeason):
         with self._lock, self.store.writing() as db:
             before = inspection_table.n_counting(db)
             held = self._inspections(db)
-            with other.store.reading() as theirs:
+            with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
                 # what is told is noted in any case
                 was = None if told else season_log.states(db)

@@ -10,6 +10,7 @@ import typer
 
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
+from fieldmon.errors import SettingError
 
 OtherCopy = Annotated[Path, typer.Argument(help="The other copy of the season; it is not changed.")]
 
@@ -25,6 +26,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     """
     from fieldmon.monitoring import Season, copy_season
 
+    if other.exists() and other.samefile(season):
+        raise SettingError(f"{other} must be another copy of the season, but it is the same file.")
     kept = Season(season)
     with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
         copy = Path(folder) / "other.gpkg"

@@ -96,8 +96,10 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
         if not flags.contradicting:
             _refuse_contradictions(kept, read)
         _take_corrections(kept, copies, flags.who)
-    for file, inspections in zip(files, read, strict=True):
-        done = kept.record(inspections, file.name, flags.who, confirmed=True)
+    named = [(one, file.name) for one, file in zip(read, files, strict=True)]
+    with _naming_confirmation():  # somebody may have recorded since
+        every = kept.record_all(named, flags.who, confirmed=flags.contradicting)
+    for file, inspections, done in zip(files, read, every, strict=True):
         if len(inspections):
             last = max(last or inspections.date.max(), inspections.date.max())
         batch = "" if done.batch is None else f" (batch {done.batch})"
@@ -113,11 +115,18 @@ def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
 
     held = season.history.inspections
     for inspections in read:
-        try:
+        with _naming_confirmation():
             contradictions(inspections, held).refuse(season.label)
-        except ContradictionError as error:
-            raise ContradictionError(f"{error} Confirm with: --contradicting") from None
         held = held.and_those(inspections)
+
+
+@contextmanager
+def _naming_confirmation() -> Iterator[None]:
+    """Say of contradictions how they are confirmed here."""
+    try:
+        yield
+    except ContradictionError as error:
+        raise ContradictionError(f"{error} Confirm with: --contradicting") from None
 
 
 def _copies(files: list[Path], folder: Path) -> dict[Path, Path]:

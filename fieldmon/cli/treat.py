@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -146,6 +147,11 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
     if learnt:
         typer.echo(
             f"Assumed: it cleans {100 * one.efficacy:.0f} % of infested plants, as learnt before."
+        )
+    if one.application.ends_next_day:
+        typer.echo(
+            f"Taken as over midnight: it ended on {one.on + timedelta(days=1)} at "
+            f"{one.application.ended:%H:%M}. If that is wrong: fieldmon undo"
         )
     waits = one.waits
     if waits.entry_from is not None:

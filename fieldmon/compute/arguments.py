@@ -10,15 +10,20 @@ from datetime import date, datetime
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from typing import TypeVar
 
     import numpy as np
     from numpy.typing import NDArray
 
+    K = TypeVar("K", np.float64, np.bool_)
+
 _LONGEST = 40
+_MOST_L_HA = 100_000.0
 _NUMBERS = {"float", "int"}
 
 
@@ -94,36 +99,54 @@ def must_hold_numbers(settings: Any, whose: str) -> None:  # noqa: ANN401 - any 
             raise SettingError(f"{whose} {field.name} must be a number, but it is {shown(value)}.")
 
 
-def numbers(what: str, given: object) -> NDArray[np.float64]:
-    """Return an array of numbers; raise `SettingError` where it holds anything else.
+def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDArray[K]:
+    """Return an array of numbers, or of True and False; raise `SettingError` for anything else.
+
+    Parameters
+    ----------
+    kind
+        ``np.float64`` or ``np.bool_``: numbers are not taken for True and False.
+    what
+        What is asked for: ``"A risk map"``.
+    given
+        What was handed over.
+    instead
+        What to do.
 
     Examples
     --------
-    >>> numbers("A risk map", [0.1, None, 0.3])
+    >>> import numpy as np
+    >>> array_of(np.float64, "A risk map", [0.1, None, 0.3])
     array([0.1, nan, 0.3])
-    """
-    import numpy as np  # noqa: PLC0415 - names of samplers are known without it
-
-    try:
-        return np.asarray(given, np.float64)
-    except (TypeError, ValueError) as error:
-        raise SettingError(f"{what} must hold numbers, but {shown(given)} does not.") from error
-
-
-def truths(what: str, given: object, instead: str) -> NDArray[np.bool_]:
-    """Return an array of True and False; raise `SettingError` where it holds anything else.
-
-    Examples
-    --------
-    >>> truths("Whether it was treated must be said of each plant", [True, False], "")
+    >>> array_of(np.bool_, "What was treated", [True, False])
     array([ True, False])
     """
     import numpy as np  # noqa: PLC0415 - names of samplers are known without it
 
-    array = np.asarray(given)
-    if array.dtype != np.bool_:
-        raise SettingError(f"{what} as True or False, but it is said as {array.dtype}. {instead}")
+    held = "True or False" if kind is np.bool_ else "numbers"
+    try:
+        array = np.asarray(given)
+        if kind is not np.bool_:
+            array = array.astype(kind)
+    except (TypeError, ValueError):
+        array = None
+    if array is None or array.dtype != kind:
+        sentence = f"{what} must hold {held}, but {shown(given)} does not. {instead}"
+        raise SettingError(sentence.rstrip())
     return array
+
+
+def must_be_rate(rate_l_ha: float) -> None:
+    """Raise `SettingError` unless so many litres can be sprayed on a hectare."""
+    must_be("The rate in the zones must be a number", rate_l_ha, Real, "Give litres a hectare.")
+    if not 0.0 < rate_l_ha < _MOST_L_HA:
+        raise SettingError(
+            worded(
+                "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "
+                "is {rate_l_ha:g}.",
+                rate_l_ha=rate_l_ha,
+            )
+        )
 
 
 def must_be_known(what: str, given: Iterable[str], known: Sequence[str]) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from scipy.special import expit, logit
 
-from fieldmon.compute.arguments import numbers
+from fieldmon.compute.arguments import array_of
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.chance_bounds import MOST_CHANCE
@@ -143,7 +143,7 @@ def start_infested(
 
 
 def _checked_risk(grid: PlantGrid, given: Floats) -> Floats:
-    risk = np.atleast_1d(numbers("A risk map", given))
+    risk = np.atleast_1d(array_of(np.float64, "A risk map", given))
     if len(risk) != len(grid):
         raise ObservationError(
             worded(

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, figure, worded
 from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, outlines
-from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.io.writers.treatment_map import TreatmentMap
 from fieldmon.samplers.decide import Decide
@@ -64,14 +64,7 @@ class AdviceSettings:
     rate_l_ha: float = 300.0
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.rate_l_ha < 100_000.0:
-            raise SettingError(
-                worded(
-                    "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "
-                    "is {rate_l_ha:g}.",
-                    rate_l_ha=self.rate_l_ha,
-                )
-            )
+        must_be_rate(self.rate_l_ha)
 
     def assumed(self, units: Units | None = None) -> str:
         """Return in words what nobody measured here; `units` says of which area costs are."""

@@ -107,6 +107,11 @@ class Application:
                     )
                 )
 
+    @property
+    def ends_next_day(self) -> bool:
+        """Whether it ended on the day after: earlier in the day than it began."""
+        return self.began is not None and self.ended is not None and self.ended < self.began
+
     def by_label(self, label: ProductLabel | None) -> Application:
         """Return it with what nobody said of waiting and group taken from the product's label."""
         if label is None:

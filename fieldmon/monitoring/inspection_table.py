@@ -151,6 +151,19 @@ def _clock(second: float) -> str | None:
     return f"{hour:02d}:{rest // 60:02d}:{rest % 60:02d}"
 
 
+def not_held(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> NDArray[np.bool_]:
+    """Return ``(k,)`` which rows are new: none that counts, nor one before it, is alike."""
+    at = schema.INSPECTIONS.names.index("digest")
+    held = "SELECT 1 FROM inspections WHERE digest = ? AND undone = 0"
+    marks = [row[at] for row in made]
+    first = {mark: k for k, mark in reversed(list(enumerate(marks)))}
+    new = [
+        first[mark] == k and db.execute(held, (mark,)).fetchone() is None
+        for k, mark in enumerate(marks)
+    ]
+    return np.array(new, bool)
+
+
 def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> int:
     """Add inspections that are not there yet; return how many were new."""
     names = schema.INSPECTIONS.names

@@ -290,13 +290,22 @@ def _once(
     known_by: tuple[str, ...],
     order: tuple[str, ...] = (),
 ) -> list[Row]:
-    """Return the rows of both copies, once each, in an order that both would give."""
+    """Return the rows of both copies, once each, in an order that both would give.
+
+    What both begin with stays where it is: a copy that brings nothing changes nothing.
+    """
     found = {_key(row, known_by): row for copied in copies for row in copied[name]}
+    ours, theirs = ([_key(row, known_by) for row in copied[name]] for copied in copies)
+    alike = [one == other for one, other in zip(ours, theirs, strict=False)]
+    begin = dict.fromkeys(ours[: (*alike, False).index(False)])
 
     def place(row: Row) -> str:
         return repr((_key(row, order), _key(row, known_by)))
 
-    return sorted(found.values(), key=place)
+    return [
+        *(found[key] for key in begin),
+        *sorted((row for key, row in found.items() if key not in begin), key=place),
+    ]
 
 
 def _differing(copies: list[dict[str, list[Row]]]) -> tuple[str, ...]:

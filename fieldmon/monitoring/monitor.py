@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be, numbers, shown
+from fieldmon.compute.arguments import array_of, must_be, shown
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
@@ -430,7 +430,7 @@ def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.
     if chance is None:
         none, day = Observations.none(), np.datetime64(local_clock(plot.field).today())
         return prior_chance(plot.grid, plot.field, none, day, PriorSettings())
-    given = numbers("A chance map", chance)
+    given = array_of(np.float64, "A chance map", chance)
     if given.shape != (len(plot.grid),):
         raise SettingError(
             f"A chance map must have a chance for each of {len(plot.grid)} plants, but it has the "

@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
-from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
+from fieldmon.infestation.inspections import CLEAN, RESULT_NAMES, SKIPPED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -133,10 +133,12 @@ def contradicting(held: Inspections) -> Inspections:
 def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
     """Return ``(k,)`` whether each adds nothing: the same is held, and it has no time or count.
 
-    A route file filled in after its stops were tapped in the field says what is known.
+    A route file filled in after its stops were tapped in the field says what is known. That 0 were
+    counted says no more than clean.
     """
     results = _held(held, brought)
-    bare: NDArray[np.bool_] = np.isnan(brought.second) & np.isnan(brought.count)
+    uncounted = np.isnan(brought.count) | ((brought.result == CLEAN) & (brought.count == 0))
+    bare: NDArray[np.bool_] = np.isnan(brought.second) & uncounted
     same = [
         result in results.get(key, ())
         for key, result in zip(_keys(brought), brought.result.tolist(), strict=True)

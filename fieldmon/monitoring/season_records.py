@@ -93,27 +93,63 @@ class SeasonRecords(OpenSeason):
         SettingError
             If a date is not of this season.
         """
-        must_be("What is recorded must be Inspections", inspections, Inspections,
-                "Make them with Inspections.of, or read them with read_inspections.")  # fmt: skip
+        (done,) = self.record_all([(inspections, source)], who, confirmed=confirmed, into=into)
+        return done
+
+    def record_all(
+        self,
+        brought: Sequence[tuple[Inspections, str]],
+        who: str = "",
+        *,
+        confirmed: bool = False,
+        into: int | None = None,
+    ) -> tuple[Recorded, ...]:
+        """Add inspections of several sources, a batch each: all of them, or none.
+
+        Each comes with the name of its file or screen; see `record`.
+        """
+        how = "Make them with Inspections.of, or read them with read_inspections."
+        for inspections, _ in brought:
+            must_be("What is recorded must be Inspections", inspections, Inspections, how)
+        done = []
         with self._writing() as db:
             before = self._read(db)
-            held = before.history.inspections
-            if not confirmed:
-                contradictions(inspections, held).refuse(self.label)
-            news = inspections.take(~said_before(inspections, held))
-            batch = batches.begin(db, "findings", source, who) if into is None else into
-            if into is not None:
-                batches.must_count(db, into)
-            made = inspection_table.rows(
-                news, self.plot.grid, self.label, settings_of(db), (batch, who)
-            )
-            new = inspection_table.store(db, made)
-            batches.end(db, batch, new, grows=into is not None)
-            if new:
-                self._log_seen(db, news, (batch, source, who))
-                first = settings_of(db).day(inspections.date.min().item())
-                self._refresh(db, first, before)
-        return Recorded(batch if new else None, new, len(inspections) - new)
+            held, first = before.history.inspections, []
+            for inspections, source in brought:
+                if not confirmed:
+                    contradictions(inspections, held).refuse(self.label)
+                batch, news = self._add(db, inspections, held, (source, who, into))
+                new = len(news)
+                done.append(Recorded(batch if new else None, new, len(inspections) - new))
+                if new:
+                    held = held.and_those(news)
+                    first.append(settings_of(db).day(inspections.date.min().item()))
+            if first:
+                self._refresh(db, min(first), before)
+        return tuple(done)
+
+    def _add(
+        self,
+        db: sqlite3.Connection,
+        inspections: Inspections,
+        held: Inspections,
+        said: tuple[str, str, int | None],
+    ) -> tuple[int, Inspections]:
+        """Write inspections of one source, besides what is held; return batch and the new ones."""
+        source, who, into = said
+        news = inspections.take(~said_before(inspections, held))
+        batch = batches.begin(db, "findings", source, who) if into is None else into
+        if into is not None:
+            batches.must_count(db, into)
+        made = inspection_table.rows(
+            news, self.plot.grid, self.label, settings_of(db), (batch, who)
+        )
+        news = news.take(inspection_table.not_held(db, made))
+        new = inspection_table.store(db, made)
+        batches.end(db, batch, new, grows=into is not None)
+        if new:
+            self._log_seen(db, news, (batch, source, who))
+        return batch, news
 
     def _log_seen(
         self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str]
@@ -243,7 +279,7 @@ class SeasonRecords(OpenSeason):
         with self._lock, self.store.writing() as db:
             before = inspection_table.n_counting(db)
             held = self._inspections(db)
-            with other.store.reading() as theirs:
+            with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
                 # what is told is noted in any case
                 was = None if told else season_log.states(db)

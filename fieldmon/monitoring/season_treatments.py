@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from fieldmon.compute.arguments import truths
+from fieldmon.compute.arguments import array_of
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.labels import label_for
 from fieldmon.decisions.zones import outline_of
@@ -120,8 +120,8 @@ class SeasonTreatments(OpenSeason):
 
     def _treated_one_by_one(self, plants: NDArray[np.bool_]) -> TreatedPlace:
         grid = self.plot.grid
-        plants = truths(
-            "Whether it was treated must be said of each plant", plants,
+        plants = array_of(
+            np.bool_, "The mask of treated plants", plants,
             f"Of plants by their numbers give np.isin(np.arange({len(grid)}), numbers).",
         )  # fmt: skip
         if plants.shape != (len(grid),):

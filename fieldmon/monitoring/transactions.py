@@ -116,7 +116,7 @@ class Store:
         _refuse_old(target, to)
         with _draft_folder(target) as folder:
             draft = Path(folder) / "copy.gpkg"
-            copy_season(self.path, draft)
+            copy_season(self.path, draft, target)
             _put(draft, target)
 
     @classmethod
@@ -138,10 +138,10 @@ class Store:
             _put(draft, target)
 
     @contextmanager
-    def reading(self) -> Iterator[sqlite3.Connection]:
-        """Give a consistent view of the file."""
+    def reading(self, into: Path | None = None) -> Iterator[sqlite3.Connection]:
+        """Give a consistent view of the file; what is read goes `into` another, if it is told."""
         still = _still().get(self.path)
-        with _sentences(self.path):
+        with _sentences(self.path, into):
             if still is not None:
                 yield still
                 return
@@ -249,11 +249,15 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
             files[of_file] = db
 
 
-def copy_season(path: Path, to: Path) -> None:
-    """Copy a season as it is at this moment, by SQLite's own means; raise if it is damaged."""
+def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
+    """Copy a season as it is at this moment, by SQLite's own means; raise if it is damaged.
+
+    `named`: what the copy will be called, for sentences.
+    """
     if not path.is_file():
         raise _no_file(path)
-    with _sentences(path), closing(_connect(path)) as db, closing(_connect(to)) as copy:
+    written = named or to
+    with _sentences(path, written), closing(_connect(path)) as db, closing(_connect(to)) as copy:
         db.backup(copy)
         copy.execute("PRAGMA journal_mode = DELETE")
         said = copy.execute("PRAGMA quick_check(1)").fetchone()[0]
@@ -366,7 +370,8 @@ def _refuse_old(target: Path, path: str | Path) -> None:
 
 
 @contextmanager
-def _sentences(path: Path) -> Iterator[None]:
+def _sentences(path: Path, into: Path | None = None) -> Iterator[None]:
+    """Say what is wrong with a file; where one is read `into` another, it is that one's disk."""
     try:
         yield
     except OverflowError as error:
@@ -405,7 +410,7 @@ def _sentences(path: Path) -> Iterator[None]:
                 worded(
                     "There must be room on the disk for {path}, but it is "
                     "full. Nothing was changed: make room and try again.",
-                    path=path,
+                    path=into or path,
                 )
             ) from error
         if "readonly" in text or "unable to open" in text:

@@ -130,7 +130,7 @@ def _row(
 ) -> dict[str, Any]:
     place, on, application = said
     dose, began, ended = application.dose, application.began, application.ended
-    over = on + timedelta(days=1) if began and ended and ended < began else on
+    over = on + timedelta(days=1) if application.ends_next_day else on
     return {
         "geom": blob(place.area),
         "day": treatment.day,

@@ -28,6 +28,23 @@ def test_two_copies_are_merged_and_what_they_tell_differently_is_listed(run, sea
     assert "0 inspections were new" in out
 
 
+def test_a_season_is_not_merged_with_itself_and_a_like_copy_changes_nothing(run, season, tmp_path):
+    worked(run, season, "a.csv", {0}, "Ann")
+    run("change", season, "--hours", "2")
+    (tmp_path / "link.gpkg").symlink_to(season)
+    before, log = season.read_bytes(), Season(season).log()
+    for other in (season, "link.gpkg"):
+        code, _, err, made = run("merge", season, other)
+        assert (code, made) == (2, set())
+        assert "must be another copy of the season" in err
+    assert season.read_bytes() == before
+    copy = shutil.copy(season, tmp_path / "copy.gpkg")
+    code, out, err, _ = run("merge", season, copy)
+    assert code == 0, err
+    assert "0 inspections were new" in out
+    assert Season(season).log() == log
+
+
 def test_what_is_no_copy_of_the_season_is_a_sentence(run, season, tmp_path):
     (tmp_path / "notes.txt").write_text("hello")
     for other in ("notes.txt", "nowhere.gpkg", "."):

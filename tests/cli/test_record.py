@@ -1,13 +1,18 @@
 """`fieldmon record`: what was found."""
 
 import shutil
+import sys
 
 import numpy as np
 import pyogrio
 import shapely
 
+import fieldmon.cli.record  # noqa: F401 - its module, which has the name of the command
+from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, filled_in
+
+command = sys.modules["fieldmon.cli.record"]
 
 
 def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
@@ -63,3 +68,26 @@ def test_two_files_that_contradict_each_other_are_refused_before_either_is_recor
     assert code == 2
     assert "1 of them contradict it" in err
     assert not len(Season(season).history.inspections)
+
+
+def test_what_somebody_else_recorded_meanwhile_is_not_contradicted_unasked(
+    run, season, tmp_path, monkeypatch
+):
+    """Between the look at the season and the writing another command may record."""
+    run("plan", season, "--date", BEGINS, "-o", "a.csv")
+    shutil.copy(tmp_path / "a.csv", tmp_path / "b.csv")
+    filled_in(tmp_path / "a.csv", finds={0}, n=3)
+    filled_in(tmp_path / "b.csv", finds=set(), n=3)
+    other, theirs = Season(season), read_inspections(tmp_path / "a.csv", Season(season).plot.grid)
+    looked = command._refuse_contradictions
+
+    def look(kept, read):
+        looked(kept, read)
+        other.record(theirs.value, "a.csv", "Ben")
+
+    monkeypatch.setattr(command, "_refuse_contradictions", look)
+    code, _, err, _ = run("record", season, "b.csv", "--date", BEGINS)
+    assert code == 2
+    assert "1 of them contradict it" in err
+    assert "Confirm with: --contradicting" in err
+    assert len(Season(season).history.inspections) == 3

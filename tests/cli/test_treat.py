@@ -125,3 +125,15 @@ def test_rows_are_a_range_from_either_end(run, season):
     (treated,) = Season(season).treatments()
     rows = Season(season).label.line[treated.place.plants]
     assert sorted(set(rows.tolist())) == [3, 4, 5, 8]
+
+
+def test_a_treatment_that_ends_before_it_begins_is_said_to_end_the_day_after(run, season):
+    words = ("treat", season, "--efficacy", "0.8", "--date", BEGINS, "--waiting-days", "1")
+    code, out, err, _ = run(*words, "--began", "10:00", "--ended", "09:00")
+    assert code == 0, err
+    assert "Taken as over midnight: it ended on 2026-11-03 at 09:00." in out
+    assert "Harvest there from 2026-11-05 on." in out
+    for ended in ("10:00", "11:00"):
+        code, out, err, _ = run(*words, "--began", "10:00", "--ended", ended)
+        assert code == 0, err
+        assert "midnight" not in out

@@ -3,19 +3,23 @@
 from dataclasses import dataclass
 from datetime import date, datetime
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
+from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import (
+    array_of,
     day_of,
     must_be,
     must_be_known,
     must_hold_numbers,
-    numbers,
     shown,
 )
 from fieldmon.errors import SettingError
+from fieldmon.io.writers.treatment_map import TreatmentMap
+from fieldmon.monitoring.advice import AdviceSettings
 
 
 @dataclass(frozen=True)
@@ -74,10 +78,27 @@ def test_other_settings_are_left_to_their_own_checks():
 
 
 def test_an_array_holds_numbers_or_is_refused():
-    assert numbers("A risk map", [1, 0.5]).tolist() == [1.0, 0.5]
+    assert array_of(np.float64, "A risk map", [1, 0.5]).tolist() == [1.0, 0.5]
     for bad in (["a", "b"], "x", [[1], [1, 2]], [object()]):
         with pytest.raises(SettingError, match=r"^A risk map must hold numbers, but"):
-            numbers("A risk map", bad)
+            array_of(np.float64, "A risk map", bad)
+
+
+def test_an_array_of_true_and_false_takes_no_numbers():
+    assert array_of(np.bool_, "A mask", [True, False]).tolist() == [True, False]
+    for bad in ([1, 0], ["a"], [[True], [True, False]], 3):
+        with pytest.raises(SettingError, match=r"^A mask must hold True or False, but .* Do\.$"):
+            array_of(np.bool_, "A mask", bad, "Do.")
+
+
+@pytest.mark.parametrize("rate", [0.0, -1.0, 100_000.0, np.nan, np.inf, "300", None])
+def test_a_rate_that_nobody_sprays_is_refused_alike_in_a_map_and_in_advice(rate):
+    said = []
+    for make in (AdviceSettings, partial(TreatmentMap, "plot", MultiPolygon(), [])):
+        with pytest.raises(SettingError, match="The rate in the zones must") as refused:
+            make(rate_l_ha=rate)
+        said.append(str(refused.value))
+    assert said[0] == said[1]
 
 
 def test_a_name_that_nobody_knows_is_said_with_those_that_are_known():

@@ -91,6 +91,14 @@ def test_a_route_filled_in_after_its_stops_were_tapped_counts_once(season):
     ]  # fmt: skip
 
 
+def test_a_clean_plant_with_a_count_of_zero_says_no_more_than_a_clean_plant(season):
+    season.record(results((3, CLEAN)), "taps")
+    belief = season.evening(BEGINS)
+    zero = results((3, CLEAN), count=np.array([0.0]))
+    assert season.record(zero, "route.csv").new == 0
+    assert season.evening(BEGINS).tolist() == belief.tolist()
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_each_result_is_held_to_all_that_is_recorded_of_its_plant_and_day(seed):
     """The rules read out, one result after another."""
@@ -100,7 +108,7 @@ def test_each_result_is_held_to_all_that_is_recorded_of_its_plant_and_day(seed):
         days = np.sort(rng.integers(0, 2, n)) + np.datetime64("2026-04-06")
         noted = {
             name: np.where(rng.random(n) < 0.5, np.nan, value)
-            for name, value in (("second", 30.0), ("count", 2.0))
+            for name, value in (("second", 30.0), ("count", rng.choice([0.0, 2.0], n)))
         }
         return Inspections.of(rng.integers(0, 4, n), rng.integers(0, 3, n), days, **noted)
 
@@ -126,7 +134,9 @@ def test_each_result_is_held_to_all_that_is_recorded_of_its_plant_and_day(seed):
     columns = (said.which, said.plant, said.date, said.recorded, said.brought)
     assert list(zip(*(column.tolist() for column in columns), strict=True)) == wanted
     assert len(said) == len(wanted)
-    bare = np.isnan(brought.second) & np.isnan(brought.count)
+    none_counted = [np.isnan(c) or (r == CLEAN and c == 0)
+                    for c, r in zip(brought.count, brought.result, strict=True)]  # fmt: skip
+    bare = np.isnan(brought.second) & np.array(none_counted, bool)
     known = [result in of_key.get((plant, day), ()) for plant, day, result in told(brought)]
     assert said_before(brought, held).tolist() == (bare & np.array(known, bool)).tolist()
     both = [

@@ -1,10 +1,12 @@
 """What was found is recorded once, and can be taken back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.errors import ContradictionError, ObservationError, SettingError
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from tests.monitoring.seasons import (
     BEGINS,
     some_results,
@@ -21,6 +23,19 @@ def test_the_same_results_twice_change_nothing(season):
     assert len(season.history.inspections) == 5
     assert len(season.batches()) == 1
     assert len(season.path.read_bytes()) == len(before)
+
+
+def test_the_log_says_how_many_of_what_was_brought_were_new(season):
+    counted = some_results(season, 5, found=[1])
+    counted = replace(counted, count=np.where(counted.result == FOUND, 4.0, np.nan))
+    season.record(counted, "monday.csv")
+    plants = np.array([*counted.plant, 400, 401])
+    result = np.array([*counted.result, FOUND, CLEAN], np.int8)
+    count = np.array([*counted.count, 2.0, np.nan])
+    again = Inspections.of(plants, result, np.datetime64(BEGINS, "D"), count=count)
+    assert season.record(again, "copy.gpkg").new == 2
+    seen = [entry.what for entry in season.log() if entry.kind == "seen"]
+    assert [(one["found"], one["clean"]) for one in seen] == [(1, 4), (1, 1)]
 
 
 def test_what_was_not_inspected_stays_unknown(season):
@@ -113,3 +128,26 @@ def test_results_that_do_not_fit_are_a_sentence_and_leave_no_trace(
 def test_what_are_no_inspections_is_refused_in_a_sentence(season, results):
     with pytest.raises(SettingError, match="What is recorded must be Inspections"):
         season.record(results)
+
+
+def test_several_files_are_recorded_all_or_none(season):
+    good, more = some_results(season, 3), some_results(season, 3, day=1)
+    elsewhere = Inspections.of([10**6], [CLEAN], np.datetime64(BEGINS, "D"))
+    with pytest.raises(ObservationError, match="0 to"):
+        season.record_all([(good, "a.csv"), (elsewhere, "b.csv")])
+    assert not len(season.history.inspections)
+    assert season.batches() == ()
+    done = season.record_all([(good, "a.csv"), (more, "b.csv"), (good, "again.csv")], "Ann")
+    assert [(one.new, one.known) for one in done] == [(3, 0), (3, 0), (0, 3)]
+    assert [one.source for one in season.batches()] == ["b.csv", "a.csv"]
+    assert season.held_to_log() == ()
+    written = season.evening(BEGINS)
+    season.rebuild()
+    assert season.evening(BEGINS).tolist() == written.tolist()
+
+
+def test_files_that_contradict_one_another_are_refused_together(season):
+    found, clean = some_results(season, 3, found=[0]), some_results(season, 3)
+    with pytest.raises(ContradictionError):
+        season.record_all([(found, "a.csv"), (clean, "b.csv")])
+    assert season.batches() == ()

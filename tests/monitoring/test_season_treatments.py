@@ -55,7 +55,7 @@ def test_a_treatment_is_undone(season):
 def test_numbers_of_plants_are_not_taken_for_which_were_treated(season):
     n = len(season.plot.grid)
     for plants in (np.arange(n), np.ones(n)):
-        with pytest.raises(SettingError, match="of each plant as True or False"):
+        with pytest.raises(SettingError, match="mask of treated plants must hold True or False"):
             season.treat(BEGINS, 0.5, plants=plants)
     assert season.treatments() == ()
     season.treat(BEGINS, 0.5, plants=np.isin(np.arange(n), [1, 2, 3]))

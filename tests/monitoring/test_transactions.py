@@ -239,6 +239,21 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
     assert state(path) == 12
 
 
+def test_a_full_disk_is_that_of_the_file_that_is_written(path, tmp_path, monkeypatch):
+    connect = transactions._connect
+
+    def small(file, patience_s=None):
+        db = connect(file, patience_s)
+        if file != path:
+            db.execute("PRAGMA max_page_count = 8")
+        return db
+
+    monkeypatch.setattr(transactions, "_connect", small)
+    with pytest.raises(FileProblem, match=r"room on the disk for \S*copy.gpkg, but it is full"):
+        Store(path).back_up(tmp_path / "copy.gpkg")
+    assert not (tmp_path / "copy.gpkg").exists()
+
+
 def test_what_is_kept_open_is_opened_once_says_what_is_new_and_locks_nothing(path, monkeypatch):
     season, opened, connect = Season(path), [], transactions._connect
     monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)

@@ -357,6 +357,11 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedC
     return DatedColumn(days, used if numeric else None, ambiguous, len(broken), some, serial, mixed)
 
 
+def is_written_as_day(cell: str) -> bool:
+    """Return whether a cell is written as days are, be it one or none (2026-02-30)."""
+    return any(pattern.match(cell) for pattern, _ in _DATE_FORMS) or _is_serial(cell)
+
+
 def _either(cell: str) -> bool:
     """Return whether a cell is one day read day first and another read month first."""
     found = _NUMERIC.match(cell)

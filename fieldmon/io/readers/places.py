@@ -334,26 +334,34 @@ def _names(column: NDArray[np.object_]) -> list[str]:
 def _join(wanted: list[str], known: list[str]) -> tuple[NDArray[np.int64], list[ImportMessage]]:
     """Return which known name each wanted one is, -1 for none, and how they were compared.
 
-    Names are compared as they are; else without capitals, spaces and marks; else by their digits
-    alone, if those tell all of them apart.
+    Names are compared as they are, or as numbers where more are known so (03 and 3.0 are 3); else
+    without capitals, spaces and marks; else by their digits alone, if those tell all of them apart.
     """
+    most, best, said = 0, np.full(len(wanted), -1), ""
     for key, how in _KEYS:
         keys = [key(name) for name in known]
-        if len(set(keys)) < len(keys) or not all(keys):
+        if len(set(keys)) < len(keys) or not all(keys) or (most and key is not _as_numbers):
             continue
         index = {k: i for i, k in enumerate(keys)}
         match = np.array([index.get(key(name), -1) if name else -1 for name in wanted], dtype=int)
-        if (match >= 0).any():
-            return match, [guessed(worded("Names were compared {how}.", how=how))] if how else []
-    return np.full(len(wanted), -1), []
+        if int((match >= 0).sum()) > most:
+            most, best, said = int((match >= 0).sum()), match, how
+    return best, [guessed(worded("Names were compared {how}.", how=said))] if said else []
+
+
+def _as_numbers(name: str) -> str:
+    return "/".join(_WHOLE.sub(r"\1", part.strip()) for part in name.split("/"))
 
 
 def _digits(name: str) -> str:
     return "".join(re.findall(r"\d", name))
 
 
+#: a whole number as tables write it: with zeros in front, or with a point behind
+_WHOLE = re.compile(r"^0*(\d+)(?:\.0)?$")
 _KEYS: tuple[tuple[Callable[[str], str], str], ...] = (
     (str.strip, ""),
+    (_as_numbers, "as numbers: 03 and 3.0 are 3"),
     (plain, "without capitals, spaces and marks"),
     (_digits, "by their digits alone"),
 )

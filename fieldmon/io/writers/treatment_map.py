@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
@@ -56,14 +57,7 @@ class TreatmentMap:
     product: str = ""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.rate_l_ha < 100_000.0:
-            raise SettingError(
-                worded(
-                    "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "
-                    "is {rate_l_ha:g}.",
-                    rate_l_ha=self.rate_l_ha,
-                )
-            )
+        must_be_rate(self.rate_l_ha)
         if not self.zones:
             raise SettingError(
                 worded(

@@ -1,5 +1,7 @@
 """Places that records may name."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -50,6 +52,22 @@ def test_a_plant_is_known_by_its_row_and_number_and_no_other():
         "1 record(s) name 1 plant(s) that are not known: 9/1.",
         "1 record(s) name no plant at all.",
     ]
+
+
+def test_numbers_as_tables_write_them_are_the_same_numbers_and_that_is_said():
+    """Also beside others: what is known as it stands does not leave the rest unknown."""
+    known = plants(0.0)
+    named = by_plant(cells("02", "1", "1.0", "1.5"), cells("001", "2", 1.0, 1), known)
+    np.testing.assert_array_equal(named.lonlat[:3], known.lonlat[[2, 1, 0]])
+    assert np.isnan(named.lonlat[3]).all()
+    assert [message.sentence for message in named.messages] == [
+        "Names were compared as numbers: 03 and 3.0 are 3.",
+        "1 record(s) name 1 plant(s) that are not known: 1.5/1.",
+    ]
+    apart = replace(known, row=np.array(["1", "01", "2"]), plant=np.array(["1", "1", "1"]))
+    named = by_plant(cells("01", "1", "02"), cells("1", "1", "1"), apart)
+    np.testing.assert_array_equal(named.lonlat[:2], known.lonlat[[1, 0]])
+    assert np.isnan(named.lonlat[2]).all()
 
 
 def test_a_record_that_names_a_plot_is_as_far_off_as_the_plot_is_wide():

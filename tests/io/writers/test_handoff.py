@@ -5,14 +5,18 @@ import sys
 from dataclasses import replace
 from io import BytesIO
 from types import ModuleType
+from xml.etree import ElementTree as ET
 from zipfile import ZipFile
 
+import numpy as np
 import pandas as pd
 import pyogrio
 import pytest
 import yaml
 
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import FORMATS, write_handoff
 from fieldmon.io.writers.handoff import HandoffFormat
 from tests.io.writers.handed import DAYS, crooked, usual
@@ -148,3 +152,55 @@ def test_every_format_is_written_for_every_day(tmp_path, name, plan):
     assert sorted(tmp_path.iterdir()) == sorted(paths)
     assert all(path.stat().st_size for path in paths)
     assert FORMATS[name].several == (len(paths) > 1)
+
+
+def _filled_in(path, said):
+    """Fill in a file given out: the results of some stops, by their places in the day."""
+    if path.suffix == ".csv":
+        table = pd.read_csv(path, dtype={"found": object, "notes": object})
+        for k, (found, count, note) in said.items():
+            table.loc[k, ["found", "count", "notes"]] = "yes" if found else "no", count, note
+        table.to_csv(path, index=False)
+    elif path.suffix == ".geojson":
+        root = json.loads(path.read_text())
+        for k, (found, count, note) in said.items():
+            root["features"][k + 1]["properties"].update(found=found, count=count, notes=note)
+        path.write_text(json.dumps(root))
+    elif path.suffix == ".gpkg":
+        table = pyogrio.read_dataframe(path, layer="stops")
+        for k, (found, count, note) in said.items():
+            table.loc[k, ["found", "count", "notes"]] = "found" if found else "clean", count, note
+        pyogrio.write_dataframe(table, path, layer="stops")
+    elif path.suffix == ".kml":
+        tree = ET.parse(path)  # noqa: S314
+        stops = tree.getroot().iter("{http://www.opengis.net/kml/2.2}ExtendedData")
+        cells = [{data.get("name"): data[0] for data in stop} for stop in stops]
+        for k, (found, count, note) in said.items():
+            cells[k]["found"].text = "yes" if found else "no"
+            cells[k]["count"].text = "" if count is None else str(count)
+            cells[k]["notes"].text = note
+        tree.write(path)
+    else:
+        tree, gpx = ET.parse(path), "{http://www.topografix.com/GPX/1/1}"  # noqa: S314
+        waypoints = tree.getroot().findall(f"{gpx}wpt")
+        for k, (found, count, note) in said.items():
+            waypoints[k].find(f"{gpx}name").text += f" +{count}" if found else " 0"
+            waypoints[k].find(f"{gpx}cmt").text += f"; {note}" if note else ""
+        tree.write(path)
+
+
+@pytest.mark.parametrize("ending", ["csv", "geojson", "gpkg", "kml", "gpx"])
+@pytest.mark.parametrize("make", [usual, crooked])
+def test_a_day_filled_in_alike_comes_in_alike_from_every_format(tmp_path, make, ending):
+    """Planned arrivals are no times of inspections, and what is planned is no note of a scout."""
+    plan = make()
+    (path,) = write_handoff(plan, tmp_path / f"day.{ending}")
+    said = {0: (True, 3, "on the fruit"), 1: (False, None, ""), 4: (False, None, "dry")}
+    _filled_in(path, said)
+    read = read_inspections(path, plan.grid).value
+    assert read.plant.tolist() == plan.route.plant[list(said)].tolist()
+    assert read.result.tolist() == [FOUND, CLEAN, CLEAN]
+    assert np.array_equal(read.count, [3, np.nan, np.nan], equal_nan=True)
+    assert set(read.date.astype(str).tolist()) == {"2026-11-18"}
+    assert np.isnan(read.second).all()
+    assert read.notes.tolist() == [note for _, _, note in said.values()]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -34,6 +35,11 @@ _NAMES = {
 }
 _PLAIN = {role: tuple(plain(name) for name in names.split()) for role, names in _NAMES.items()}
 _IDS = frozenset(_PLAIN["id"])
+#: what a waypoint given out says of its plan, in front of what its scout noted: see `writers.gpx`
+PLANNED = re.compile(
+    r"^plant \d+; (?:arrive (?P<arrive>[^;]*)|after [^;]* s); stay [^;]* s; "
+    r"chance [\d.]+ ?%[\s.,;]*"
+)
 _BLANK = frozenset({"", "nan", "nat", "none", "null", "<na>"})
 
 
@@ -85,6 +91,9 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     if plant is not None and line is not None and number is None and plain(plant) not in _IDS:
         plant, number = None, plant
     arrive = next((n for n in names if plain(n) == "arrive"), None)
+    if arrive is None and any(plain(n) == plain("arrive_s") for n in names):
+        # a KML given out, in which the planned arrival is the time of a place
+        arrive = next((n for n in names if plain(n) == "timestamp"), None)
     block = options.column("block") or find("block", names, frozenset({line or "", plant or ""}))
     return InspectionColumns(
         result, count, marks, plant, line, number, own_column("face", layer), arrive, block
@@ -115,6 +124,20 @@ def texts_in(layer: Layer, name: str | None) -> NDArray[np.str_]:
         return np.full(len(layer), "", dtype=np.str_)
     cells = [text(v) for v in layer.column(name)]
     return np.array(["" if c.casefold() in _BLANK else c for c in cells], dtype=np.str_)
+
+
+def notes_in(layer: Layer) -> NDArray[np.str_]:
+    """Return what was noted of each ``(n,)``, without the plan that a waypoint given out says."""
+    noted = texts_in(layer, own_column("notes", layer))
+    return np.array([PLANNED.sub("", note) for note in noted.tolist()], dtype=np.str_)
+
+
+def arrivals_in(layer: Layer, columns: InspectionColumns) -> NDArray[np.str_]:
+    """Return when each was planned to be reached ``(n,)``, as files given out say it."""
+    if columns.arrive is not None:
+        return texts_in(layer, columns.arrive)
+    plans = [PLANNED.match(note) for note in texts_in(layer, own_column("notes", layer)).tolist()]
+    return np.array([(plan and plan["arrive"]) or "" for plan in plans], dtype=np.str_)
 
 
 def who_in(

@@ -168,9 +168,9 @@ def _of_mark(name: str, words: ResultWords) -> _CellResult:
             return _CellResult(PRESENT, float(plus.group(1) or "nan"), is_said=True)
         if sign in MINUS:
             return _CellResult(ABSENT, np.nan, is_said=True)
-    if name.strip() == "0":
-        return _CellResult(ABSENT, np.nan, is_said=True)
     bare = PLANT_IN_NAME.sub(" ", name).strip()
+    if bare == "0":
+        return _CellResult(ABSENT, np.nan, is_said=True)
     if not bare or re.fullmatch(r"[\d\s]+", bare):
         return _SILENT
     said = _of_word(bare, ".", words)

@@ -17,7 +17,7 @@ from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.readers.inspection_file.columns import columns_of, own_column, texts_in, who_in
+from fieldmon.io.readers.inspection_file.columns import columns_of, notes_in, texts_in, who_in
 from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in
 from fieldmon.io.readers.inspection_file.results import results_in
@@ -75,7 +75,7 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
     layer = by_day(_without_undone(layer), options)
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
-    notes = texts_in(layer, own_column("notes", layer))
+    notes = notes_in(layer)
     said = results.said
     noted = int((~said & (notes != "")).sum()) if columns.marks is None else 0
     if noted:

@@ -10,9 +10,9 @@ from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.values import dates
+from fieldmon.io.parse.values import dates, is_missing, is_written_as_day
 from fieldmon.io.readers.date_doubts import in_future, mixed_dates
-from fieldmon.io.readers.inspection_file.columns import own_column, texts_in
+from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,43 +33,55 @@ class NotedTimes(NamedTuple):
 def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> NotedTimes:
     """Return local times and days.
 
-    Where the file has no time of its own, the day is that of the planned arrival, which stands in
-    the route files given out; else the day told by hand; else it is left open.
+    A record that says no day is of the day of its planned arrival, which stands in the route files
+    given out; else of the day told by hand; else its day is left open. One that says a day that is
+    none (30 February) is left open too: nothing is put in its place.
     """
-    cells = _time_cells(layer, columns, options)
-    read = dates(_object(cells), options.date_order)
-    clocks = {cell: clock_time(cell) for cell in set(cells)}
+    days, clocks = _cells(layer, columns, options)
+    own = dates(_object(clocks), options.date_order).day
+    # what says the day: the cell of the time, where it holds one, else that of the date
+    on = [
+        clock if not np.isnat(day) else said or ("" if _no_day(clock) else clock)
+        for said, clock, day in zip(days, clocks, own, strict=True)
+    ]
+    read = dates(_object(on), options.date_order)
+    planned = dates(_object(arrivals_in(layer, columns).tolist())).day
+    told = np.datetime64("NaT", "D") if options.day is None else options.day
+    unsaid = np.array([is_missing(cell) for cell in on], bool)
+    otherwise = np.where(np.isnat(planned), told, planned)
+    day = np.where(unsaid, otherwise, read.day).astype("datetime64[D]")
+    at = [clock or said for said, clock in zip(days, clocks, strict=True)]
+    read_clocks = {cell: clock_time(cell) for cell in set(at)}
     when = np.full(len(layer), "NaT", dtype="datetime64[s]")
     zone = None if options.zone is None else zone_of(options.zone)
-    n_utc = 0
-    for i, cell in enumerate(cells):
-        clock = clocks[cell]
-        if clock is not None and not np.isnat(read.day[i]):
-            when[i] = local_time(read.day[i], clock, zone)
+    n_utc, broken = 0, []
+    for i, cell in enumerate(at):
+        clock = read_clocks[cell]
+        if not unsaid[i] and np.isnat(read.day[i]):
+            broken.append(f"{on[i]} {clocks[i]}" if days[i] and clocks[i] else on[i])
+        elif clock is None and (":" in cell or (clocks[i] and np.isnat(own[i]))):
+            broken.append(cell)
+        elif clock is not None and not np.isnat(day[i]):
+            when[i] = local_time(day[i], clock, zone)
             n_utc += clock.offset is not None and zone is None
-    day = np.where(np.isnat(when), read.day, when.astype("datetime64[D]"))
-    planned = dates(_object(texts_in(layer, columns.arrive).tolist())).day
-    told = np.datetime64("NaT", "D") if options.day is None else options.day
-    day = np.where(np.isnat(day), planned, day)
-    day = np.where(np.isnat(day), told, day).astype("datetime64[D]")
-    about = _about_times(read.n_broken, read.broken, read.is_ambiguous, n_utc)
+    day = np.where(np.isnat(when), day, when.astype("datetime64[D]")).astype("datetime64[D]")
+    about = _about_times(broken, read.is_ambiguous, n_utc)
     return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *about])
 
 
 def _about_times(
-    n_broken: int,
-    broken: tuple[str, ...],
+    broken: list[str],
     is_ambiguous: bool,  # noqa: FBT001 - one caller
     n_utc: int,
 ) -> list[ImportMessage]:
     messages = []
-    if n_broken:
-        shown = ", ".join(repr(cell) for cell in broken[:3])
+    if broken:
+        shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(broken))[:3])
         messages.append(
             doubtful(
                 worded(
                     "{n_broken} time(s) are none ({shown}); left open.",
-                    n_broken=n_broken,
+                    n_broken=len(broken),
                     shown=shown,
                 )
             )
@@ -95,15 +107,17 @@ def _object(cells: list[str]) -> NDArray[np.object_]:
     return values
 
 
-def _time_cells(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> list[str]:
-    """Return the text of each record's time, put together from two columns where it is in two."""
+def _cells(
+    layer: Layer, columns: InspectionColumns, options: InspectionOptions
+) -> tuple[list[str], list[str]]:
+    """Return the texts of each record's date and of its time, empty where there is no column."""
     taken = {columns.arrive, columns.result, columns.marks}
     time = own_column("time", layer, taken)
     away = frozenset(name for name in (*taken, time) if name)
     date = options.column("date") or find("date", layer.columns, away)
-    clocks = texts_in(layer, time).tolist()
-    days = texts_in(layer, date).tolist()
-    return [
-        f"{day} {clock}".strip() if day and is_clock_alone(clock) else (clock or day)
-        for day, clock in zip(days, clocks, strict=True)
-    ]
+    return texts_in(layer, date).tolist(), texts_in(layer, time).tolist()
+
+
+def _no_day(cell: str) -> bool:
+    """Return whether a time says no day, not even one that is none."""
+    return is_clock_alone(cell) or not is_written_as_day(cell)

@@ -97,6 +97,7 @@ def test_in_a_file_without_results_zeros_are_clean_plants(counts):
         ("+", PRESENT, np.nan),
         ("-", ABSENT, np.nan),
         ("0", ABSENT, np.nan),
+        ("012 R3/17 0", ABSENT, np.nan),
         ("clean", ABSENT, np.nan),
         ("R1/9 +2", PRESENT, 2.0),
         ("012 R3/17 found", PRESENT, np.nan),

@@ -52,6 +52,40 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
     assert np.isnat(read(colour=["red"]).day).all()
 
 
+@pytest.mark.parametrize("clock", ["8.31", "0831", "8h31", "noon", "25:00", "8:31:99", "8:30 EST"])
+def test_a_time_that_is_none_leaves_the_day_beside_it_and_is_shown(clock):
+    times = read(date=["2026-11-18"], time=[clock])
+    assert np.isnat(times.when).all()
+    assert str(times.day[0]) == "2026-11-18"
+    (said,) = times.messages
+    assert repr(clock) in said.sentence
+
+
+def test_a_time_alone_is_of_the_planned_day_or_of_the_day_told():
+    told = InspectionOptions(day=np.datetime64("2026-11-20"))
+    times = read(told, time=["8:30", "9:00"], arrive=["2026-11-18T08:30:00", None])
+    assert times.when.astype(str).tolist() == ["2026-11-18T08:30:00", "2026-11-20T09:00:00"]
+    assert times.day.astype(str).tolist() == ["2026-11-18", "2026-11-20"]
+    assert not times.messages
+
+
+@pytest.mark.parametrize(
+    "columns",
+    [
+        {"date": ["2026-02-30"]},
+        {"date": ["31.11.2026"], "time": ["8:30"]},
+        {"time": ["2026-02-30 8:30"]},
+        {"date": ["next week"]},
+    ],
+)
+def test_a_day_that_is_none_is_not_taken_for_the_planned_day_or_the_day_told(columns):
+    told = InspectionOptions(day=np.datetime64("2026-11-20"))
+    times = read(told, arrive=["2026-11-18T08:30:00"], **columns)
+    assert np.isnat(times.day).all()
+    assert np.isnat(times.when).all()
+    assert len(times.messages) == 1
+
+
 def test_times_that_are_none_are_left_open_and_shown():
     times = read(time=["soon", "2026-11-18 8:30"])
     assert np.isnat(times.when).tolist() == [True, False]

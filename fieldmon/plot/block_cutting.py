@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -129,13 +128,6 @@ def _is_left(piece: Polygon, knife: LineString) -> bool:
     a, b = (np.array(knife.interpolate(max(at + by, 0.0)).coords[0]) for by in (-0.01, 0.01))
     (ax, ay), (bx, by) = b - a, np.array(inside.coords[0]) - a
     return bool(ax * by - ay * bx > 0)
-
-
-def blocks_in_lines(field: Field, lines: MultiLineString) -> tuple[Block, ...]:
-    """Return the blocks of a plot that lines part, one after the other; see `cut_blocks`."""
-    for line in lines.geoms:
-        field = replace(field, blocks=cut_blocks(field, line))
-    return field.blocks
 
 
 def blocks_from_outline(field: Field) -> tuple[Block, ...]:

@@ -7,14 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import shapely
 
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
 from fieldmon.plot.clearance import Clearance, shut_sentence
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
-from fieldmon.plot.obstacles import row_lines
 from fieldmon.plot.road_network import RoadNetwork, find_roads
 from fieldmon.plot.travel_table import TravelTable
 
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
 
 GATE = -1
-_TOUCH_M = 0.01
 _BLOCK = 64
 # what is kept half as exactly is no more than it was
 _LESS = 1.0 - 1e-6
@@ -213,17 +210,6 @@ def trace(aisles: Aisles, a: int, b: int) -> list[int]:
     stops = np.append(aisles.roads.end.ravel(), aisles.roads.gate)
     nodes: list[int] = shortest_nodes(aisles.roads, stops[a], stops[b]).tolist()
     return nodes
-
-
-def crosses_rows(grid: PlantGrid, line_xy_m: Float) -> bool:
-    """Tell whether a line ``(k, 2)`` comes within a centimetre of a row.
-
-    A row is the line through its plants, from the first to the last; see `row_lines`.
-    """
-    # not by distance: to lines of no length, as a row of one plant is, GEOS finds none
-    rows = shapely.STRtree(shapely.buffer(row_lines(grid), _TOUCH_M))
-    steps = shapely.linestrings(np.stack([line_xy_m[:-1], line_xy_m[1:]], axis=1))
-    return bool(rows.query(steps, predicate="intersects").size)
 
 
 @inlined

@@ -8,7 +8,8 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.travel import Aisles, crosses_rows
+from fieldmon.plot.travel import Aisles
+from tests.crossing import crosses_rows
 
 
 def skewed():

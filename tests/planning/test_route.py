@@ -15,9 +15,10 @@ from fieldmon.planning.workday import Workday, plan_work
 from fieldmon.plot.layout import lay
 from fieldmon.plot.passing import legs_of
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.travel import GATE, crosses_rows
+from fieldmon.plot.travel import GATE
 from fieldmon.samplers import SAMPLERS, sampler
 from tests.crooked import crooked_fields
+from tests.crossing import crosses_rows
 from tests.scenes import GRIDS, charged_s, scene_on
 
 

@@ -12,8 +12,9 @@ from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
 from fieldmon.plot.missing_plants import without
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.travel import Aisles, crosses_rows
+from fieldmon.plot.travel import Aisles
 from tests.bent import FRAME, bent_grids
+from tests.crossing import crosses_rows
 
 
 def length_m(line):

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from shapely import LineString, MultiLineString, MultiPolygon, Polygon
+from shapely import LineString, MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError
-from fieldmon.plot.block_cutting import blocks_from_outline, blocks_in_lines, cut_blocks
+from fieldmon.plot.block_cutting import blocks_from_outline, cut_blocks
 from fieldmon.plot.field import Field
 from fieldmon.plot.projection import Frame
 from tests.bent import turned
@@ -69,8 +69,9 @@ def test_a_line_that_parts_nothing_is_refused_in_a_sentence():
 def test_lines_one_after_the_other_part_a_plot_into_three():
     field = plot(BOX)
     cuts = [[(30, -5), (30, 65)], [(70, -5), (70, 65)]]
-    blocks = blocks_in_lines(field, MultiLineString([FRAME.lonlat(c) for c in cuts]))
-    assert sorted(areas_m2(blocks)) == pytest.approx([1800, 1800, 2400], rel=1e-5)
+    for cut in cuts:
+        field = replace(field, blocks=cut_blocks(field, line(*cut)))
+    assert sorted(areas_m2(field.blocks)) == pytest.approx([1800, 1800, 2400], rel=1e-5)
 
 
 def test_parts_that_a_cut_does_not_touch_go_with_the_nearer_side():

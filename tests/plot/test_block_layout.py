@@ -17,8 +17,9 @@ from fieldmon.plot.grid import block_label
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.travel import Aisles, crosses_rows
+from fieldmon.plot.travel import Aisles
 from tests.crooked import crooked_fields, plantings
+from tests.crossing import crosses_rows
 
 FRAME = Frame(8.0, 47.0)
 PLANTING = Planting(row_spacing_m=2.5, plant_spacing_m=1.2)

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from fieldmon.plot.driven_line import _plain
 from fieldmon.plot.layout import rectangle
-from fieldmon.plot.travel import Aisles, crosses_rows
+from fieldmon.plot.travel import Aisles
 from tests.bent import bent_grids
+from tests.crossing import crosses_rows
 
 
 @settings(max_examples=15)

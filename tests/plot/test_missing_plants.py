@@ -9,8 +9,9 @@ from fieldmon.plot.grid import row_label
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.missing_plants import without
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.travel import Aisles, crosses_rows
+from fieldmon.plot.travel import Aisles
 from tests.crooked import crooked_grids
+from tests.crossing import crosses_rows
 
 
 def thinned(grid, seed, share):

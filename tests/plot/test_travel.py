@@ -19,9 +19,10 @@ from fieldmon.plot.obstacles import row_lines
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
-from fieldmon.plot.travel import Aisles, crosses_rows, drive_m, driven_s, robot_clock
+from fieldmon.plot.travel import Aisles, drive_m, driven_s, robot_clock
 from fieldmon.plot.trees import trees_grid
 from tests.crooked import crooked_grids
+from tests.crossing import crosses_rows
 
 FRAME = Frame(35.15, 30.36)
 EASTWARD = Planting(row_bearing_deg=90.0, row_spacing_m=4.0, plant_spacing_m=2.0)

@@ -8,8 +8,8 @@ from scipy.spatial import cKDTree
 
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.row_detection import distinct
-from fieldmon.plot.travel import crosses_rows
 from tests.bent import FRAME, bent, measured, right_share, side_by_side, surveyed, tiled
+from tests.crossing import crosses_rows
 
 TURNS = (5.0, 15.0, 40.0, 90.0)
 NOISES = {0.0: 0.99, 0.05: 0.99, 0.3: 0.95}

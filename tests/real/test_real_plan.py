@@ -14,7 +14,7 @@ from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_plots, read_records
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.plot import Plot
-from fieldmon.plot.travel import crosses_rows
+from tests.crossing import crosses_rows
 
 GEOD = Geod(ellps="WGS84")
 PARCELS = "parcels_orchards_vineyards"

@@ -68,11 +68,6 @@ def of_grid(grid: PlantGrid) -> list[float]:
     return _bounds(grid.frame.lonlat(shapely.get_coordinates(grid.drivable_m)))
 
 
-def of_field(field: Field) -> list[float]:
-    """Return what a plot's outline covers: west, south, east, north."""
-    return _bounds(shapely.get_coordinates(field.boundary))
-
-
 def _bounds(corners: NDArray[np.float64]) -> list[float]:
     return [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]
 

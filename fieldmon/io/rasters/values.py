@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
@@ -196,11 +195,6 @@ class Backdrop:
 
     def __post_init__(self) -> None:
         self.corners_lonlat.setflags(write=False)
-
-    @property
-    def data_uri(self) -> str:
-        """Return the picture as text that a map takes in place of an address."""
-        return f"data:{self.mime};base64,{b64encode(self.image).decode('ascii')}"
 
 
 def map_xy(to_map: Affine, places: Float) -> Float:

@@ -99,11 +99,6 @@ class Rungs(NamedTuple):
 _MADE: WeakKeyDictionary[Aisles, tuple[Rungs, dict[object, Ladder]]] = WeakKeyDictionary()
 
 
-def ladder_below(aisles: Aisles) -> Ladder:
-    """Return a ladder on which no way is longer than the true one."""
-    return Ladders(aisles).whole(hanging=False)
-
-
 class Ladders:
     """Ladders below a plot, or below some of its aisles, on which no way is longer than true.
 

@@ -1,6 +1,5 @@
 """A raster as a picture for the map: bands, contrast, what is clear, and its corners."""
 
-import base64
 import re
 
 import numpy as np
@@ -71,13 +70,6 @@ def test_a_backdrop_shows_east_on_the_right_and_north_above(tmp_path):
         again.corners_lonlat, read.value.corners_lonlat[[1, 0, 3, 2]], atol=1e-9
     )
     np.testing.assert_allclose(shown(again)[:, 300, 300], [255, 0, 255], atol=12)
-
-
-def test_a_backdrop_can_be_handed_to_a_map_as_text(tmp_path):
-    picture = read_backdrop(write(tmp_path / "r.tif", ramp())).value
-    kind, _, text = picture.data_uri.partition(",")
-    assert kind == "data:image/jpeg;base64"
-    assert base64.b64decode(text) == picture.image
 
 
 def test_a_turned_backdrop_has_turned_corners(tmp_path):

@@ -18,8 +18,8 @@ from fieldmon.io.writers import nav2, write_handoff
 from fieldmon.io.writers.nav2 import graph_of, nav2_files
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.travel import crosses_rows
 from tests.crooked import crooked_fields
+from tests.crossing import crosses_rows
 from tests.io.writers.handed import DAYS, apart_m, crooked, day, long, usual
 
 MM = 1e-3

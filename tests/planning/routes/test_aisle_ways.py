@@ -7,10 +7,10 @@ import pytest
 
 from fieldmon.compute.jit import loop
 from fieldmon.planning.routes import aisle_ways
-from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles
+from tests.planning.routes.tiny import ladder_below
 
 _once = aisle_ways._once
 

@@ -5,13 +5,13 @@ import pytest
 
 from fieldmon.planning.routes.binned import _Offers, _sweep, proposals
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.planning.routes.stops import stops_of
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from tests.planning.routes.test_improve import used_s
+from tests.planning.routes.tiny import ladder_below
 
 AISLES = Aisles.of(rectangle(10, 9))
 REWARD = np.random.default_rng(3).random(90) ** 2

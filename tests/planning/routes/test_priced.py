@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
+from tests.planning.routes.tiny import ladder_below
 
 
 @pytest.fixture(params=[(1, True), (2, True), (1, False), (2, False)])

@@ -16,7 +16,6 @@ from fieldmon.planning.routes.relaxation import (
     Ladders,
     _from_left_to_right,
     _take_crossing,
-    ladder_below,
 )
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay, rectangle
@@ -24,6 +23,7 @@ from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import GATE, Aisles
 from tests.planning.routes.test_best_route import crooked_aisles
+from tests.planning.routes.tiny import ladder_below
 
 # weights of 0 would count as no way at all
 _LEAST = 1e-12

@@ -5,12 +5,12 @@ import pytest
 
 from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import ladder_below
 from fieldmon.planning.routes.stops import stops_of
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from tests.planning.routes.test_improve import used_s
+from tests.planning.routes.tiny import ladder_below
 
 
 @pytest.mark.parametrize("returns", [True, False])

@@ -1,9 +1,10 @@
-"""The best route over few plants, by trying every order (subset by subset)."""
+"""Small cases: the best route over few plants by trying every order, and a plot as one ladder."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.plot.travel import GATE, robot_clock, travel_s
 
 
@@ -36,3 +37,8 @@ def best_of_all(aisles, reward, robot, seconds):
                 after = visited | 1 << b
                 earliest[after, b] = min(earliest[after, b], arrive)
     return most
+
+
+def ladder_below(aisles):
+    """Return a ladder on which no way is longer than the true one."""
+    return Ladders(aisles).whole(hanging=False)

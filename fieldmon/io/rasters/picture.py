@@ -12,15 +12,8 @@ from rasterio.shutil import copy
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
-from fieldmon.io.rasters.opening import (
-    M_PER_DEGREE,
-    RasterPart,
-    ReadPixels,
-    band_named,
-    open_raster,
-    part_of,
-    read_pixels,
-)
+from fieldmon.io.rasters.opening import band_named, open_raster
+from fieldmon.io.rasters.pixels import M_PER_DEGREE, RasterPart, ReadPixels, part_of, read_pixels
 from fieldmon.io.rasters.values import Backdrop, map_xy
 
 if TYPE_CHECKING:

@@ -10,12 +10,8 @@ from rasterio.enums import ColorInterp
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
-from fieldmon.io.rasters.opening import (
-    band_named,
-    open_raster,
-    part_of,
-    read_pixels,
-)
+from fieldmon.io.rasters.opening import band_named, open_raster
+from fieldmon.io.rasters.pixels import part_of, read_pixels
 from fieldmon.io.rasters.values import Raster
 from fieldmon.io.sandbox import limits
 

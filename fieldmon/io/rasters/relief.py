@@ -10,19 +10,17 @@ from scipy import ndimage
 
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import Imported, seen
-from fieldmon.io.rasters.opening import (
-    M_PER_DEGREE,
-    band_named,
-    open_raster,
-)
+from fieldmon.io.rasters.opening import band_named, open_raster
 from fieldmon.io.rasters.picture import corners_on_map, encoded, read_for_picture
+from fieldmon.io.rasters.pixels import M_PER_DEGREE
 from fieldmon.io.rasters.values import Backdrop, map_xy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import Source
-    from fieldmon.io.rasters.opening import OpenRaster, RasterPart
+    from fieldmon.io.rasters.opening import OpenRaster
+    from fieldmon.io.rasters.pixels import RasterPart
     from fieldmon.io.rasters.values import RasterOptions
 
     Float = NDArray[np.float64]

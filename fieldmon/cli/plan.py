@@ -126,7 +126,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
     """Plan every plot of the file into a folder."""
     import numpy as np
 
-    from fieldmon.cli.plan_all import Day, plan_all
+    from fieldmon.cli.plan_all import EstateDay, plan_all
     from fieldmon.planning.batch import Orders
 
     worker, starts = options.worker, options.starts()
@@ -152,7 +152,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
         at=starts.at,
     )
     tell_unusable(plots.records.anywhere, orders.day, orders.prior)
-    plan_all(plots, orders, Day(plots.records, folder, begins))
+    plan_all(plots, orders, EstateDay(plots.records, folder, begins))
 
 
 def _request_of_all(options: PlanOptions) -> PlotRequest:

@@ -54,7 +54,7 @@ Row = dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Day:
+class EstateDay:
     """What every worker process knows before its first plot.
 
     Parameters
@@ -72,10 +72,10 @@ class Day:
     began: datetime
 
 
-_day: list[Day] = []
+_day: list[EstateDay] = []
 
 
-def plan_all(plots: Estate, orders: Orders, day: Day, workers: int | None = None) -> None:
+def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None = None) -> None:
     """Plan every plot; write a route file each, and `SUMMARY` in the same folder.
 
     A plot that cannot be planned is refused with its sentence, and the others go on. What an
@@ -142,7 +142,11 @@ def _finished(folder: Path, digests: dict[str, str]) -> dict[str, Row]:
 
 
 def _plan(
-    tasks: dict[str, Task], rows: dict[str, Row], digests: dict[str, str], day: Day, workers: int
+    tasks: dict[str, Task],
+    rows: dict[str, Row],
+    digests: dict[str, str],
+    day: EstateDay,
+    workers: int,
 ) -> None:
     """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current."""
     if not tasks:
@@ -173,11 +177,11 @@ def _plan(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _pool(workers: int, day: Day) -> Executor:
+def _pool(workers: int, day: EstateDay) -> Executor:
     return ProcessPoolExecutor(workers, get_context("spawn"), _prepare, (day,))
 
 
-def _here(day: Day) -> Executor:
+def _here(day: EstateDay) -> Executor:
     """Return this process: a few plots are planned before others have started."""
     from fieldmon.simulation.executor import here
 
@@ -208,7 +212,7 @@ def _ended(
         yield from done
 
 
-def _prepare(day: Day) -> None:
+def _prepare(day: EstateDay) -> None:
     """Make a worker process ready; the stop key is for the process that waits for it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _day[:] = [day]

@@ -67,14 +67,14 @@ def team_day(
     if len(team) == 1:
         (alone,) = team
         return (work_day(alone.scene, sampler, alone.would_find),)
-    return _Day(team, sampler, teamwork, learn, before).run()
+    return _TeamDay(team, sampler, teamwork, learn, before).run()
 
 
 class _Event(Protocol):
     def __call__(self, worker: TeamWorker, now_s: float) -> None: ...
 
 
-class _Day:
+class _TeamDay:
     """A day on its way; events are calls in order of the clock."""
 
     def __init__(

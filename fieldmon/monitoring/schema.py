@@ -1,4 +1,4 @@
-"""The tables of a season's file, and how an old file becomes a new one."""
+"""The tables of a season's file. How an older file comes to them: `migrations`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, 
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable
 
 VERSION = 10
 #: files of this version and later have a log
@@ -334,7 +333,8 @@ CREATE VIEW chance AS
   FROM plants p JOIN plant_state s ON s.fid = p.fid
 """
 # the same finding twice is one, unless the first was undone
-_INDEXES = (
+#: what is looked for, and what may be there once only
+INDEXES = (
     "CREATE UNIQUE INDEX inspections_once ON inspections (digest) WHERE undone = 0",
     "CREATE UNIQUE INDEX treatments_once ON treatments (digest) WHERE undone = 0",
     "CREATE UNIQUE INDEX routes_revision ON routes (day, who, revision)",
@@ -351,13 +351,25 @@ def lay_out(db: sqlite3.Connection) -> None:
             create(db, table)
     db.execute(_CHANCE_VIEW)
     announce(db, CHANCE)
-    for index in _INDEXES:
+    for index in INDEXES:
         db.execute(index)
     count_inspections(db)
     watch(db)
     add_styles(db)
-    _phones_come(db)
-    _photos_are_asked_for(db)
+    add_phones(db)
+    add_photos_asked(db)
+
+
+def add_phones(db: sqlite3.Connection) -> None:
+    """Make room for what phones bring; version 5 knew of none."""
+    phone_tables.phones_come(db)
+    add_photo_styles(db)
+
+
+def add_photos_asked(db: sqlite3.Connection) -> None:
+    """Make room for requests for photos; version 7 did not know of which plants one is wanted."""
+    create(db, phone_tables.PHOTOS_ASKED)
+    add_asked_styles(db)
 
 
 def watch(db: sqlite3.Connection) -> None:
@@ -407,84 +419,3 @@ def count_inspections(db: sqlite3.Connection) -> None:
                 f"BEGIN DELETE FROM inspection_lots WHERE lot IN (SELECT fid >> {LOT_BITS} "
                 "FROM inspections WHERE digest = new.digest AND undone = 0); END"
             )
-
-
-def _treatments_come(db: sqlite3.Connection) -> None:
-    """Version 1 knew neither treatments nor routes planned half-way."""
-    create(db, TREATMENTS)
-    db.execute(_INDEXES[1])
-    db.execute("ALTER TABLE routes ADD COLUMN at_plant INTEGER")
-    db.execute("ALTER TABLE routes ADD COLUMN seconds_left REAL")
-
-
-def _changes_are_noticed(db: sqlite3.Connection) -> None:
-    """Version 2 did not notice what other programs changed."""
-    create(db, OUTSIDE_CHANGES)
-
-
-def _teams_come(db: sqlite3.Connection) -> None:
-    """Version 3 knew one who works: routes were nobody's, and settings said nothing of a team."""
-    db.execute("ALTER TABLE routes ADD COLUMN who TEXT NOT NULL DEFAULT ''")
-    db.execute("DROP INDEX routes_revision")
-    db.execute(_INDEXES[2])
-    # as if said when the season began, so that a team chosen later can be taken back
-    db.execute(
-        "INSERT OR IGNORE INTO settings (fid, name, value, changed) "
-        "SELECT 0, 'team', ?, changed FROM settings ORDER BY fid LIMIT 1",
-        (NO_TEAM,),
-    )
-
-
-def _estimates_come(db: sqlite3.Connection) -> None:
-    """Version 4 did not keep what inspections tell of the insects."""
-    create(db, LEARNT)
-
-
-def _phones_come(db: sqlite3.Connection) -> None:
-    """Version 5 knew of no phones."""
-    phone_tables.phones_come(db)
-    add_photo_styles(db)
-
-
-def _photos_are_asked_for(db: sqlite3.Connection) -> None:
-    """Version 7 did not say of which plants somebody wants a photo."""
-    create(db, phone_tables.PHOTOS_ASKED)
-    add_asked_styles(db)
-
-
-def _long_seasons_come(db: sqlite3.Connection) -> None:
-    """Version 9 kept inspections once, and of a day's figures not what they follow from."""
-    create(db, INSPECTION_LOTS)
-    db.execute("ALTER TABLE days ADD COLUMN causes TEXT")
-    count_inspections(db)
-
-
-def _records_come(db: sqlite3.Connection) -> None:
-    """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
-    _applications_say_all(db)
-    create(db, LABELS)
-    create(db, LOG)
-    create(db, MORNINGS)
-    db.execute(_INDEXES[4])
-
-
-def _applications_say_all(db: sqlite3.Connection) -> None:
-    """Version 8 did not ask for the active ingredient and the weather of a treatment."""
-    there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
-    for column in APPLIED:
-        if column.split()[0] not in there:
-            db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
-
-
-#: what makes a file of version k one of version k + 1; `watch` follows the last
-MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
-    1: _treatments_come,
-    2: _changes_are_noticed,
-    3: _teams_come,
-    4: _estimates_come,
-    5: _phones_come,
-    6: _records_come,
-    7: _photos_are_asked_for,
-    8: _applications_say_all,
-    9: _long_seasons_come,
-}

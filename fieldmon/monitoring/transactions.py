@@ -15,9 +15,9 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import require_folder
 from fieldmon.monitoring import journals, season_log
 from fieldmon.monitoring.geopackage import APPLICATION_ID
+from fieldmon.monitoring.migrations import MIGRATIONS
 from fieldmon.monitoring.schema import (
     LOGS_SINCE,
-    MIGRATIONS,
     NEEDS,
     OPEN,
     VERSION,

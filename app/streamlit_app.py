@@ -75,8 +75,8 @@ def page_of(name: str) -> st.Page:
 
 def in_panel(name: str) -> None:
     """Show a room in the panel: where and when, its parts, and who works."""
-    head, said, body, foot = (
-        st.container(key=f"panel_{k}") for k in ("head", "said", "body", "foot")
+    head, day, said, body, foot = (
+        st.container(key=f"panel_{k}") for k in ("head", "day", "said", "body", "foot")
     )
     links_, ways, head = head.container(), head.container(), head.container()
     with links_:
@@ -93,7 +93,8 @@ def in_panel(name: str) -> None:
         with ways:
             ways_in.show()
 
-    chosen = choose(head, foot, waiting.wait)
+    is_planned = rooms.shown_part(name) == "today"
+    chosen = choose(head, foot, waiting.wait, day if is_planned else None)
     with said:
         notices.show()
         if chosen.choices is not None:

@@ -123,10 +123,7 @@ def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> Non
     if error.option in _OTHER_FILES:
         return
     offered = [str(choice) for choice in error.choices]
-    numbered = list(enumerate(offered[:_MOST_BUTTONS], start=1))
-    # what leads to a plot comes first, under the number that it has on the map
-    numbered.sort(key=lambda one: one[1] in tried and not tried[one[1]].leads)
-    for number, answer in numbered:
+    for number, answer in with_buttons(offered, tried):
         st.button(_label(number, answer, tried.get(answer)), key=f"pick {asking} {answer}",
                   width="stretch", on_click=brought_files.answer,
                   args=(asking, error.option, answer))  # fmt: skip
@@ -138,6 +135,16 @@ def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> Non
             st.text_input(label, key=widget)
         st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}",
                   on_click=_answer_from, args=(asking, error.option, widget))  # fmt: skip
+
+
+def with_buttons(offered: list[str], tried: dict[str, TriedAnswer]) -> list[tuple[int, str]]:
+    """Return the answers that have buttons, each under the number that it has on the map.
+
+    What leads to a plot comes first, and what was seen to lead nowhere last.
+    """
+    numbered = enumerate(offered, start=1)
+    best = sorted(numbered, key=lambda one: one[1] in tried and not tried[one[1]].leads)
+    return best[:_MOST_BUTTONS]
 
 
 def _label(number: int, answer: str, one: TriedAnswer | None) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import streamlit as st
@@ -15,6 +16,8 @@ from ..words.strategies import sampler_does, sampler_name, strategy_name
 from . import robot_boxes
 
 if TYPE_CHECKING:
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.monitoring import MonitoringSettings, Season
 
     from ..state.choices import Choices
@@ -36,21 +39,44 @@ def named() -> dict[str, Any]:
     return {"format_func": sampler_name, "help": help_}
 
 
-def show(name: str, season: Season) -> None:
+@dataclass(frozen=True)
+class Work:
+    """Where the boxes stand: who works in the foot; the hours with the day, or else there too."""
+
+    foot: DeltaGenerator
+    day: DeltaGenerator | None = None
+
+    def hours(self) -> DeltaGenerator:
+        """Return where the hours stand, to be used within the boxes of who works."""
+        where = st if self.day is None else self.day
+        return where.container(key="hours" if self.day is None else "hours_of_day")
+
+
+def in_hours() -> str:
+    """Return how a slider writes hours."""
+    return texts.IN_HOURS.format(hours="%g")
+
+
+def show(name: str, season: Season, work: Work) -> None:
     """Show who works in the season of this name, and change it on demand."""
-    with st.expander(texts.WHO, expanded=True):
+    with work.foot, st.expander(texts.WHO, expanded=True):
         settings = season.settings
-        wanted = _wanted(name, settings)
-        if wanted != settings:
-            st.caption(texts.CHANGE_NOTE)
-            if st.button(texts.CHANGE, type="primary", key="change_setup"):
-                season.change(wanted, settings)
-                st.rerun()
+        wanted, hours = _wanted(name, settings, work)
+        others = replace(wanted, robot=wanted.robot.with_hours(settings.robot.hours))
+        # what was changed with the day is used there
+        with hours if others == settings else nullcontext():
+            if wanted != settings:
+                st.caption(texts.CHANGE_NOTE)
+                if st.button(texts.CHANGE, type="primary", key="change_setup"):
+                    season.change(wanted, settings)
+                    st.rerun()
         _offer_undo(season)
 
 
-def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
-    """Show the boxes; return the settings that they say."""
+def _wanted(
+    name: str, settings: MonitoringSettings, work: Work
+) -> tuple[MonitoringSettings, DeltaGenerator]:
+    """Show the boxes; return the settings that they say, and where the hours stand."""
     robot = settings.robot
     key = f"{name} {robot.hours} {robot.look_s} {settings.sampler} {robot.speed_m_s}"
     was = SCOUT if robot.on_foot else ROBOT
@@ -62,8 +88,10 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
         key = f"{key} {who}"
     # a command, or "one hour more", may have set what is beyond the usual
     usual_s = robot.look_s
-    hours = st.slider(texts.HOURS, min(0.5, robot.hours), max(16.0, robot.hours), robot.hours, 0.5,
-                      key=f"hours {key}")  # fmt: skip
+    place = work.hours()
+    with place:
+        hours = st.slider(texts.HOURS, min(0.5, robot.hours), max(16.0, robot.hours), robot.hours,
+                          0.5, format=in_hours(), key=f"hours {key}")  # fmt: skip
     inspection_s = st.slider(texts.INSPECTION_S, min(20.0, usual_s), max(60.0, usual_s), usual_s,
                              5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
     if who != SCOUT:
@@ -74,7 +102,7 @@ def _wanted(name: str, settings: MonitoringSettings) -> MonitoringSettings:
     )
     st.caption(sampler_does(sampler))
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
-    return replace(settings, robot=robot, sampler=sampler)
+    return replace(settings, robot=robot, sampler=sampler), place
 
 
 def _offer_undo(season: Season) -> None:

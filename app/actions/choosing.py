@@ -22,6 +22,7 @@ from ..state import (
     chosen_language,
     chosen_pest,
     chosen_units,
+    held,
     kept_files,
     plot_files,
     plot_source,
@@ -36,8 +37,9 @@ from ..state.choices import WHOSE_DAY, Choices, Chosen
 from ..state.work_day import Calendar
 from ..words import language, texts
 from ..words.strategies import sampler_does
-from ..words.units import AREAS_M2, DATES, LENGTHS
+from ..words.units import AREAS_M2, DATES, LENGTHS, hours
 from . import changing, robot_boxes
+from .changing import Work
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -58,17 +60,20 @@ if TYPE_CHECKING:
 _DAY = "day {source}"
 
 
-def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
-    """Show where and when in the head, who works in the foot.
+def choose(
+    head: DeltaGenerator, foot: DeltaGenerator, wait: Wait, day: DeltaGenerator | None = None
+) -> Chosen:
+    """Show where and when in the head, who works in the foot, how long today with the `day`.
 
+    Without a `day` the hours stand with who works. On a phone they fold with where and when.
     Returns the choices, or the problem that keeps from them.
     """
     if not browser.is_phone():
-        return _chosen(head, foot, wait)
+        return _chosen(head, Work(foot, day), wait)
     with head.container(key="where_and_when", horizontal=True, vertical_alignment="center"):
         name = _of_files().get(plot_source.chosen()) or texts.isolated(plot_source.chosen())
         boxes, line = st.popover(name), st.empty()
-    chosen = _chosen(boxes, foot, wait)
+    chosen = _chosen(boxes, Work(foot, None if day is None else boxes), wait)
     if chosen.choices is not None:
         line.markdown(_where_and_when(chosen.choices))
     return chosen
@@ -77,17 +82,18 @@ def choose(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
 def _where_and_when(choices: Choices) -> str:
     """Return the plot and the day in a line: on a phone it stands for the boxes, which fold."""
     day = choices.units.said_day(choices.day, choices.today)
+    day = f"{day}, {hours(choices.robot.hours)}"
     return day if choices.season is not None else f"**{choices.name}**, {day}"
 
 
-def _chosen(head: DeltaGenerator, foot: DeltaGenerator, wait: Wait) -> Chosen:
+def _chosen(head: DeltaGenerator, work: Work, wait: Wait) -> Chosen:
     with head:
         source = _source()
         try:
             if source in (plot_source.SAMPLE, plot_source.FILES):
-                return Chosen(_from_files(source, wait, foot))
+                return Chosen(_from_files(source, wait, work))
             wait(None)
-            return Chosen(_from_season(source, foot))
+            return Chosen(_from_season(source, work))
         except FieldmonError as error:
             return Chosen(problem=error)
 
@@ -117,7 +123,8 @@ def _of_files() -> dict[str, str]:
 # -- a season
 
 
-def _from_season(name: str, foot: DeltaGenerator) -> Choices:
+def _from_season(name: str, work: Work) -> Choices:
+    held.wait(seasons_folder.path_of(name))
     season = cached.season(seasons_folder.path_of(name))
     settings, key, units = season.settings, str(season.path), chosen_units.units()
     clock = local_clock(season.plot.field)
@@ -129,8 +136,7 @@ def _from_season(name: str, foot: DeltaGenerator) -> Choices:
         key, season.plot, season.observations, said, settings.robot, settings.sampler, str(day),
         units, season, key, today=calendar.today, prior=settings.prior,
     )  # fmt: skip
-    with foot:
-        changing.show(name, season)
+    changing.show(name, season, work)
     return choices
 
 
@@ -142,7 +148,7 @@ def _message(kept: KeptMessage) -> ImportMessage:
 # -- files: the sample estate's, or those brought
 
 
-def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None:
+def _from_files(source: str, wait: Wait, work: Work) -> Choices | None:
     kept_files.sync()
     if source == plot_source.SAMPLE:
         st.caption(texts.SAMPLE_NOTE)
@@ -158,8 +164,7 @@ def _from_files(source: str, wait: Wait, foot: DeltaGenerator) -> Choices | None
     today = sample_estate.LAST_DAY if source == plot_source.SAMPLE else clock.today()
     with when:
         day = _day(source, Calendar(today), clock)
-    with foot:
-        robot, sampler = _work()
+    robot, sampler = _work(work)
     pest, prior = chosen_pest.pest(), chosen_pest.prior(assumptions.prior(), made.plot, today, day)
     return Choices(
         made.key, made.plot, made.records, made.messages,
@@ -223,16 +228,19 @@ def _which(file: File, names: list[str]) -> int:
     return number or 0
 
 
-def _work() -> tuple[Robot, str]:
-    with st.expander(texts.WHO, expanded=True):
+def _work(work: Work) -> tuple[Robot, str]:
+    with work.foot, st.expander(texts.WHO, expanded=True):
         who = widget_memory.show(
             st.segmented_control, texts.WHO, list(changing.WHO), key="who",
             default=changing.ROBOT, required=True, label_visibility="collapsed",
             format_func=changing.who_name,
         )  # fmt: skip
         base = robots.scout() if who == changing.SCOUT else robots.Robot()
-        hours = widget_memory.show(st.slider, texts.HOURS, 0.5, 16.0, step=0.5,
-                                   key=f"hours {who}", default=base.hours)  # fmt: skip
+        with work.hours():
+            day_h = widget_memory.show(
+                st.slider, texts.HOURS, 0.5, 16.0, step=0.5, key=f"hours {who}",
+                default=base.hours, format=changing.in_hours(),
+            )  # fmt: skip
         inspection_s = widget_memory.show(
             st.slider, texts.INSPECTION_S, 20, 60, step=5, key=f"inspection_s {who}",
             default=int(base.look_s),
@@ -244,7 +252,7 @@ def _work() -> tuple[Robot, str]:
             default=USUAL, **changing.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
-    return replace(base, hours=float(hours), look_s=float(inspection_s)), sampler
+    return replace(base, hours=float(day_h), look_s=float(inspection_s)), sampler
 
 
 # -- language and units

@@ -16,7 +16,7 @@ from fieldmon.io.writers.geojson import route_geojson
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots
 from ..words import texts
-from ..words.language import number
+from ..words.language import about, number
 
 if TYPE_CHECKING:
     from ..state.estate import PlotState
@@ -79,10 +79,12 @@ def _crew() -> EstateCrew:
 def _say(made: SharedPlots, crew: EstateCrew) -> None:
     routes = [one.plan.route for one in made.turns]
     plants = sum(len(route) for route in routes)
-    finds = sum(route.expected_finds for route in routes)
+    finds = sum(route.expected_found for route in routes)
     with st.container(key="lead"):
         said = texts.PLAN_ALL_LEAD.format(
-            plants=number(plants, ","), n=len({one.plot.name for one in made.turns}), finds=finds
+            plants=number(plants, ","),
+            n=len({one.plot.name for one in made.turns}),
+            finds=about(finds),
         )
         st.markdown(said)
     st.caption(texts.PLAN_ALL_RULE)
@@ -113,7 +115,7 @@ def packed(made: SharedPlots) -> bytes:
             archive.writestr(file, route_geojson(one.plan.route, notes))
             rows.writerow((
                 file, one.plot.name, one.who, one.begins.isoformat(), one.ends.isoformat(),
-                len(one.plan.route), round(one.plan.route.expected_finds, 2),
+                len(one.plan.route), round(one.plan.route.expected_found, 2),
             ))  # fmt: skip
         archive.writestr("plan.csv", ("\ufeff" + table.getvalue()).encode())
     return out.getvalue()

@@ -16,7 +16,7 @@ from fieldmon.plot.grid import row_label
 
 from ..state import cached
 from ..words import texts
-from ..words.language import in_words, number
+from ..words.language import about, in_words, number
 from . import map_layers
 from .map_view import Switch
 from .maps import colours, legends
@@ -53,8 +53,8 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
         st.metric(texts.DECIDE_AREA, f"{units.square(zones.m2)} ({share})", width="content")
         liquid = texts.DECIDE_LITRES.format(value=number(advice.litres, ",.0f"))
         st.metric(product or texts.DECIDE_LIQUID, liquid, width="content")
-        st.metric(texts.DECIDE_INSIDE, number(zones.inside, ".1f"), width="content")
-        st.metric(texts.DECIDE_OUTSIDE, number(zones.outside, ".1f"), width="content")
+        st.metric(texts.DECIDE_INSIDE, about(zones.inside), width="content")
+        st.metric(texts.DECIDE_OUTSIDE, about(zones.outside), width="content")
         st.metric(texts.DECIDE_SAVING, in_words(advice.saved), width="content")
         st.metric(texts.DECIDE_ENOUGH, number(advice.said.enough, ".0%"), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import pandas as pd
 import streamlit as st
 
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import sentences
@@ -22,6 +24,7 @@ from .assumed import mark
 
 if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.route import Route
 
     from ..state.choices import Choices
     from ..state.chosen_day import DayRoute
@@ -72,8 +75,20 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
                   width="content")  # fmt: skip
         st.metric(mark(texts.FINDS, taken, for_finds), about(route.expected_found),
                   width="content")  # fmt: skip
-    if len(route) and (said := chosen_day.with_bound(choices, plan).route.bound_sentence):
-        st.caption(in_words(said), help=texts.BOUND_HELP)
+    if len(route) and (said := _bound(chosen_day.with_bound(choices, plan).route)):
+        st.caption(said, help=texts.BOUND_HELP)
+
+
+def _bound(route: Route) -> str:
+    """Return what no other route can exceed, against the figures above it; rounded up."""
+    if route.found_bound is None:
+        return ""
+    above = share_above(route.expected_found, route.found_bound)
+    if above <= PROVED:
+        return texts.BOUND_BEST
+    if math.isinf(above):
+        return texts.BOUND_NONE.format(finds=about(route.found_bound))
+    return texts.BOUND.format(share=number(math.ceil(1000.0 * above) / 10.0, ".1f"))
 
 
 def said_of_day(choices: Choices, plan: DayPlan) -> None:

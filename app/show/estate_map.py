@@ -10,6 +10,7 @@ from pydeck import Layer
 
 from ..state.shared_plots import DUE_DAYS
 from ..words import texts
+from ..words.language import about
 from .map_view import MapContent
 from .maps import legends
 
@@ -46,7 +47,7 @@ def said(plot: PlotState) -> str:
         return texts.PLOTS_TIP_NEW.format(name=name)
     days = plot.days_since
     seen = texts.PLOTS_SEEN[days] if days in (0, None) else texts.PLOTS_SEEN["n"].format(n=days)
-    return texts.PLOTS_TIP.format(name=name, expected=plot.expected, seen=seen)
+    return texts.PLOTS_TIP.format(name=name, expected=about(plot.expected), seen=seen)
 
 
 def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapContent:

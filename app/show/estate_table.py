@@ -27,10 +27,15 @@ def of(
             more["from"]: [one and f"{one.begins:%H:%M}" for one in own],
             more["to"]: [one and f"{one.ends:%H:%M}" for one in own],
             more["plants"]: [one and len(one.plan.route) for one in own],
-            more["finds"]: [one and one.plan.route.expected_finds for one in own],
+            more["finds"]: [one and _rounded(one.plan.route.expected_found) for one in own],
         }
     if any(plot.expected is not None for plot in plots):
         columns[names["days_since"]] = [plot.days_since for plot in plots]
-        columns[names["expected"]] = [plot.expected for plot in plots]
-    whole, tenth = (st.column_config.NumberColumn(format=how) for how in ("%.0f", "%.1f"))
-    return pd.DataFrame(columns), {names["expected"]: whole, more["finds"]: tenth}
+        columns[names["expected"]] = [_rounded(plot.expected) for plot in plots]
+    written = st.column_config.NumberColumn(format="localized")
+    return pd.DataFrame(columns), {names["expected"]: written, more["finds"]: written}
+
+
+def _rounded(value: float | None) -> float | None:
+    """Return an estimate as precise as `about` says it; a number, by which a table can sort."""
+    return None if value is None else round(value, 0 if round(value, 1) >= 10 else 1)

@@ -12,15 +12,22 @@ from . import ground, map_view
 from .maps import deck
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..state.choices import Choices
     from .map_view import MapAnswers, MapContent
 
-_WANTED = "map wanted"
+_WANTED, _INSTEAD = "map wanted", "wanted instead of a map"
 
 
 def clear() -> None:
     """Want no map yet, at the beginning of a run."""
-    st.session_state[_WANTED] = None
+    st.session_state[_WANTED] = st.session_state[_INSTEAD] = None
+
+
+def want_instead(show: Callable[[], None]) -> None:
+    """Want this shown where the map would be, as long as no map is wanted."""
+    st.session_state[_INSTEAD] = show
 
 
 def want(content: MapContent, answers: MapAnswers | None = None) -> None:
@@ -40,8 +47,11 @@ def draw() -> None:
     The frame does it, not the page: so one map stays through all pages, with its zoom.
     """
     kept = st.session_state.get(_WANTED)
+    instead = st.session_state.get(_INSTEAD)
     if kept is not None:
         map_view.show(*kept)
+    elif instead is not None:
+        instead()
 
 
 def of_plot(choices: Choices, stops: int = 0) -> dict[str, object]:

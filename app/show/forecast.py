@@ -8,7 +8,7 @@ import streamlit as st
 
 from ..state import chosen_day
 from ..words import texts
-from ..words.language import number
+from ..words.language import about, number
 from . import charts
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def show(choices: Choices) -> None:
     chart = charts.ahead(choices.day, ahead, axes, choices.units.short_day)
     st.altair_chart(chart, alt=texts.AHEAD_TITLE)
     last, low, high, now = (
-        number(value, ",.0f")
+        about(value)
         for value in (ahead.expected[-1], ahead.low[-1], ahead.high[-1], ahead.expected[0])
     )
     nights = number(ahead.nights, "d")

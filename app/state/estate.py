@@ -12,13 +12,16 @@ from fieldmon.io.options import PlotOptions
 from fieldmon.plot.local_clock import local_clock
 
 from ..words.language import of_error
-from . import cached, plot_files, plot_source, sample_estate, seasons_folder
+from . import cached, held, plot_files, plot_source, sample_estate, seasons_folder
 from .brought_files import settled
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon
 
     from fieldmon.monitoring import Season
+
+# the other plots do not wait for one that another program holds
+_GLANCE_S = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +57,12 @@ def plots() -> tuple[list[PlotState], list[str]]:
     found, problems = [], []
     for name in seasons_folder.names():
         try:
-            found.append(_of_season(name, cached.season(seasons_folder.path_of(name))))
+            path = seasons_folder.path_of(name)
+            held.wait(path, patience_s=_GLANCE_S)
+            found.append(_of_season(name, cached.season(path)))
         except FieldmonError as error:
-            problems.append(f"{name}: {of_error(error)}")
+            said = of_error(error)
+            problems.append(said if name in said else f"{name}: {said}")
     files = plot_files.of_session()
     if files is not None and files.plot is not None:
         try:

@@ -9,6 +9,7 @@ import streamlit as st
 from fieldmon.errors import FieldmonError
 
 from ..words.language import of_error
+from . import held
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,7 +36,10 @@ def reporting(action: Callable[..., str]) -> Callable[..., None]:
     """
 
     def callback(*arguments: object) -> None:
+        season = getattr(arguments[0], "season", None) if arguments else None
         try:
+            if season is not None:  # what is done may be kept in it
+                held.wait(season.path, to_write=True)
             sentence = action(*arguments)
         except FieldmonError as error:
             keep("error", of_error(error))

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import streamlit as st
 
+from . import widget_memory
+
 
 @dataclass(frozen=True)
 class Room:
@@ -57,6 +59,13 @@ def turned_to() -> str | None:
 def room_of(part: str) -> str:
     """Return the room that a part is in."""
     return next(name for name, room in ROOMS.items() if part in room.parts)
+
+
+def shown_part(name: str) -> str:
+    """Return which part of a room is shown, before its box is."""
+    parts = ROOMS[name].parts
+    part: str = widget_memory.value(key(name), parts[0])
+    return part if part in parts else parts[0]
 
 
 def key(name: str) -> str:

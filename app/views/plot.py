@@ -14,6 +14,7 @@ from ..actions import (
     laying_ground,
     rasters,
     turning_rows,
+    without_map,
 )
 from ..show import assumed, field_map, plot_figures
 from ..show import records as records_shown
@@ -37,11 +38,11 @@ def bring(problem: FieldmonError | None) -> None:
     if plot_source.chosen() == plot_source.FILES:
         with boxes:
             bringing_files.show()
-    if problem is None:
-        return
-    with said:
-        answering.show(problem)
-        drawing.within_reach(problem)
+    if problem is not None:
+        with said:
+            answering.show(problem)
+            drawing.within_reach(problem)
+    without_map.want(problem)
 
 
 def show(choices: Choices) -> None:

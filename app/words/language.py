@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gettext
 import re
+import unicodedata
 from contextvars import ContextVar
 from functools import cache, lru_cache
 from io import BytesIO
@@ -17,7 +18,7 @@ from pathlib import Path
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
-from fieldmon.compute.wording import Worded, written
+from fieldmon.compute.wording import Worded, estimate, written
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
@@ -86,9 +87,9 @@ class Text(str):  # noqa: SLOT000 - it holds more than words
         made.language = language
         return made
 
-    def format(self, *args: object, **values: object) -> str:
+    def format(self, *args: object, **values: object) -> Text:
         """Return the text with its blanks filled."""
-        return _filled(self, self.language, args, values)
+        return Text(_filled(self, self.language, args, values), self.language)
 
 
 class Plural(Text):
@@ -112,9 +113,9 @@ class Plural(Text):
         made.one, made.by, made.context = one, by, ""
         return made
 
-    def format(self, *args: object, **values: object) -> str:
+    def format(self, *args: object, **values: object) -> Text:
         """Return the form that the count asks for, with its blanks filled."""
-        return _filled(self.form(values[self.by]), self.language, args, values)
+        return Text(_filled(self.form(values[self.by]), self.language, args, values), self.language)
 
     def form(self, count: object) -> str:
         """Return the words for so many."""
@@ -215,16 +216,24 @@ class _Unknown(gettext.NullTranslations):
 
 
 def in_words(sentence: str) -> str:
-    """Return a sentence of the library in the current language.
+    """Return a sentence of the library, or the app's own, in the current language.
 
     One that nobody has translated stays English, and is marked as such. Names of files and plots
     stand in it, so nothing in it leads anywhere.
     """
     language = current()
-    if language == ENGLISH or not sentence:
+    if language == ENGLISH or not sentence or isinstance(sentence, Text):  # the app's own has words
         return leading_nowhere(str(sentence))
     said = _said(sentence, language) or _said_again(str(sentence), language)
-    return leading_nowhere(marked_as_english(sentence) if said is None else said)
+    return leading_nowhere(marked_as_english(sentence) if said is None else _from_the_right(said))
+
+
+def _from_the_right(said: str) -> str:
+    """Return a sentence that begins with a Latin name so that it is laid out as its language is."""
+    sides = (unicodedata.bidirectional(letter) for letter in said)
+    if not is_right_to_left() or next((s for s in sides if s in {"L", "R", "AL"}), "L") != "L":
+        return said
+    return f"\u200f{said}" if any(s in {"R", "AL"} for s in sides) else said
 
 
 def leading_nowhere(text: str, *, turning: bool = True) -> str:
@@ -385,7 +394,7 @@ def about(value: float) -> str:
     >>> about(45.93), about(4.593)
     ('46', '4.6')
     """
-    return number(value, ",.0f" if round(abs(value), 1) >= 10 else ".1f")
+    return in_words(estimate(value))
 
 
 def _number(value: Any, form: str, language: str) -> str:  # noqa: ANN401 - any number

@@ -56,6 +56,17 @@ EMPTY = (
     "you saw them last; nobody sees them who does not have this page's address, and nothing is "
     "sent anywhere. Or choose the sample estate above first."
 )
+# where the map would be, while there is none
+NO_MAP = {"bring": "Your plot will be drawn here", "asked": "One question comes first",
+          "file": "This file cannot be drawn", "plot": "This plot cannot be drawn yet",
+          "season": "This season cannot be opened"}  # fmt: skip
+NO_MAP_DO = {
+    "bring": "Drop its file into the first box: rows, plants and today's route then stand here.",
+    "asked": "Answer it beside: the plot is then drawn here.",
+    "file": "Drop another file into its box, or take this one out.",
+    "plot": "Change the rows, or take back what was drawn last, beside.",
+}
+NO_MAP_TAKE_OUT = "Take out {name}"
 ROWS = "Rows"
 BEARING = "Row bearing (degrees from north)"
 BEARING_HELP = "Leave empty to have it found from the boundary or the plants."
@@ -108,21 +119,21 @@ ASSUMED_ROBOT_TOO = "how fast and how well who inspects works"
 ASSUMED_OF_ROBOT = "Of who inspects: {what}."
 ASSUMED_CHANGE, ASSUMED_ALL, ASSUMED_USE = "Change", "See all, or change", "Use these"
 ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
-ASSUMED_ROBOT = "Who inspects, how long and how thoroughly is chosen below, under Who inspects."
+ASSUMED_ROBOT = "Who inspects, and how thoroughly, is chosen further down, under Who inspects."
 ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
 ASSUMED_CHANGED = "The season reckons with these from its first morning on."
 BACKGROUND = "Plants infested where nothing is known (%)"
 BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
+BOUND = "Another route of these hours could expect {share} % more finds at most."
+BOUND_BEST = "No other route of these hours can expect more finds."
+BOUND_NONE = "No route of these hours can expect more than {finds} finds."
 BOUND_HELP = (
     "Whichever plants it visits, no route fixed in the morning can expect more finds. Who plans "
     "again after each find may find more."
 )
-NO_STOPS = (
-    "The working day is too short to reach a plant and come back. Give more hours below, under "
-    "Who inspects."
-)
+NO_STOPS = "The working day is too short to reach a plant and come back. Give more working hours."
 MESSAGES = "What the import found"
-MESSAGES_NONE = "Nothing to report: the files were read as they are."
+MESSAGES_NONE = "The files were read as they are."
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
@@ -266,6 +277,13 @@ SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really i
 LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
 WORKING = "Working ..."
+HELD = "Another program holds the season {name} (QGIS, a backup?). Waiting until it is free:"
+HELD_FOR = Plural("{n} second.", "{n} seconds.")
+HELD_STILL = (
+    "Another program holds the season {name} (QGIS, a backup?). Close that program and try again; "
+    "nothing was changed."
+)
+TRY_AGAIN = "Try again"
 _COMPILING = "so far. This happens once and takes up to a minute; the plan follows by itself."
 COMPILING = Plural(
     "fieldmon is being compiled for this machine: {n} part " + _COMPILING,
@@ -319,7 +337,7 @@ PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
-PLOTS_TIP = "{name}: {expected:.0f} infested expected, {seen}"
+PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
 PLOTS_TIP_NEW = "{name}: no season yet"
 PLOTS_SEEN = {0: "seen today", None: "never seen",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
@@ -331,8 +349,8 @@ PLAN_ALL_CREW = {"robots": "Robots", "robot_hours": "Hours of each robot", "scou
                  "move_min": "Minutes from plot to plot"}  # fmt: skip
 ROBOT_NAMED, SCOUT_NAMED = "robot {n}", "scout {n}"
 PLAN_ALL_LEAD = Plural(
-    "{plants} plants on {n} plot; expect {finds:.0f} finds.",
-    "{plants} plants on {n} plots; expect {finds:.0f} finds.",
+    "{plants} plants on {n} plot; expect {finds} finds.",
+    "{plants} plants on {n} plots; expect {finds} finds.",
 )
 PLAN_ALL_NONE = "Nothing is due today: every plot was seen today."
 PLAN_ALL_RULE = (
@@ -552,7 +570,7 @@ DECIDE_OWN_HELP = (
     "mean per leaf. They are kept until the page is closed."
 )
 DECIDE_OWN_KEPT = Plural("{n} threshold can be chosen now.", "{n} thresholds can be chosen now.")
-DECIDE_TAKE = Text("Treat from {share:.1%} of the plants on")
+DECIDE_TAKE = Text("Treat once {share:.1%} of the plants are infested")
 DECIDE_THRESHOLDS = {
     "almond": "almond", "almond with predators": "almond with predators",
     "strawberry before fruit": "strawberry before fruit",
@@ -761,7 +779,7 @@ AHEAD = (
     "with a chance of 90 %); now it is about {now}."
 )
 AHEAD_BASIS = {
-    "none": "No weather is known of: every night is taken as the season's settings say.",
+    "none": "No weather is known: every night is taken as the season's settings say.",
     "forecast": "By the weather forecast.",
     "partly": "By the weather forecast for {n} of the nights, and the usual of the date after it.",
     "usual": "By the usual weather of the date: there is no forecast.",

@@ -6,9 +6,10 @@ from datetime import date
 
 from fieldmon.compute import units as library
 from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
+from fieldmon.compute.wording import hours_figure
 
 from . import texts
-from .language import day_and_month, in_words, number, weekday
+from .language import day_and_month, in_words, weekday
 
 __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 
@@ -53,7 +54,7 @@ class UnitsInLanguage(library.Units):
 
 def hours(value_h: float) -> str:
     """Return hours."""
-    return texts.IN_HOURS.format(hours=number(value_h, ".1f"))
+    return texts.IN_HOURS.format(hours=in_words(hours_figure(value_h)))
 
 
 def usual(language: str) -> UnitsInLanguage:

@@ -89,6 +89,28 @@ def figure(value: float, form: str = ",", after: str = "") -> Worded:
     return worded(f"{{n:{form}}}{after}", n=value)
 
 
+def estimate(value: float) -> Worded:
+    """Return an estimate as precise as it is worth saying: from 10 on as a whole number.
+
+    Examples
+    --------
+    >>> estimate(1645.93), estimate(9.96), estimate(4.593)
+    ('1,646', '10', '4.6')
+    """
+    return figure(value, ",.0f" if round(abs(value), 1) >= 10 else ".1f")
+
+
+def hours_figure(value_h: float) -> Worded:
+    """Return hours to the tenth, whole ones without.
+
+    Examples
+    --------
+    >>> hours_figure(11.98), hours_figure(3.46)
+    ('12', '3.5')
+    """
+    return figure(round(value_h, 1), "g")
+
+
 def joined(between: str, parts: Iterable[str]) -> Worded:
     """Return sentences, or parts of one, joined."""
     kept = tuple(parts)

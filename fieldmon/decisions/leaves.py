@@ -65,8 +65,8 @@ def _counted(plan: IwaoPlan, leaves: int, counted: float, verdict: Verdict) -> s
             "{leaves} leaves, {counted:g} counted: do not treat (Iwao's plan, 90 % sure).", **said
         )
     return worded(
-        "{leaves} leaves, {counted:g} counted: look on; after {more} more you can decide at the "
-        "earliest (Iwao's plan, 90 % sure).",
+        "{leaves} leaves, {counted:g} counted: keep inspecting; after {more} more you can decide "
+        "at the earliest (Iwao's plan, 90 % sure).",
         more=least_more(plan, leaves, counted), **said,
     )  # fmt: skip
 
@@ -90,5 +90,5 @@ def _by_presence(threshold: Threshold, leaves: int, infested: int) -> str:
         )  # fmt: skip
     return worded(
         "{leaves} leaves, {infested} infested: {mean:.1f} animals a leaf ({low:.1f} to "
-        "{high:.1f}, by all published laws): look on, or count the animals.", **said,
+        "{high:.1f}, by all published laws): keep inspecting, or count the animals.", **said,
     )  # fmt: skip

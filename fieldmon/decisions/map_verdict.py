@@ -63,15 +63,15 @@ class MapVerdict:
         answer = (
             worded("Treat:") if self.verdict == TREAT
             else worded("Do not treat:") if self.verdict == LEAVE
-            else worded("Look on before you decide:")
+            else worded("Keep inspecting before you decide:")
         )  # fmt: skip
         return joined(" ", (answer, self.believed()))
 
     def believed(self) -> str:
         """Return what the answer rests on."""
         return worded(
-            "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}), treating "
-            "pays from {level:.1%} on; the chance that it is so much is {chance:.0%}.",
+            "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}). Treating "
+            "pays if it is {level:.1%} or more; the chance of that is {chance:.0%}.",
             share=self.share, low=self.low, high=self.high, level=self.level,
             chance=self.chance_above,
         )  # fmt: skip

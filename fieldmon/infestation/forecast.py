@@ -53,7 +53,7 @@ class Forecast:
         ``(d,)`` the interval that holds it with 90 %.
     weather
         How many of the nights had weather that was measured or forecast; of the others the usual
-        was taken. None: no weather is known of.
+        was taken. None: no weather is known.
     """
 
     expected: Floats
@@ -81,7 +81,7 @@ class Forecast:
     def basis(self) -> str:
         """Return in words what weather it is made from."""
         if self.weather is None:
-            return "no weather is known of"
+            return "no weather is known"
         if self.weather >= self.nights:
             return "by the weather forecast"
         if self.weather == 0:

@@ -15,7 +15,13 @@ from fieldmon.monitoring.season_log import LogEntry
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.tables import KeptMessage
-from fieldmon.monitoring.transactions import Store, copy_season, is_season, kept_open
+from fieldmon.monitoring.transactions import (
+    Store,
+    copy_season,
+    is_season,
+    kept_open,
+    wait_until_free,
+)
 from fieldmon.monitoring.treatment_effect import TreatmentEffect
 from fieldmon.monitoring.treatments import KeptTreatment
 from fieldmon.monitoring.worked_route import day_was_worked, worked_route
@@ -43,5 +49,6 @@ __all__ = [
     "day_was_worked",
     "is_season",
     "kept_open",
+    "wait_until_free",
     "worked_route",
 ]

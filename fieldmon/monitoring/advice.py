@@ -167,7 +167,9 @@ class Advice:
         if self.verdict == TREAT and len(self.zones):
             return worded("Treat {area} in {zones}, {share:.0%} of the plot.", **area)
         if self.verdict == TREAT:
-            return worded("Treat: so much is infested, though nowhere it pays by these costs.")
+            return worded(
+                "Treat: the plot is above the threshold, though by these costs it pays nowhere."
+            )
         if self.above:
             return worded(
                 "Do not treat the whole plot, but {area} of it in {zones}, {share:.0%}.",
@@ -179,16 +181,18 @@ class Advice:
         more = self.more or MoreInspections(None, None)
         if more.if_clean is not None:
             return worded(
-                "Look on: look at {plants} more; if nothing is found there, it need not be "
-                "treated.",
+                "Keep inspecting: look at {plants} more; if nothing is found there, the plot need "
+                "not be treated.",
                 plants=counted(more.if_clean, "plant"),
             )
         if more.if_found is not None:
             return worded(
-                "Look on: look at {plants} more, then you can decide at the earliest.",
+                "Keep inspecting: look at {plants} more, then you can decide at the earliest.",
                 plants=counted(more.if_found, "plant"),
             )
-        return worded("Look on: the plot is near the threshold, no few looks decide.")
+        return worded(
+            "Keep inspecting: the plot is near the threshold, a few inspections do not decide."
+        )
 
     def sentences(self, units: Units | None = None) -> list[str]:
         """Return the answer and what it rests on, in sentences."""

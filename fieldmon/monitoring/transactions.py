@@ -6,6 +6,7 @@ import os
 import sqlite3
 import tempfile
 import threading
+import time
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,13 +27,15 @@ from fieldmon.monitoring.schema import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 KIND = "season"
 # another window's transaction takes well under a second; a backup program may hold the file longer
 _PATIENCE_S = 30.0
 # whether a file is a season at all is asked of many files in passing
 _GLANCE_S = 0.5
+# whoever waits for a file asks again so often, and is told so once it takes longer than a moment
+_ASK_AGAIN_S, _MOMENT_S = 0.25, 1.0
 _MAGIC = b"SQLite format 3\x00"
 # the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
 _KEPT = threading.local()
@@ -213,6 +216,49 @@ def kept_open() -> Iterator[None]:
         files, _KEPT.files = _KEPT.files, None
         for db in files.values():
             db.close()
+
+
+def wait_until_free(
+    path: Path,
+    tell: Callable[[float], None],
+    *,
+    to_write: bool = False,
+    patience_s: float | None = None,
+) -> bool:
+    """Wait while another program holds a season's file; return whether it is free in the end.
+
+    `tell` hears again and again for how many seconds that has been; `patience_s`: how long to wait,
+    None: as long as for any command. What else is wrong with a file is said when it is opened.
+    """
+    patience_s = _PATIENCE_S if patience_s is None else patience_s
+    if path in _still() or not path.is_file():
+        return True
+    began = time.monotonic()
+    with _sentences(path), _opened(path) as db:
+        (usual_ms,) = db.execute("PRAGMA busy_timeout").fetchone()
+        db.execute(f"PRAGMA busy_timeout = {round(1000 * min(_ASK_AGAIN_S, patience_s))}")
+        try:
+            while not _is_free(db, to_write=to_write):
+                waited_s = time.monotonic() - began
+                if waited_s >= patience_s:
+                    return False
+                if waited_s >= _MOMENT_S:
+                    tell(waited_s)
+        finally:
+            db.execute(f"PRAGMA busy_timeout = {usual_ms}")
+    return True
+
+
+def _is_free(db: sqlite3.Connection, *, to_write: bool) -> bool:
+    try:
+        db.execute("BEGIN IMMEDIATE" if to_write else "BEGIN")
+        db.execute("SELECT 1 FROM sqlite_master LIMIT 1").fetchone()
+    except sqlite3.DatabaseError as error:
+        return "locked" not in str(error)
+    finally:
+        if db.in_transaction:
+            db.execute("ROLLBACK")
+    return True
 
 
 def _still() -> dict[Path, sqlite3.Connection]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import figure, worded
+from fieldmon.compute.wording import estimate, figure, hours_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
@@ -146,8 +146,8 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     route, n = facts.route, len(facts.chance)
     hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
     ahead = KeyFigure(
-        words.FINDS, figure(route.expected_found, ".1f"),
-        worded(words.OF_INFESTED, n=route.expected_finds),
+        words.FINDS, estimate(route.expected_found),
+        worded(words.OF_INFESTED, n=estimate(route.expected_finds)),
     )  # fmt: skip
     done = KeyFigure(
         words.FOUND_TODAY, figure(len(facts.found)), worded(words.OF_INSPECTED, n=facts.inspected)
@@ -158,7 +158,7 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
                 words.INSPECTED if facts.worked else words.PLANTS_TO_INSPECT,
                 figure(len(route)), worded(words.OF_PLANTS, n=n),
             ),
-            KeyFigure(words.TIME, figure(route.end_s / 3600, ".1f"), hours if len(route) else ""),
+            KeyFigure(words.TIME, hours_figure(route.end_s / 3600), hours if len(route) else ""),
             KeyFigure(words.DRIVE, units.metres(route.drive_m)),
             done if facts.worked else ahead,
         )

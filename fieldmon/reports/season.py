@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.compute.wording import counted, estimate, figure, joined, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
@@ -122,7 +122,7 @@ def _stands(facts: _Facts) -> Iterator[Block]:
     status, ahead = facts.status, facts.status.estimate
     said = [
         worded(words.STANDS,
-            expected=ahead.expected, low=ahead.low, high=ahead.high,
+            expected=estimate(ahead.expected), low=ahead.low, high=ahead.high,
             found=counted(status.found, "plant"),
         )
     ]  # fmt: skip
@@ -150,7 +150,7 @@ def _figures(facts: _Facts) -> KeyFigures:
     twice = worded(words.FOUND_TWICE, n=finds) if finds != status.found else ""
     return KeyFigures(
         (
-            KeyFigure(words.STILL, figure(ahead.expected, ",.1f"),
+            KeyFigure(words.STILL, estimate(ahead.expected),
                       worded(words.INTERVAL, low=figure(ahead.low), high=figure(ahead.high))),
             KeyFigure(words.FOUND_SO_FAR, figure(status.found), twice),
             KeyFigure(words.FOUND_OF_ALL, figure(status.detection_pct, ".0f", " %"),
@@ -227,7 +227,7 @@ def _days(facts: _Facts) -> Table:
     rows = [
         (
             facts.units.day(one.on), figure(one.inspected), figure(one.found),
-            worded("{n:,.1f} ({low:,}–{high:,})", n=one.expected, low=one.low, high=one.high),
+            worded("{n} ({low:,}–{high:,})", n=estimate(one.expected), low=one.low, high=one.high),
             figure(_of_all(found, one.expected), ".0f", " %"),
         )
         for one, found in zip(facts.days, facts.found_by.tolist(), strict=True)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import Worded, counted, worded
+from fieldmon.compute.wording import Worded, counted, estimate, hours_figure, worded
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import words
 
@@ -28,15 +28,16 @@ def headline(route: Route, day: str) -> str:
         return worded(words.HEADLINE_NONE, day=day)
     line = row_label(route.aisles.grid, route.plant).line
     low, high = int(line.min()), int(line.max())
-    rows = worded(words.ROW, low=low)
+    rows, finds = worded(words.ROW, low=low), route.expected_found
     if not route.aisles.grid.in_rows:
         rows = worded(words.NO_ROWS)
     elif low < high:
         rows = worded(words.ROWS, low=low, high=high)
     return worded(
         words.HEADLINE, plants=counted(len(route), "plant"), rows=rows, day=day,
-        hours=route.end_s / 3600,
-        finds=counted(round(route.expected_found), "find"),
+        hours=hours_figure(route.end_s / 3600),
+        finds=worded(words.FEW_FINDS, n=finds) if round(finds, 1) < 10
+        else counted(round(finds), "find"),
     )  # fmt: skip
 
 
@@ -54,7 +55,7 @@ def hot_spot_meanings(grid: PlantGrid, spots: HotSpots) -> list[str]:
             worded(
                 words.HOT_MEANS, rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
                 found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
-                expected=spots.expected[k], p=chance,
+                expected=estimate(spots.expected[k]), p=chance,
             )
         )  # fmt: skip
     return said

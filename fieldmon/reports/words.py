@@ -18,7 +18,8 @@ PAGE = "{page} / {of}"
 UNPRINTED = (
     "{n} characters of names cannot be printed with this program's fonts and stand as ?: {codes}."
 )
-HEADLINE = "Inspect {plants} in {rows} on {day}, {hours:.1f} h: about {finds} expected."
+FEW_FINDS = "{n:.1f} finds"
+HEADLINE = "Inspect {plants} in {rows} on {day}, {hours} h: about {finds} expected."
 HEADLINE_NONE = "Nothing to inspect on {day}."
 WORKED = "Worked on {day}: {inspected} plants inspected, {found} found infested."
 ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
@@ -36,7 +37,7 @@ DAY_TITLE = "Day of {day}"
 DAY_SHEET = "The day's work"
 PLANTS_TO_INSPECT, OF_PLANTS = "Plants to inspect", "of {n:,}"
 TIME, FROM_TO = "Hours", "{start} to {end}"
-DRIVE, FINDS, OF_INFESTED = "Drive", "Expected finds", "of {n:.1f} infested on the route"
+DRIVE, FINDS, OF_INFESTED = "Drive", "Expected finds", "of {n} infested on the route"
 FOUND_TODAY, OF_INSPECTED = "Found that day", "of {n} inspected"
 STOPS, STOPS_COLUMNS = "Stops by row, in order", ("row", "from", "plants", "which")
 WHICH_MANY = "{n} between {low} and {high}"
@@ -57,7 +58,7 @@ SEASON_SHEETS = (
     "Records, treatments, settings",
 )
 STANDS = (
-    "About {expected:,.0f} plants are still infested ({low:,} to {high:,} with a chance of 90 %); "
+    "About {expected} plants are still infested ({low:,} to {high:,} with a chance of 90 %); "
     "{found} found so far."
 )
 STANDS_CLEAN = "The plot is clean with a chance of {chance:.0%}."
@@ -81,7 +82,7 @@ DAYS_REST = "... and {n} earlier days; the season's file holds all of them."
 HOT_LIST = "Hot spots"
 HOT_MEANS = (
     "{rows}: {found} found among {inspected} inspected of its {plants} plants, where "
-    "{expected:.1f} would be if finds were strewn evenly. So many by chance alone: {p}."
+    "{expected} would be if finds were strewn evenly. So many by chance alone: {p}."
 )
 HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"
 HOT_ROW = "Row {first}, plants {low} to {high}"
@@ -126,7 +127,7 @@ ADVICE_ALT = "Map of the zones to treat."
 AREA_SPRAYED, OF_PLOT = "To be sprayed", "{share:.0%} of the plot"
 PRODUCT, PRODUCT_OPEN, RATE = "Product", "not said", "{rate:g} l/ha"
 LIQUID, INFESTED_INSIDE = "Liquid", "Infested plants inside"
-AND_ELSEWHERE, ENOUGH = "{n:.1f} elsewhere", "Chance that it is enough"
+AND_ELSEWHERE, ENOUGH = "{n} elsewhere", "Chance that it is enough"
 ZONES, ZONES_REST = "Zones", "... and {n} more zones; the files for the sprayer hold all."
 ZONES_COLUMNS = ("zone", "rows", "plants of the row", "plants", "infested", "by itself")
 VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}

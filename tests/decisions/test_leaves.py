@@ -14,7 +14,7 @@ ALMOND, MINT = threshold_of("almond"), threshold_of("peppermint")
     [
         ((ALMOND, 40, 20), "treat (Iwao"),
         ((ALMOND, 40, 1), "do not treat"),
-        ((ALMOND, 5, 1), "look on; after"),
+        ((ALMOND, 5, 1), "keep inspecting; after"),
         ((ALMOND, 0, 0), "look at"),
         ((MINT, 30, 600), "treat (Iwao"),
     ],
@@ -25,7 +25,7 @@ def test_the_sentence_has_the_verdict(asked, said):
 
 @pytest.mark.parametrize(
     ("infested", "said"),
-    [(49, "treat."), (2, "do not treat."), (35, "look on, or count the animals.")],
+    [(49, "treat."), (2, "do not treat."), (35, "keep inspecting, or count the animals.")],
 )
 def test_presence_is_a_band_of_means_and_not_one(infested, said):
     sentence = of_leaves(MINT, 50, infested, presence=True)

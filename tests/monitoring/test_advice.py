@@ -68,7 +68,7 @@ def test_when_nobody_can_say_it_tells_how_many_looks_decide(season):
     only_found = replace(advice, more=replace(looks, if_clean=None))
     assert f"look at {looks.if_found} plants more, then" in only_found.headline()
     neither = replace(advice, more=None)
-    assert "no few looks decide" in neither.headline()
+    assert "a few inspections do not decide" in neither.headline()
     assert neither.reasons() == [advice.plot.believed()]
 
 
@@ -121,7 +121,7 @@ def test_one_look_less_would_not_decide(season):
         (1000.0, 1, TREAT, "Treat the whole plot, "), (995.0, 1, TREAT, "Treat the whole plot, "),
         (990.0, 1, TREAT, " in 1 zone, 99 % of the plot."),
         (250.0, 1, LEAVE, " of it in 1 zone, 25 %."), (250.0, 0, LEAVE, "Do not treat today."),
-        (0.0, 0, TREAT, "Treat: so much is infested, though nowhere it pays by these costs."),
+        (0.0, 0, TREAT, "above the threshold, though by these costs it pays nowhere."),
     ],
 )  # fmt: skip
 def test_each_verdict_has_its_sentence(season, m2, above, verdict, said):

@@ -6,6 +6,7 @@ import shutil
 import sqlite3
 import time
 from contextlib import closing, contextmanager
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -289,3 +290,42 @@ def test_a_file_that_takes_the_place_of_one_kept_open_is_the_one_that_is_read(pa
         Season(tmp_path / "other.gpkg").record(three_results(), "elsewhere")
         (tmp_path / "other.gpkg").replace(path)
         assert season.revision != before
+
+
+@contextmanager
+def held(path, how):
+    """Hold a season's file as another program does."""
+    with closing(sqlite3.connect(path, isolation_level=None)) as db:
+        db.execute(f"BEGIN {how}")
+        yield db
+        if db.in_transaction:
+            db.execute("ROLLBACK")
+
+
+@pytest.mark.parametrize(
+    ("how", "read", "written"),
+    [("EXCLUSIVE", False, False), ("IMMEDIATE", True, False), ("DEFERRED", True, True)],
+)
+def test_who_waits_for_a_held_season_hears_for_how_long(path, monkeypatch, how, read, written):
+    monkeypatch.setattr(transactions, "_ASK_AGAIN_S", 0.01)
+    monkeypatch.setattr(transactions, "_MOMENT_S", 0.0)
+    with held(path, how):
+        for to_write, free in ((False, read), (True, written)):
+            told = []
+            wait = partial(transactions.wait_until_free, path, told.append, to_write=to_write)
+            assert wait(patience_s=0.05) == free
+            assert told == sorted(told)
+            assert bool(told) != free
+
+
+def test_the_wait_is_over_when_the_other_program_lets_go(path, monkeypatch):
+    monkeypatch.setattr(transactions, "_ASK_AGAIN_S", 0.01)
+    monkeypatch.setattr(transactions, "_MOMENT_S", 0.0)
+    with held(path, "EXCLUSIVE") as other, kept_open():
+        assert transactions.wait_until_free(path, lambda _: other.execute("ROLLBACK"))
+        assert Season(path).history.inspections is not None
+
+
+def test_nobody_waits_for_a_file_that_is_not_there(tmp_path):
+    assert transactions.wait_until_free(tmp_path / "none.gpkg", print, to_write=True)
+    assert not [*tmp_path.iterdir()]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.units import Units
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.plot.grid import row_label
@@ -31,14 +32,14 @@ def test_where_it_stands_is_the_season_s_status_with_its_intervals(of_season, wo
     status = worked.status(last)
     shown = {each.label: each for each in one(of_season, KeyFigures).figures}
     left = status.estimate
-    assert shown["Still infested"].value == f"{left.expected:.1f}"
+    assert shown["Still infested"].value == estimate(left.expected)
     assert shown["Still infested"].note == f"{left.low} to {left.high} (90 %)"
     assert shown["Plants found"].value == f"{status.found}"
     assert shown["Found of all expected"].value == f"{status.detection_pct:.0f} %"
     assert shown["Plants inspected"].value == f"{status.inspected:,}"
     assert shown["Hot spots"].value == f"{len(status.hot_spots)}"
     lead = on_sheet(of_season, 0, Paragraph)[0].text
-    assert lead.startswith(f"About {left.expected:.0f} plants are still infested")
+    assert lead.startswith(f"About {estimate(left.expected)} plants are still infested")
 
 
 def test_the_share_found_lies_in_its_interval(of_season):

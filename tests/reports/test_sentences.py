@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fieldmon.compute.wording import estimate, hours_figure
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import rectangle
 from fieldmon.reports.sentences import headline, runs
@@ -65,7 +66,8 @@ def test_the_headline_says_plants_rows_hours_and_finds():
     lines = route.aisles.grid.row_line[route.aisles.grid.row[route.plant]] + 1
     assert headline(route, "2026-11-18") == (
         f"Inspect {len(route)} plants in rows {lines.min()}–{lines.max()} on 2026-11-18, "
-        f"{route.end_s / 3600:.1f} h: about {round(route.expected_found)} finds expected."
+        f"{hours_figure(route.end_s / 3600)} h: "
+        f"about {estimate(route.expected_found)} finds expected."
     )
 
 

@@ -19,8 +19,17 @@ export function withHot(labels, jsons) {
   return made;
 }
 
-// `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row, at}, the most important first;
-// `at` are the places to be tried where it may stand at several.
+// How far, in pixels, a label that stands beyond its place `p` is from it, in the direction of `away`.
+function beyond(viewport, p, away, half, tall, gap) {
+  const [x, y] = viewport.project(p), [u, v] = viewport.project(away), far = Math.hypot(u - x, v - y);
+  if (!far) return [0, 0];
+  const dx = (u - x) / far, dy = (v - y) / far, step = gap + Math.abs(dx) * half + Math.abs(dy) * tall;
+  return [dx * step, dy * step];
+}
+
+// `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row, at, away, gap}, the most important
+// first; `at` are the places to be tried where it may stand at several. One with `away` [lon, lat] stands
+// beyond its place in that direction, `gap` pixels from it.
 export class Labels {
   constructor(place) {
     this.place = place;
@@ -31,10 +40,11 @@ export class Labels {
   draw(labels, viewport, hidden) {
     const boxes = [];
     this.placed = [];
-    for (const { p, t, k, from, to, row, at } of labels) {
+    for (const { p, t, k, from, to, row, at, away, gap } of labels) {
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99)) continue;
       const lines = t.split("\n"), half = 4 * Math.max(...lines.map((one) => one.length)) + 7, tall = 10 * lines.length;
-      const place = (at ?? [p]).map((one) => viewport.project(one)).find(([x, y]) => {
+      const [outX, outY] = away ? beyond(viewport, p, away, half, tall, gap ?? 3) : [0, 0];
+      const place = (at ?? [p]).map((one) => viewport.project(one)).map(([x, y]) => [x + outX, y + outY]).find(([x, y]) => {
         if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) return false;
         return !boxes.some((b) => x - half < b[2] && x + half > b[0] && y - tall < b[3] && y + tall > b[1]);
       });

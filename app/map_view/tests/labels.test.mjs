@@ -82,3 +82,15 @@ test("hot spots' numbers are those of the day that is shown, and go with the hot
   assert.deepEqual(shown(withHot(labels, [hot]), view, new Set(["hot"])).map(({ k }) => k), ["row"]);
   assert.equal(withHot(labels, [hot]), withHot(labels, [hot]), "made once");
 });
+
+test("a word beyond its place stands clear of it, whatever the direction and the zoom", () => {
+  for (const [dx, dy] of [[-1, 0], [0, 1], [1, 1], [-3, 1]]) {
+    const away = [0.4 + dx * 1e-4, -0.4 - dy * 1e-4];
+    const [one] = shown([{ p: [0.4, -0.4], away, gap: 12, t: "gate", k: "place" }], view);
+    const half = 4 * 4 + 7, apart = Math.max(Math.abs(one.x - 400) - half, Math.abs(one.y - 400) - 10);
+    assert.ok(apart >= 12 / Math.SQRT2 - 0.2, `${dx} ${dy}: ${apart}`);
+    assert.ok(Math.sign(one.x - 400) === Math.sign(dx) && Math.sign(one.y - 400) === Math.sign(dy));
+  }
+  const [still] = shown([{ p: [0.4, -0.4], away: [0.4, -0.4], t: "3", k: "row" }], view);
+  assert.deepEqual([still.x, still.y], [400, 400]);
+});

@@ -16,11 +16,14 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
 
-    #: ``{"p": [lon, lat], "t": words, "k": kind}``; with ``from``, ``to``: at these zooms only
+    #: ``{"p": [lon, lat], "t": words, "k": kind}``; with ``from``, ``to``: at these zooms only;
+    #: with ``away`` [lon, lat] and ``gap`` (pixels): beyond that place, in that direction
     Label = dict[str, Any]
 
 # a stop's number has room where plants are this far apart on the screen
 _STOP_PX = 16.0
+# so far from its place the word beside a ring begins
+_RING_PX = 12
 _EARTH_M, _TILE_PX = 40_075_016.686, 512
 
 
@@ -49,15 +52,17 @@ def stops(route: Route) -> list[Label]:
 
 
 def rows(grid: PlantGrid) -> list[Label]:
-    """Return each row's number before its first plant, every tenth row before the others."""
+    """Return each row's number beyond its headland, every tenth row before the others."""
     if not grid.in_rows:
         return []
     line, first = np.unique(grid.row_line, return_index=True)
-    before_m = before_rows(grid, first, 1.5 * grid.plant_spacing_m)
-    lonlat = np.round(grid.frame.lonlat(before_m), 7).tolist()
+    plant_m, lane_m = grid.xy_m[grid.row_start[first]], before_rows(grid, first)
+    # a lane ends in the middle of the headland, whose end is the outline, where there are no others
+    ends_m = [plant_m + times * (lane_m - plant_m) for times in (2.0, 3.0)]
+    places = [np.round(grid.frame.lonlat(one), 7).tolist() for one in ends_m]
     made = [
-        {"p": place, "t": f"{number + 1}", "k": "row", "row": number + 1}
-        for number, place in zip(line.tolist(), lonlat, strict=True)
+        {"p": place, "away": away, "t": f"{number + 1}", "k": "row", "row": number + 1}
+        for number, place, away in zip(line.tolist(), *places, strict=True)
     ]
     tens = {"0", "1"}
     return sorted(made, key=lambda one: (one["t"][-1] not in tens, one["t"][-1] != "5"))
@@ -65,14 +70,15 @@ def rows(grid: PlantGrid) -> list[Label]:
 
 def places(plot: Plot) -> list[Label]:
     """Return the names of the gate and of areas that are not driven through."""
-    grid, gap = plot.grid, 1.5 * plot.grid.row_spacing_m
+    grid = plot.grid
     # beside the ring of the gate, away from the rows
     x, y = plot.aisles.gate_m
-    gate = grid.frame.lonlat(np.array([[x, y - gap if y < grid.xy_m[:, 1].mean() else y + gap]]))
-    named = [(gate[0], texts.LABEL_GATE)]
+    gap_m = grid.row_spacing_m if y > grid.xy_m[:, 1].mean() else -grid.row_spacing_m
+    at, away = np.round(grid.frame.lonlat(np.array([[x, y], [x, y + gap_m]])), 7).tolist()
+    gate = {"p": at, "away": away, "gap": _RING_PX, "t": texts.LABEL_GATE, "k": "place"}
     inner = shapely.point_on_surface(shapely.get_parts(plot.field.no_go))
-    named += [(place, texts.LABEL_NO_GO) for place in shapely.get_coordinates(inner)]
-    return [{"p": np.round(p, 7).tolist(), "t": said, "k": "place"} for p, said in named]
+    no_go = np.round(shapely.get_coordinates(inner), 7).tolist()
+    return [gate, *({"p": p, "t": texts.LABEL_NO_GO, "k": "place"} for p in no_go)]
 
 
 def blocks(grid: PlantGrid) -> list[Label]:

@@ -164,7 +164,8 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
             doubtful(
                 worded(
                     "{n} record(s) lie on no plant: {nearest} to {farthest} from the nearest. They "
-                    "count for plants near enough to them, if any are, and for none as its own.",
+                    "count for the plants near them, if there are any, but belong to no single "
+                    "one.",
                     n=int(beside.sum()),
                     nearest=_far(away[beside].min()),
                     farthest=_far(away[beside].max()),

@@ -1,10 +1,13 @@
 """Files that leave a choice are asked about; bad ones are a sentence."""
 
+from types import SimpleNamespace
+
 import geopandas as gpd
 import numpy as np
 import pandas as pd
 import pytest
 
+from app.actions import bringing_files
 from app.words import texts
 from tests.app.driving import go, plot_name, press, square, texts_of, upload, zipped
 
@@ -83,3 +86,13 @@ def test_records_of_one_block_do_not_lock_the_others_out(app, tmp_path):
     assert "not used" not in texts_of(app)
     assert "not used" not in texts_of(go(app, "plot"))
     assert "1 of 1 records shown" in texts_of(app)
+
+
+def test_answers_that_lead_somewhere_have_buttons_before_those_that_lead_nowhere():
+    offered = [f"EPSG:{k}" for k in range(1, 15)]
+    led = {one: SimpleNamespace(leads=one in {"EPSG:2", "EPSG:12"}) for one in offered[:12]}
+    made = bringing_files.with_buttons(offered, led)
+    assert len(made) == 12
+    # those that nobody tried may lead somewhere
+    assert made[:4] == [(2, "EPSG:2"), (12, "EPSG:12"), (13, "EPSG:13"), (14, "EPSG:14")]
+    assert bringing_files.with_buttons(offered, {}) == [*enumerate(offered[:12], start=1)]

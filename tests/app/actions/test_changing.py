@@ -72,3 +72,41 @@ def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, sea
     who(season_app).set_value("Robot").run()
     press(season_app, "Use from now on")
     assert season().settings.robot == Robot()
+
+
+def places_of(app):
+    """Return where in the panel, from its top, the hours, the sentence and the seconds stand."""
+    shown = list(app.main)
+    at = {
+        "hours": lambda one: one.type == "slider" and one.label == "Working hours",
+        "sentence": lambda one: one.type == "markdown" and one.value.startswith("Inspect "),
+        "seconds": lambda one: one.type == "slider" and one.label == "Seconds at a plant",
+    }
+    return {name: next((k for k, one in enumerate(shown) if is_it(one)), None)
+            for name, is_it in at.items()}  # fmt: skip
+
+
+def test_the_hours_stand_above_the_day_s_sentence_with_their_own_button(season_app, season):
+    at = places_of(season_app)
+    assert at["hours"] < at["sentence"] < at["seconds"], "they are changed every day"
+    hours_box(season_app).set_value(4.0).run()
+    shown = list(season_app.main)
+    use = next(k for k, one in enumerate(shown) if getattr(one, "key", "") == "change_setup")
+    assert at["hours"] < use < places_of(season_app)["sentence"]
+    press(season_app, "Use from now on")
+    assert season().settings.robot.hours == 4.0
+    go(season_app, "record")
+    at = places_of(season_app)
+    assert at["hours"] is not None
+    assert at["hours"] < at["seconds"]
+    assert hours_box(season_app).value == 4.0
+
+
+def test_the_hours_of_a_plot_without_a_season_stand_there_too_and_are_kept_elsewhere(app):
+    at = places_of(app)
+    assert at["hours"] < at["sentence"] < at["seconds"]
+    hours_box(app).set_value(3.0).run()
+    go(app, "scout")
+    assert hours_box(app).value == 3.0
+    go(app, "today")
+    assert hours_box(app).value == 3.0

@@ -34,9 +34,9 @@ def test_thresholds_of_ones_own_are_brought_and_the_answer_takes_them(season_app
     assert "1 threshold can be chosen" in season_app.success[0].value
     assert season_app.selectbox(key="decide leaves of").value == "tomato"
     assert "our adviser" in texts_of(season_app)
-    press(season_app, "Treat from 20.0 % of the plants on")
+    press(season_app, "Treat once 20.0 % of the plants are infested")
     assert season_app.number_input(key="decide level").value == 20.0
-    assert "treating pays from 20.0 % on" in texts_of(season_app)
+    assert "Treating pays if it is 20.0 % or more" in texts_of(season_app)
     wrong = b"name,measure,level,source\ntomato,mites,1,we\n"
     season_app.file_uploader(key="thresholds_file").set_value([]).run()
     season_app.file_uploader(key="thresholds_file").upload("bad.csv", wrong, "text/csv").run()

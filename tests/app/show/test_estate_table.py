@@ -14,7 +14,7 @@ PLOTS = [PlotState("b", "b", OUTLINE, days_since=4, expected=2.5), PlotState("a"
 
 
 class Route(list):
-    expected_finds = 1.25
+    expected_found = 1.25
 
     def __len__(self):
         return 3
@@ -41,4 +41,4 @@ def test_a_plan_says_who_works_where_and_leaves_the_others_empty():
     assert table[list(more.values())].iloc[1].isna().all()
     assert table[[more["from"], more["to"]]].iloc[0].tolist() == ["06:00", "07:30"]
     assert table[more["plants"]].iloc[0] == 3
-    assert table[more["finds"]].iloc[0] == 1.25
+    assert table[more["finds"]].iloc[0] == 1.2

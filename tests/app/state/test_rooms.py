@@ -39,3 +39,11 @@ def test_a_room_is_turned_to_once():
     rooms.turn_to("plot")
     assert rooms.turned_to() == "plot"
     assert rooms.turned_to() is None
+
+
+def test_which_part_is_shown_is_known_before_its_box_is(session):
+    assert rooms.shown_part("today") == "today"
+    rooms.open_part("decide")
+    assert rooms.shown_part("today") == "decide"
+    session[rooms.key("season")] = None
+    assert rooms.shown_part("season") == "season"

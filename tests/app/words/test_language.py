@@ -1,8 +1,11 @@
 """A language: its texts, its plurals and numbers, and the library's sentences in it."""
 
+import unicodedata
+
 from app.words import language, texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.errors import SettingError
 
 
 def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
@@ -44,6 +47,33 @@ def test_a_sentence_that_nobody_translated_stays_english_and_says_so(speaking):
     assert language.in_words(worded("Nobody knows {n}.", n=3)) == (
         "\u2066Nobody knows 3.\u2069 [English]"
     )
+
+
+def test_the_app_s_own_words_in_a_problem_are_not_taken_for_english(speaking):
+    speaking("he")
+    said = language.of_error(SettingError(texts.SEASON_NAMED.format(name="a/b")))
+    assert said == str(texts.SEASON_NAMED.format(name="a/b"))
+    assert language.of_error(SettingError(texts.ONE_UNSAID)) == str(texts.ONE_UNSAID)
+
+
+def test_a_sentence_that_begins_with_a_latin_name_is_laid_out_as_its_language_is(speaking):
+    said = worded("{path} is damaged ({why}). Save what can be saved into a new "
+                  'file with: fieldmon salvage "{path}" --output rescued.gpkg',
+                  path="a.gpkg", why="why")  # fmt: skip
+    assert language.in_words(said)[0] == "a"
+    for code in ("he", "ar"):
+        speaking(code)
+        first = language.in_words(said)[0]
+        assert unicodedata.bidirectional(first) in {"R", "AL"}
+        assert language.in_words(figure(3.0))[0] == "3", "a figure is one"
+    speaking("es")
+    assert unicodedata.bidirectional(language.in_words(said)[0]) == "L"
+
+
+def test_an_estimate_is_as_precise_as_it_is_worth_saying_in_each_language(speaking):
+    assert [language.about(one) for one in (1645.9, 9.96, 4.593)] == ["1,646", "10", "4.6"]
+    speaking("es")
+    assert [language.about(one) for one in (1645.9, 9.96, 4.593)] == ["1.646", "10", "4,6"]
 
 
 def test_a_share_has_its_sign_apart_where_the_language_sets_it_so(speaking):

@@ -71,6 +71,12 @@ def test_the_lowest_class_is_seen_on_either_ground():
         assert contrast.argmax() == len(colours.CHANCE_FROM) - 1
 
 
+def test_the_grounds_of_a_plan_are_told_apart_in_its_legend():
+    for tone in (colours.PLAN, colours.PLAN_IN_DARK):
+        headland, aisle = lightness([tone.headland]), lightness([tone.aisle])
+        assert abs(headland - aisle) > 6
+
+
 def test_a_dark_page_has_the_same_classes():
     for by, values in ((colours.by_chance, [0.0, 0.03, 0.9]), (colours.by_age, [0, 5, 40])):
         day, night = by(np.array(values)), by(np.array(values), dark=True)

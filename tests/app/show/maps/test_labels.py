@@ -67,6 +67,9 @@ def test_every_row_has_its_number_before_its_first_plant_tens_first():
         x, y = grid.frame.xy_m(np.array([one["p"]]))[0]
         assert x < own[:, 0].min()
         assert np.hypot(*(own - [x, y]).T).min() < 2 * grid.plant_spacing_m
+        # a number is pushed outwards from the outline, on which it would not be read
+        assert grid.frame.xy_m(np.array([one["away"]]))[0][0] < x
+        assert not PLOT.field.boundary.buffer(-1e-7).contains(Point(one["p"]))
 
 
 def test_the_gate_and_what_is_not_driven_through_are_named_where_they_are():
@@ -76,8 +79,10 @@ def test_the_gate_and_what_is_not_driven_through_are_named_where_they_are():
     gate, no_go = labels.places(plot)
     assert (gate["t"], no_go["t"]) == ("gate", "no-go")
     assert pond.contains(Point(no_go["p"]))
-    far = plot.grid.frame.xy_m(np.array([gate["p"]])) - plot.aisles.gate_m
-    assert np.hypot(*far[0]) < 2 * plot.grid.row_spacing_m
+    at, away = plot.grid.frame.xy_m(np.array([gate["p"], gate["away"]]))
+    assert at == pytest.approx(plot.aisles.gate_m, abs=0.05)
+    rows_y = plot.grid.xy_m[:, 1]
+    assert away[1] < at[1] < rows_y.mean() or away[1] > at[1] > rows_y.mean(), "not into the rows"
 
 
 def test_blocks_are_named_where_there_are_several():

@@ -1,0 +1,58 @@
+"""What stands where the map would be while there is none: what is wrong, and the next step."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import ChoiceNeeded, PlotError
+
+from ..show import field_map
+from ..state import brought_files, plot_source
+from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS
+from ..words import texts
+from ..words.language import of_error
+
+if TYPE_CHECKING:
+    from fieldmon.errors import FieldmonError
+
+_KINDS = (PLOT, RECORDS, PLANTS, ROWS, BLOCKS)
+
+
+def want(problem: FieldmonError | None) -> None:
+    """Want this in the map's place, unless a map is wanted there."""
+    if field_map.wanted() is None:
+        field_map.want_instead(partial(show, problem))
+
+
+def show(problem: FieldmonError | None) -> None:
+    """Show why there is no map, and what to do about it."""
+    case, file = _case(problem)
+    with st.container(key="no_map"):
+        st.markdown(f"### {texts.NO_MAP[case]}")
+        if problem is not None and case != "asked":
+            st.markdown(of_error(problem))
+        if case in texts.NO_MAP_DO:
+            st.caption(texts.NO_MAP_DO[case])
+        if case == "file" and file:
+            name = texts.isolated(brought_files.brought()[file].name)
+            st.button(texts.NO_MAP_TAKE_OUT.format(name=name), key="no_map_take_out",
+                      on_click=brought_files.take_out, args=(file,))  # fmt: skip
+        elif case == "season":
+            # a press runs the page again, and that is trying again
+            st.button(texts.TRY_AGAIN, key="no_map_again", type="primary")
+
+
+def _case(problem: FieldmonError | None) -> tuple[str, str]:
+    """Return which words are said, and the kind of the file that they are about."""
+    if problem is None:
+        return "bring", ""
+    if isinstance(problem, ChoiceNeeded):
+        return "asked", ""
+    if plot_source.chosen() not in (plot_source.FILES, plot_source.SAMPLE):
+        return "season", ""
+    brought, asking = brought_files.brought(), brought_files.asking()
+    file = next((k for k in _KINDS if k in brought and brought[k].asked == asking), "")
+    return ("plot" if isinstance(problem, PlotError) else "file"), file

@@ -1,0 +1,44 @@
+"""Where there is no map, a card says what is wrong and offers the next step."""
+
+from app.words import texts
+from tests.app.driving import map_of, opened, press, row_box, square, texts_of, upload, zipped
+
+
+def card(app):
+    """Return what the card in the map's place says."""
+    return [one for one in texts.NO_MAP.values() if f"### {one}" in texts_of(app)]
+
+
+def test_before_a_file_is_brought_the_map_s_place_says_what_will_be_there(app):
+    app.selectbox(key="season").set_value("My own files").run()
+    assert card(app) == [texts.NO_MAP["bring"]]
+    assert not app.get("bidi_component")
+
+
+def test_a_file_that_cannot_be_read_is_said_there_and_taken_out_there(app, tmp_path):
+    upload(app, plot=("plot.zip", b"no zip"))
+    assert card(app) == [texts.NO_MAP["file"]]
+    said = app.error[0].value
+    assert sum(one.value == said for one in app.markdown) == 1, "what is wrong"
+    assert "plot.zip" in app.button(key="no_map_take_out").label
+    app.button(key="no_map_take_out").click().run()
+    assert card(app) == [texts.NO_MAP["bring"]]
+    upload(app, plot=("plot.zip", zipped(tmp_path, square())))
+    assert card(app) == []
+    assert map_of(app)["layers"]
+
+
+def test_rows_that_leave_no_plot_are_said_there_too(tmp_path):
+    app = upload(opened(), plot=("plot.zip", zipped(tmp_path, square(0.0006))))
+    row_box(app, "headland").set_value(49.0).run()
+    assert app.error
+    assert card(app) == [texts.NO_MAP["plot"]]
+
+
+def test_a_question_with_nothing_to_look_at_points_to_its_answers(app):
+    upload(app, plot=("plot.csv", b"a,b\n1,2\n"))
+    assert card(app) == [texts.NO_MAP["asked"]]
+    app.selectbox(key="season").set_value("Sample estate").run()
+    assert card(app) == []
+    press(app, texts.TO_ROUTE)
+    assert not app.exception

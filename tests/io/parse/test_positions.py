@@ -3,25 +3,18 @@
 import numpy as np
 import pytest
 from pyproj import Transformer
-from shapely import MultiPoint, MultiPolygon, Point, box
+from shapely import MultiPoint, Point, box
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.import_report import Severity
-from fieldmon.io.options import ReadOptions, RecordOptions
+from fieldmon.io.options import ReadOptions
 from fieldmon.io.parse.positions import located
-from fieldmon.io.readers.places import NamedPlaces, Plants
-from fieldmon.plot.field import Field
 from tests.io.tables_of_cells import column, sentences, table
 
 ANY = ReadOptions()
 LON, LAT = [35.150123, 35.151456], [30.360789, 30.361012]
 X, Y = Transformer.from_crs("OGC:CRS84", "EPSG:2039", always_xy=True).transform(LON, LAT)
-GATE = Field("Gate", MultiPolygon([box(35.15, 30.36, 35.152, 30.362)]))
-POND = Field("Pond", MultiPolygon([box(35.16, 30.36, 35.162, 30.362)]))
-VINES = Plants(
-    np.array([[35.15, 30.36], [35.151, 30.36]]), np.array(["1", "2"]), np.array(["7", "7"])
-)
 PAIRS = [f"{lat}, {lon}" for lon, lat in zip(LON, LAT, strict=True)]
 
 POINTS, IN_METRES = (
@@ -127,55 +120,12 @@ def test_several_points_in_a_feature_are_a_record_each_and_other_shapes_are_left
 # --- records that name a place -----------------------------------------------------------------
 
 
-def test_records_that_name_plants_lie_on_them():
-    found = located(table(row=["2", "1"], plant=["7", "7"]), ANY, NamedPlaces(plants=VINES))
-    np.testing.assert_array_equal(found.lonlat, VINES.lonlat[[1, 0]])
-
-
 def test_small_whole_numbers_called_x_and_y_are_no_places_on_earth():
     with pytest.raises(ChoiceNeeded) as asked:
         located(table(x=[1, 2], y=[3, 4]), ANY)
     assert asked.value.option in {"columns", "plants"}
     far = located(table(x=list(X), y=list(Y)), ReadOptions(crs="EPSG:2039"))
     assert len(far.lonlat) == 2
-
-
-def test_a_row_alone_is_no_place_and_plants_are_asked_for_where_none_are_known():
-    with pytest.raises(ChoiceNeeded) as asked:
-        located(table(row=["1"], plant=["7"], plot=["Gate"]), ANY, NamedPlaces())
-    assert (asked.value.option, asked.value.choices) == ("plants", ("Gate",))
-
-
-def test_records_that_name_a_plot_lie_on_it_and_know_no_better():
-    found = located(table(plot=["Pond", "Gate"]), ANY, NamedPlaces((GATE, POND)))
-    for field, place, off_m in zip((POND, GATE), found.lonlat, found.accuracy_m, strict=True):
-        assert field.boundary.contains(Point(place))
-        assert 50 < off_m < 200
-
-
-def test_rows_of_two_plots_are_asked_apart_where_the_plants_are_of_one():
-    places = NamedPlaces(plants=VINES)
-    layer = table(plot=["a", "b"], row=["1", "1"], plant=["7", "7"])
-    with pytest.raises(ChoiceNeeded) as asked:
-        located(layer, ANY, places)
-    assert (asked.value.option, asked.value.choices) == ("where", ("plot=a", "plot=b"))
-    told = located(layer, ANY.naming(plot=""), places)
-    np.testing.assert_array_equal(told.lonlat, VINES.lonlat[[0, 0]])
-
-
-def test_rows_are_those_of_the_plot_that_is_said_by_hand():
-    places = NamedPlaces((GATE, POND), plants_of={"Gate": VINES})
-    found = located(table(row=["1"], plant=["7"]), RecordOptions(plot="Gate"), places)
-    np.testing.assert_array_equal(found.lonlat, VINES.lonlat[:1])
-    assert found.plot.tolist() == ["Gate"]
-
-
-def test_names_that_nobody_knows_are_left_out_and_refused_where_none_is_left():
-    places = NamedPlaces(plants=VINES)
-    found = located(table(row=["1", "9"], plant=["7", "7"]), ANY, places)
-    assert len(found.lonlat) == len(found.layer) == 1
-    with pytest.raises(FileProblem, match=r"but none does.*9/7"):
-        located(table(row=["9"], plant=["7"]), ANY, places)
 
 
 def test_a_table_without_any_place_asks_for_its_columns():

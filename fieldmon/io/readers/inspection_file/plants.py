@@ -12,7 +12,8 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.positions import could_be_positions, located
+from fieldmon.io.parse.named_positions import could_be_positions
+from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.values import numbers
 
 if TYPE_CHECKING:

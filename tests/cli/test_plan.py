@@ -102,12 +102,12 @@ def test_records_that_name_rows_and_plants_or_plots_are_taken(run, tmp_path):
     words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-03-02", "--hours", 1]
     code, _, err, _ = run(*words, "--observations", "r.csv")
     assert code == 0, err
-    assert "dropped: 1 record(s) name 1 plant(s) that are not known: 99/1." in err
+    assert "dropped: 1 record names 1 plant not known: 99/1." in err
     (tmp_path / "p.csv").write_text("plot,date,count\nGATE,2026-03-01,4\nMoon,2026-03-01,2\n")
     code, _, err, _ = run(*words, "--observations", "p.csv")
     assert code == 0, err
-    assert "dropped: 1 record(s) name 1 plot(s) that are not known: Moon." in err
-    assert "1 record(s) are placed to" in err
+    assert "dropped: 1 record names 1 plot not known: Moon." in err
+    assert "1 record is placed to" in err
 
 
 def test_a_finding_is_printed_with_its_remedy_and_the_remedy_works(run, tmp_path):

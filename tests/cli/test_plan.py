@@ -154,3 +154,13 @@ def test_every_is_refused_where_no_plant_would_be_left_out_for_it(run, which):
     code, _, err, made = run("plan", ZIP, "--every", 3, *which)
     assert (code, made) == (2, set())
     assert "--every goes with a sampler that inspects every N-th" in err
+
+
+def test_a_day_in_which_clocks_change_says_by_how_much_arrivals_are_off(run):
+    words = ("plan", ZIP, "--feature", "Nursery", "--hours", "1", "-o", "r.csv", "--no-bound")
+    code, _, err, _ = run(*words, "--date", "2027-03-26", "--start", "01:30")
+    assert code == 0, err
+    assert "Clocks are put forward by 60 min during this day: arrivals after that are 60 min" in err
+    code, _, err, _ = run(*words, "--date", "2027-03-26", "--start", "06:00")
+    assert code == 0, err
+    assert "Clocks" not in err

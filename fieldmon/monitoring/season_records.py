@@ -276,6 +276,7 @@ class SeasonRecords(OpenSeason):
 
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
+        must_be("What is merged must be a Season", other, OpenSeason, "Open it with Season(path).")
         with self._lock, self.store.writing() as db:
             before = inspection_table.n_counting(db)
             held = self._inspections(db)

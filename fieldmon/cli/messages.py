@@ -154,7 +154,7 @@ def tell_not_come(on: date, field: Field, what: str) -> None:
 
 def tell_clock_change(start: datetime, hours: float, field: Field) -> None:
     """Print that clocks change while a day is worked, if so: arrivals do not know it."""
-    from fieldmon.plot.local_clock import local_clock  # noqa: PLC0415 - geometry is slow to load
+    from fieldmon.plot.local_clock import local_clock
 
     moved_min = local_clock(field).put_forward(start, 3600 * hours).total_seconds() / 60
     if not moved_min:

@@ -242,7 +242,10 @@ def test_waypoints_are_read_by_their_names():
     ]
     np.testing.assert_array_equal(findings.count, [3, *[np.nan] * 5, 2, np.nan])
     assert set(when(findings).astype(str)) == {"2026-11-18T08:30:00"}
-    assert any("2 of 10 records left unknown: no finding in the name" in f.sentence for f in imported.messages)
+    assert any(
+        "2 of 10 records left unknown: no finding in the name" in f.sentence
+        for f in imported.messages
+    )
 
 
 def test_a_file_that_says_nothing_of_findings_asks_for_its_columns():
@@ -325,8 +328,6 @@ def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
 
 
 def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():
-    alone = (
-        "record names a plant by its number alone: taken as files given out count them, 0 to 59"
-    )
+    alone = "record names a plant by its number alone: taken as files given out count them, 0 to 59"
     assert any(alone in str(one) for one in read("plant,count\n1,2\n").messages)
     assert not any(alone in str(one) for one in read("plant,row,number,count\n1,1,2,2\n").messages)

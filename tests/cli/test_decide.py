@@ -45,7 +45,7 @@ def test_a_threshold_of_leaves_asks_for_leaves_and_then_answers(run, season):
     assert (
         "40 leaves, 1 counted: do not treat" in run(*words, "--leaves", "40", "--counted", "1")[1]
     )
-    assert "not clear yet; inspect" in run(*words, "--leaves", "5", "--counted", "1")[1]
+    assert "more you can decide" in run(*words, "--leaves", "5", "--counted", "1")[1]
 
 
 @pytest.mark.parametrize(

@@ -290,7 +290,7 @@ def nothing_yet():
     return frame().iloc[:0]
 
 
-@case("plots", says="seen: Layer vines was read; 1 other(s) hold nothing", at=CORNERS)
+@case("plots", says="seen: Layer vines was read; 1 other holds nothing", at=CORNERS)
 def an_empty_layer_beside_the_full_one(folder):
     nothing_yet().to_file(folder / "e.gpkg", layer="drafts", geometry_type="Polygon")
     frame().to_file(folder / "e.gpkg", layer="vines")
@@ -494,8 +494,8 @@ def records_swapped_far_from_the_plot():
     "records",
     near=HOME,
     says=(
-        "dropped: 1 of 3 record(s) lie outside home",
-        "doubtful: 1 record(s) would lie on the plot with longitude and latitude exchanged",
+        "dropped: 1 of 3 records lies outside home",
+        "doubtful: 1 record would lie on the plot with longitude and latitude exchanged",
     ),
     at=((35.15101, 30.36101), (35.1512, 30.3612)),
 )
@@ -530,7 +530,7 @@ def a_bow_tie_says_its_new_area():
     return geojson(TIE)
 
 
-@case("plots", says="dropped: 2 feature(s) without a geometry", at=CORNERS)
+@case("plots", says="dropped: 2 features without a geometry", at=CORNERS)
 def features_without_geometry():
     return geojson(SQUARE, None, {"type": "Polygon", "coordinates": []})
 
@@ -560,12 +560,12 @@ def keeps_its_hole(fields):
     np.testing.assert_allclose(part.interiors[0].bounds, HOLE.bounds, atol=1e-9)
 
 
-@case("plots", says="seen: have holes", check=keeps_its_hole)
+@case("plots", says="seen: has holes", check=keeps_its_hole)
 def a_plot_with_a_pond():
     return geojson(SQUARE.difference(HOLE))
 
 
-@case("plots", says=("repaired: was not valid", "seen: have holes"), check=keeps_its_hole)
+@case("plots", says=("repaired: was not valid", "seen: has holes"), check=keeps_its_hole)
 def the_same_hole_twice():
     return geojson(polygon(ring_of(SQUARE), ring_of(HOLE), ring_of(HOLE)))
 
@@ -586,7 +586,7 @@ def the_same_plot_twice():
     return geojson(SQUARE, SQUARE)
 
 
-@case("plots", says="dropped: 1 part(s) too small or narrow", at=CORNERS)
+@case("plots", says="dropped: 1 part too small or narrow", at=CORNERS)
 def a_sliver_beside_the_plot():
     sliver = box(35.1530, 30.36, 35.1530002, 30.362)
     return geojson(MultiPolygon([SQUARE, sliver]))
@@ -607,12 +607,12 @@ def a_plot_without_any_width():
     return geojson(polygon([(35.15, 30.36), (35.152, 30.36), (35.151, 30.36), (35.15, 30.36)]))
 
 
-@case("plots", says="repaired: 1 feature(s) did not end where it began", at=CORNERS)
+@case("plots", says="repaired: 1 feature did not end where it began", at=CORNERS)
 def a_ring_that_is_not_closed():
     return geojson(polygon(ring_of(SQUARE)[:-1]))
 
 
-@case("plots", says="guessed: closed line(s) were taken as the outlines", at=CORNERS)
+@case("plots", says="guessed: closed line was taken as the outlines", at=CORNERS)
 def outlines_drawn_as_lines():
     return geojson(SQUARE.exterior)
 
@@ -632,14 +632,14 @@ def points_where_plots_are_asked_for():
 
 @case(
     "plots",
-    says=("dropped: 1 line(s) were left out", "dropped: 1 point(s) were left out"),
+    says=("dropped: 1 line was left out", "dropped: 1 point was left out"),
     at=CORNERS,
 )
 def areas_lines_and_points_in_one_file():
     return geojson(SQUARE, LINE, Point(PARAN))
 
 
-@case("lines", says="dropped: 2 feature(s) that are no lines")
+@case("lines", says="dropped: 2 features that are no lines")
 def lines_among_other_things():
     return areas_lines_and_points_in_one_file()
 
@@ -651,14 +651,14 @@ def plants_on_top_of_each_other():
 
 @case(
     "plots",
-    says=("dropped: cannot be understood", "dropped: 1 feature(s) without"),
+    says=("dropped: cannot be understood", "dropped: 1 feature without"),
     at=CORNERS,
 )
 def one_broken_feature_among_good_ones():
     return geojson(SQUARE, {"type": "Polygon", "coordinates": [["a", "b"]]})
 
 
-@case("plots", says=("dropped: no numbers", "dropped: 1 feature(s) without"), at=CORNERS)
+@case("plots", says=("dropped: no numbers", "dropped: 1 feature without"), at=CORNERS)
 def coordinates_that_are_no_numbers():
     broken = polygon([(35.15, 30.36), (float("nan"), 30.36), (35.152, 30.362), (35.15, 30.36)])
     return geojson(SQUARE, broken)
@@ -793,7 +793,7 @@ def a_line_break_inside_quotes():
 RECORD = [35.15013, 30.36013, DAY, 7]
 
 
-@case("records", at=HERE, check=counts(7), says="seen: 3 line(s) above the column names")
+@case("records", at=HERE, check=counts(7), says="seen: 3 lines above the column names")
 def excel_with_lines_of_title(folder):
     rows = [
         ["Monitoring 2026", *[None] * 3],
@@ -805,7 +805,7 @@ def excel_with_lines_of_title(folder):
     return workbook(folder, rows)
 
 
-@case("records", at=HERE, check=counts(7), says="seen: 2 line(s) above the column names")
+@case("records", at=HERE, check=counts(7), says="seen: 2 lines above the column names")
 def a_csv_with_lines_of_title():
     head = "Monitoring 2026;;;\nBlock 7;;;\nlon;lat;date;count\n"
     return table(f"{head}35,15013;30,36013;{DAY};7\n")
@@ -825,7 +825,7 @@ def columns_that_nobody_knows():
     return table("a,b,c\n35.15013,30.36013,7\n")
 
 
-@case("records", says="dropped: 1 line(s) have more cells than there are columns")
+@case("records", says="dropped: 1 line has more cells than there are columns")
 def a_line_with_too_many_cells():
     rows = f"35.15013,30.36013,{DAY},7\n35.15023,30.36023,{DAY},8,oops\n"
     return table(f"lon,lat,date,count\n{rows}")
@@ -869,7 +869,7 @@ def well_known_text_in_a_cell():
 @case(
     "records",
     at=(HERE[0], (35.15013, 30.36023)),
-    says="dropped: 1 record(s) without a usable position were left out, for instance "
+    says="dropped: 1 record without a usable position was left out, for instance "
     "'35.15023 / 07.16.5046' in record 3. 1 of them have two points [degrees=dms]",
 )
 def impossible_minutes_are_not_guessed():
@@ -924,7 +924,7 @@ ROWS = Plants(
     "records",
     places=NamedPlaces(plants=ROWS),
     at=((35.1501, 30.3602), (35.1502, 30.3601)),
-    says="dropped: 1 record(s) name 1 plant(s) that are not known: 7/7",
+    says="dropped: 1 record names 1 plant not known: 7/7",
 )
 def rows_and_plants_by_number():
     return table(f"row,plant,date,count\n2,1,{DAY},4\n1,2,{DAY},0\n7,7,{DAY},1\n")
@@ -942,8 +942,8 @@ def rows_and_plants_without_any_plants():
     says=(
         "guessed: without capitals, spaces and marks",
         "seen: somewhere on it",
-        "dropped: 2 record(s) name 1 plot(s) that are not known: South",
-        "dropped: 2 record(s) name no plot at all",
+        "dropped: 2 records name 1 plot not known: South",
+        "dropped: 2 records name no plot at all",
     ),
 )
 def plots_by_name_with_some_unknown():
@@ -987,7 +987,7 @@ def dates_that_could_be_both_and_were_told():
 @case(
     "records",
     check=days("2026-03-13", "NaT"),
-    says="doubtful: 1 record(s) have a date that is none ('03/13/2026')",
+    says="doubtful: 1 record has a date that is none ('03/13/2026')",
 )
 def dates_in_both_orders():
     return dated("13/03/2026", "03/13/2026")
@@ -1014,7 +1014,7 @@ def dates_of_a_workbook(folder):
     return workbook(folder, [["lon", "lat", "date", "count"], record])
 
 
-@case("records", says="doubtful: 1 record(s) lie in the future, the last on 2126-03-01")
+@case("records", says="doubtful: 1 record lies in the future, the last on 2126-03-01")
 def dates_in_the_future():
     return dated("2026-03-01", "2126-03-01")
 
@@ -1037,7 +1037,7 @@ def counted(*cells):
     return table("lon,lat,date,count\n" + "\n".join(rows))
 
 
-@case("records", check=states(1, 0, -1, 1, 0), says="seen: 1 record(s) have no count")
+@case("records", check=states(1, 0, -1, 1, 0), says="seen: 1 record has no count")
 def zero_apart_from_missing():
     return counted(3, 0, "NA", "present", "none")
 
@@ -1046,15 +1046,15 @@ def zero_apart_from_missing():
     "records",
     check=states(1, -1, 1, 1, 1),
     says=(
-        "doubtful: 4 count(s) are no plain number ('<5', '~20', '10-20'); read roughly",
-        "doubtful: 1 count(s) say neither how many nor whether any ('<1')",
+        "doubtful: 4 counts are no plain number ('<5', '~20', '10-20'); read roughly",
+        "doubtful: 1 count says neither how many nor whether any ('<1')",
     ),
 )
 def counts_as_text():
     return counted("<5", "<1", "~20", "10-20", ">100")
 
 
-@case("records", check=counts(np.nan, 3), says="doubtful: 1 count(s) say neither how many")
+@case("records", check=counts(np.nan, 3), says="doubtful: 1 count says neither how many")
 def a_count_below_zero():
     return counted(-4, 3)
 
@@ -1071,14 +1071,14 @@ def records_without_any_count():
 @case(
     "records",
     check=states(0, 1),
-    says="doubtful: 1 record(s) say another thing than their count",
+    says="doubtful: 1 record contradicts its own count",
 )
 def counts_and_presence_at_odds():
     rows = f"35.15013,30.36013,{DAY},3,absent\n35.15023,30.36013,{DAY},3,present\n"
     return table("lon,lat,date,count,status\n" + rows)
 
 
-@case("records", says="dropped: 1 record(s) repeat another in every column", at=HERE)
+@case("records", says="dropped: 1 record repeats another in every column", at=HERE)
 def the_same_record_twice():
     return table("lon,lat,date,count\n" + f"35.15013,30.36013,{DAY},3\n" * 2)
 
@@ -1099,7 +1099,7 @@ def two_species_in_one_file():
     "records",
     near=HOME,
     at=((35.15101, 30.36101),),
-    says="dropped: 2 of 3 record(s) lie outside home and were kept apart: 961 m to 28.84 km",
+    says="dropped: 2 of 3 records lie outside home and were kept apart: 961 m to 28.84 km",
 )
 def records_elsewhere():
     rows = [(35.15101, 30.36101, 3), (35.162, 30.36101, 1), (35.452, 30.36101, 1)]

@@ -49,7 +49,7 @@ def named(*names):
 
 # --- rings that nobody closed ------------------------------------------------------------------
 
-OPEN = "repaired: 2 feature(s) did not end where it began; it was closed by a straight line"
+OPEN = "repaired: 2 features did not end where it began; it was closed by a straight line"
 _KML = """<?xml version="1.0" encoding="UTF-8"?>
 <kml xmlns="http://www.opengis.net/kml/2.2"><Document><Schema name="s" id="s">
 <SimpleField name="f_name" type="string"/></Schema>{body}</Document></kml>"""
@@ -102,7 +102,7 @@ def rings_of_gml_that_are_not_closed_and_lists_of_names():
     return Upload("fields.gml", _GML.format(body=gml_of(SQUARE, SECOND)).encode())
 
 
-@case("plots", says=OPEN.replace("2", "1"), at=CORNERS)
+@case("plots", says=OPEN.replace("2 features", "1 feature"), at=CORNERS)
 def a_ring_of_geoparquet_that_is_not_closed(folder):
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -121,8 +121,8 @@ def a_ring_of_geoparquet_that_is_not_closed(folder):
     "plots",
     says=(
         "repaired: did not end where it began",
-        "dropped: The shape of 1 feature(s) cannot be understood",
-        "dropped: 1 feature(s) without a geometry",
+        "dropped: The shape of 1 feature cannot be understood",
+        "dropped: 1 feature without a geometry",
     ),
     at=CORNERS,
 )
@@ -240,7 +240,7 @@ TWO = (HERE[0], (35.15023, 30.36023))
     "records",
     says=(
         "seen: 3 columns are called by dates, 2026-03-01 to 2026-03-15: each cell is one record",
-        "seen: 1 cell(s) are not filled in",
+        "seen: 1 cell is not filled in",
         "seen: these were passed over: Total",
     ),
     check=both(counts(0, 3, 7, 0, 12), days(DAY, "2026-03-08", "2026-03-15", DAY, "2026-03-15")),
@@ -351,8 +351,8 @@ def plots_as_text_in_metres():
 @case(
     "plots",
     says=(
-        "repaired: 1 feature(s) did not end",
-        "dropped: 1 shape(s) cannot",
+        "repaired: 1 feature did not end",
+        "dropped: 1 shape cannot",
         "dropped: without a geometry",
     ),
     at=CORNERS,
@@ -416,7 +416,7 @@ def a_spatialite_database(folder):
 @case(
     "plots",
     options=PlotOptions(crs="EPSG:2039"),
-    says="guessed: 1 closed line(s) were taken as the outlines",
+    says="guessed: 1 closed line was taken as the outlines",
     at=CORNERS,
 )
 def a_drawing(folder):
@@ -471,7 +471,7 @@ def has_a_pond(fields):
 
 @case(
     "plots",
-    says=("dropped: 1 line(s) were left out", "seen: were passed over: 1 treatment zone(s)"),
+    says=("dropped: 1 line was left out", "seen: were passed over: treatment zone (1)"),
     at=CORNERS,
     check=has_a_pond,
 )
@@ -479,7 +479,7 @@ def partfields_of_a_terminal():
     return zipped({"TASKDATA/TASKDATA.XML": _TASKS.format(body="".join(FIELDS)).encode()})
 
 
-@case("plots", says="dropped: 1 line(s) were left out", at=CORNERS, check=has_a_pond)
+@case("plots", says="dropped: 1 line was left out", at=CORNERS, check=has_a_pond)
 def partfields_in_files_of_their_own(folder):
     room = folder / "TASKDATA"
     room.mkdir()
@@ -490,7 +490,7 @@ def partfields_in_files_of_their_own(folder):
     return room / "TASKDATA.XML"
 
 
-@case("lines", says="dropped: 2 feature(s) that are no lines")
+@case("lines", says="dropped: 2 features that are no lines")
 def guidance_lines_of_a_terminal():
     return partfields_of_a_terminal()
 
@@ -554,7 +554,7 @@ def a_minus_beside_a_plus():
 @case(
     "records",
     check=states(1, -1, 0),
-    says="doubtful: 1 record(s) hold a minus alone: taken as not filled in [clean=-]",
+    says="doubtful: 1 record holds a minus alone: taken as not filled in [clean=-]",
 )
 def a_minus_beside_words():
     return found("positivo", "-", "negativo")
@@ -613,7 +613,7 @@ def plants_four_centimetres_apart():
 # --- degrees with two points -------------------------------------------------------------------
 
 DOTTED = "30.21.36,35.09.33\n30.21.37,35.09.34\n30.36013,35.15013"
-ASKED = "2 record(s) give degrees with two points, for instance"
+ASKED = "2 records give degrees with two points, for instance"
 HERE_DOTTED = ((35 + 9 / 60 + 33 / 3600, 30 + 21 / 60 + 36 / 3600),)
 HERE_MINUTES = ((35 + 9.33 / 60, 30 + 21.36 / 60),)
 
@@ -638,7 +638,7 @@ def degrees_with_two_points_and_minutes():
     return with_two_points()
 
 
-@case("records", asks=("degrees", "dms", "dm"), refuses="1 record(s) give degrees with two points")
+@case("records", asks=("degrees", "dms", "dm"), refuses="1 record gives degrees with two points")
 def degrees_with_two_points_in_one_cell():
     return table(f'gps,date,count\n"30.21.36, 35.09.33",{DAY},7\n')
 

@@ -247,6 +247,24 @@ MISTAKES = {
         lambda plot: fm.Season.create("s.gpkg", plot, begins="soon"), "but it is 'soon'",
     ),
     "a season's records": (lambda plot: fm.Season.create("s.gpkg", plot, "m.csv"), "Observations"),
+    "a record half infested": (
+        lambda _: fm.Observations.of([[35.1, 30.3]], [0.7]), "1 (infested), 0 (clean) or -1",
+    ),
+    "records latitude first": (lambda _: fm.Observations.of([[30, 120]], [1]), "longitude first"),
+    "records by numbers": (lambda _: fm.Observations.of([3, 4], [1, 1]), "pairs of longitude"),
+    "records of no day": (
+        lambda _: fm.Observations.of([[35, 30]], [1], day=["soon"]), "must be as 2026-11-18",
+    ),
+    "a chance of too few": (lambda plot: fm.draw_start(plot, [0.1, 0.2]), "each of 3825 plants"),
+    "a chance above 1": (lambda plot: fm.draw_start(plot, np.full(3825, 2.0)), "in 0..1 for each"),
+    "days as text": (lambda _: fm.SeasonSettings(n_days="9"), "n_days must be a number"),
+    "a boundary of none": (lambda _: fm.Field("a", None), "boundary must be a MultiPolygon"),
+    "a season by number": (lambda _: fm.Season(3), "A season must be given by its path"),
+    "a dose as text": (lambda _: fm.Dose("0.5", "l/ha"), "A dose's value must be a number"),
+    "a dose without unit": (lambda _: fm.Dose(0.5, None), "unit of a dose must be text"),
+    "a label of none": (lambda _: fm.ProductLabel(None), "product must be text"),
+    "a wait as text": (lambda _: fm.Application(waiting_days="7"), "waiting_days must be a number"),
+    "a chance as text": (lambda _: fm.Viewpoints(longer="x"), "longer must be a number"),
     "a start that is none": (lambda plot: fm.simulate(plot, None), "start must be a Start"),
 }  # fmt: skip
 

@@ -33,15 +33,19 @@ class KeptWords:
 
     @cached_property
     def letters(self) -> int:
-        """Return how many letters stand around the blanks."""
-        return sum(letter.isalpha() for literal in self.literals for letter in literal)
+        """Return how many letters stand around the blanks, those chosen by a number among them."""
+        chosen = (form for _, _, form, _ in Formatter().parse(self.words) if form and "|" in form)
+        said = (*self.literals, *(min(form.split("|"), key=len) for form in chosen))
+        return sum(letter.isalpha() for literal in said for letter in literal)
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
         made, known = "", set()
-        for literal, name, _, _ in Formatter().parse(self.words):
+        for literal, name, form, _ in Formatter().parse(self.words):
             made += re.escape(literal)
-            if name in known:
+            if form and "|" in form:  # words chosen by a number
+                made += f"(?:{'|'.join(map(re.escape, form.split('|')))})"
+            elif name in known:
                 made += f"(?P={name})"
             elif name is not None:
                 known.add(name)

@@ -364,13 +364,15 @@ class _BlanksInLanguage(Formatter):
         self._language = language
 
     def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401
+        if "|" in format_spec:
+            return written(value, format_spec)
         if isinstance(value, Real) and not isinstance(value, bool):
             return _number(value, format_spec, self._language)
         return format(value, format_spec)
 
 
 def _filled(words: str, language: str, args: Any, values: Any) -> str:  # noqa: ANN401
-    if language == ENGLISH and "%}" not in words:
+    if language == ENGLISH and "%}" not in words and "|" not in words:
         return str.format(words, *args, **values)
     return _BlanksInLanguage(language).vformat(str(words), args, values)
 

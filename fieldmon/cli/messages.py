@@ -13,7 +13,7 @@ from fieldmon.errors import ChoiceNeeded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
-    from datetime import date
+    from datetime import date, datetime
 
     import numpy as np
 
@@ -150,6 +150,21 @@ def tell_not_come(on: date, field: Field, what: str) -> None:
             "wrong, take it back with: fieldmon undo",
             err=True,
         )
+
+
+def tell_clock_change(start: datetime, hours: float, field: Field) -> None:
+    """Print that clocks change while a day is worked, if so: arrivals do not know it."""
+    from fieldmon.plot.local_clock import local_clock
+
+    moved_min = local_clock(field).put_forward(start, 3600 * hours).total_seconds() / 60
+    if not moved_min:
+        return
+    way, shown = ("forward", "early") if moved_min > 0 else ("back", "late")
+    typer.echo(
+        f"doubtful: Clocks are put {way} by {abs(moved_min):.0f} min during this day: arrivals "
+        f"after that are {abs(moved_min):.0f} min too {shown}.",
+        err=True,
+    )
 
 
 def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSettings) -> None:

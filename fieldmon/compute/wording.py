@@ -45,11 +45,17 @@ class Worded(str):  # noqa: SLOT000 - it holds what it was made of
 def written(value: Any, form: str) -> str:  # noqa: ANN401 - whatever can be written
     """Return a value as `format` writes it, but a share as all texts here have it.
 
+    A form with a bar chooses words by a number: those for one, or those for any other.
+
     Examples
     --------
     >>> written(0.845, ".1%"), written(0.845, ".2f")
     ('84.5 %', '0.84')
+    >>> written(1, "record lies|records lie"), written(3, "record lies|records lie")
+    ('record lies', 'records lie')
     """
+    if "|" in form:  # what is said of one, and of any other number
+        return str(form.split("|")[value != 1])
     said = format(value, form)
     return f"{said[:-1]} %" if form.endswith("%") else said
 
@@ -62,7 +68,9 @@ class _Blanks(Formatter):
 def filled(words: str, values: Mapping[str, Any]) -> str:
     """Return words with their blanks filled, as `written` writes what stands in them."""
     # others are many times as fast
-    return _Blanks().vformat(words, (), values) if "%}" in words else words.format(**values)
+    if "%}" in words or "|" in words:
+        return _Blanks().vformat(words, (), values)
+    return words.format(**values)
 
 
 def worded(words: str, **values: Any) -> Worded:  # noqa: ANN401 - whatever can be written

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from fieldmon.compute.arguments import must_be, must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -51,6 +52,8 @@ class Dose:
     unit: str
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "A dose's")
+        must_be("The unit of a dose must be text", self.unit, str, 'Give "l/ha", for instance.')
         if not 0.0 < self.value < 1e6:
             raise SettingError(
                 worded(

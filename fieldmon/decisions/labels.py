@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import must_be, must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -59,6 +60,8 @@ class ProductLabel:
     source: str = ""
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "A label's")
+        must_be("A label's product must be text", self.product, str, "Name it.")
         if not self.product.strip():
             raise SettingError(worded("A label must name its product, but this one names none."))
         checked_waits(self.waiting_days, self.reentry_hours)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.arguments import array_of, must_be, shown
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ObservationError
 
@@ -20,8 +20,29 @@ UNKNOWN, ABSENT, PRESENT = -1, 0, 1
 #: a record this close to a plot is taken for one of its own
 NEARBY_M = 100.0
 _DAY = np.timedelta64(1, "D")
+_FARTHEST_DEG = np.array([360.0, 90.0])
 #: a record of the usual half-life, 14 days, counts a thirtieth after so many
 HARDLY_DAYS = 70.0
+
+
+def _positions(lonlat: object) -> NDArray[np.float64]:
+    """Return positions ``(m, 2)``; refuse what is none, by which latitude and longitude show."""
+    points = array_of(np.float64, "Positions of records", lonlat)
+    if points.size == 0:
+        return points.reshape(-1, 2)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ObservationError(
+            "Positions of records must be pairs of longitude and latitude, but they have the shape "
+            f"{points.shape}."
+        )
+    wrong = (np.abs(points) > _FARTHEST_DEG).any(axis=1)
+    if wrong.any():
+        lon, lat = points[wrong][0]
+        raise ObservationError(
+            "Positions of records must be longitude and latitude in degrees, but one is "
+            f"{lon:g}, {lat:g}. Give longitude first, or read the file with read_records."
+        )
+    return points
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,9 +132,17 @@ class Observations:
         Raises
         ------
         ObservationError
-            If columns have different lengths.
+            If columns have different lengths, a position is none on earth, or a result is not 1,
+            0 or -1.
         """
-        m = len(lonlat)
+        points = _positions(lonlat)
+        results = array_of(np.float64, "Results of records", present)
+        if not np.isin(results, (UNKNOWN, ABSENT, PRESENT)).all():
+            raise ObservationError(
+                "Results of records must be 1 (infested), 0 (clean) or -1 (not said), but one is "
+                f"{results[~np.isin(results, (UNKNOWN, ABSENT, PRESENT))][0]:g}."
+            )
+        m = len(points)
         unknown: dict[str, NDArray[np.generic]] = {
             "count": np.full(m, np.nan),
             "accuracy_m": np.full(m, np.nan),
@@ -121,9 +150,13 @@ class Observations:
             "stage": np.full(m, "", dtype=np.str_),
             "leaves_sampled": np.full(m, np.nan),
         }
-        days = np.full(m, "NaT", dtype="datetime64[D]") if day is None else day
-        points = np.asarray(lonlat, dtype=np.float64).reshape(-1, 2)
-        return cls(points, np.asarray(present, np.int8), days, **(unknown | columns))  # type: ignore[arg-type]
+        try:
+            days = np.asarray(np.full(m, "NaT") if day is None else day, "datetime64[D]")
+        except (TypeError, ValueError) as error:
+            raise ObservationError(
+                f"Days of records must be as 2026-11-18, but they are {shown(day)}."
+            ) from error
+        return cls(points, results.astype(np.int8), days, **(unknown | columns))  # type: ignore[arg-type]
 
     def take(self, which: NDArray[np.generic]) -> Observations:
         """Return the records at `which` indices, or of a mask ``(k,)``."""

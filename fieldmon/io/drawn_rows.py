@@ -82,7 +82,13 @@ def rows_of_each(fields: Fields, rows: MultiLineString) -> Imported[Fields]:
     messages = []
     if left := len(lines) - len(np.unique(line)):
         messages.append(
-            dropped(worded("{left} row(s) that lie on no plot were left out.", left=left))
+            dropped(
+                worded(
+                    "{left} {left:row that lies|rows that lie} on no plot {left:was|were} left "
+                    "out.",
+                    left=left,
+                )
+            )
         )
     if bare := len(fields) - len(np.unique(plot)):
         messages.append(
@@ -255,7 +261,9 @@ def blocks_of_each(fields: Fields, areas: tuple[Block, ...]) -> Imported[Fields]
         )
     if len(areas) > used:
         messages.append(
-            dropped(worded("{n} block(s) lie on none of the plots.", n=len(areas) - used))
+            dropped(
+                worded("{n} {n:block lies|blocks lie} on none of the plots.", n=len(areas) - used)
+            )
         )
     return Imported(tuple(found), tuple(messages))
 
@@ -282,11 +290,11 @@ def blocks_on(
     if not blocks:
         return (), messages
     names = first_few([block.name for block in blocks], _NAMED)
-    said = worded("Rows run in {n} block(s) as drawn: {names}.", n=len(blocks), names=names)
+    said = worded("Rows run in {n} {n:block|blocks} as drawn: {names}.", n=len(blocks), names=names)
     messages.append(seen(said))
     if doubled:
         over = ", ".join(doubled[:_NAMED])
-        said = worded("Block(s) {names} lie over others; the first one counts.", names=over)
+        said = worded("Blocks lie over others: {names}. The first one counts.", names=over)
         messages.append(doubtful(said))
     bare = left.area / field.boundary.area
     if bare > _WORTH_A_WORD:
@@ -333,12 +341,14 @@ def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
             )
         )
     told = {"n": n_parted, "blocks": n_blocks}
-    messages = [seen(worded("{n} line(s) part the plot into {blocks} blocks.", **told))]
+    messages = [
+        seen(worded("{n} {n:line parts|lines part} the plot into {blocks} blocks.", **told))
+    ]
     if len(fields) > 1:
         messages = [
             seen(
                 worded(
-                    "{n} line(s) part plots into {blocks} blocks.",
+                    "{n} {n:line parts|lines part} plots into {blocks} blocks.",
                     n=n_parted,
                     blocks=n_blocks,
                 )
@@ -346,7 +356,13 @@ def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
         ]
     if (idle := len(cuts.geoms) - n_parted) > 0:
         messages.append(
-            dropped(worded("{idle} line(s) pass through no plot and part nothing.", idle=idle))
+            dropped(
+                worded(
+                    "{idle} {idle:line passes|lines pass} through no plot and "
+                    "{idle:parts|part} nothing.",
+                    idle=idle,
+                )
+            )
         )
     return Imported(tuple(found), tuple(messages))
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.labels import checked_waits
 from fieldmon.errors import SettingError
@@ -88,6 +89,7 @@ class Application:
     weather: str = ""
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "A treatment's")
         checked_waits(self.waiting_days, self.reentry_hours)
         if self.water_l_ha is not None and not 0.0 < self.water_l_ha < 1e6:
             raise SettingError(

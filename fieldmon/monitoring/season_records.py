@@ -106,7 +106,25 @@ class SeasonRecords(OpenSeason):
     ) -> tuple[Recorded, ...]:
         """Add inspections of several sources, a batch each: all of them, or none.
 
-        Each comes with the name of its file or screen; see `record`.
+        Parameters
+        ----------
+        brought
+            Inspections, each with the name of the file or screen it comes from.
+        who
+            The person, where the inspections name none.
+        confirmed
+            Whether results count that contradict what is recorded, or one another.
+        into
+            Batch to add all of them to; None: new ones.
+
+        Raises
+        ------
+        ContradictionError
+            If there are such results and nobody confirmed them.
+        ObservationError
+            If a plant is not on this plot, or a result has no date or an impossible one.
+        SettingError
+            If a date is not of this season.
         """
         how = "Make them with Inspections.of, or read them with read_inspections."
         for inspections, _ in brought:
@@ -276,6 +294,7 @@ class SeasonRecords(OpenSeason):
 
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
+        must_be("What is merged must be a Season", other, OpenSeason, "Open it with Season(path).")
         with self._lock, self.store.writing() as db:
             before = inspection_table.n_counting(db)
             held = self._inspections(db)

@@ -11,6 +11,7 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import require_folder
@@ -72,6 +73,7 @@ class Store:
     """
 
     def __init__(self, path: str | Path) -> None:
+        must_be("A season must be given by its path", path, (str, Path), 'Give "season.gpkg".')
         self.path = Path(path).absolute()
         if not self.path.is_file():
             raise _no_file(path)

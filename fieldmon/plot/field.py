@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import shapely
-from shapely import MultiLineString, MultiPolygon
+from shapely import MultiLineString, MultiPolygon, Polygon
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
@@ -78,6 +79,10 @@ class Field:
     in_rows: bool = True
 
     def __post_init__(self) -> None:
+        must_be(
+            "A plot's boundary must be a MultiPolygon in degrees", self.boundary,
+            (MultiPolygon, Polygon), "Read it with read_plot, or Plot.from_geopandas.",
+        )  # fmt: skip
         if self.boundary.is_empty or not self.boundary.is_valid:
             raise PlotError(
                 worded(

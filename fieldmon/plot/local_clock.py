@@ -54,6 +54,15 @@ class LocalClock:
         """Return the local date."""
         return self.now().date()
 
+    def put_forward(self, start: datetime, seconds: float) -> timedelta:
+        """Return by how much the clock is put forward in so many seconds from a local time.
+
+        Less than 0 where it is put back.
+        """
+        shown = start + timedelta(seconds=seconds)
+        moment = self.moment(start.date(), start.time()).astimezone(UTC)
+        return self.at(moment + timedelta(seconds=seconds)) - shown
+
     def latest(self, local: datetime) -> datetime:
         """Return the last moment at which the clock shows a local time.
 

@@ -42,6 +42,7 @@ class Viewpoints:
     longer: float = THESIS_LONGER
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "Viewpoints'")
         ladder = (*self.steps, (math.inf, self.longer))
         rising = all(low[0] < high[0] and low[1] <= high[1] for low, high in pairwise(ladder))
         if not (self.steps and rising and self.steps[0][0] > 0 and self.steps[0][1] >= 0):

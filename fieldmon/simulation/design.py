@@ -65,7 +65,7 @@ class Design:
         if self.n_days < 1 or self.n_seeds < 1 or self.first_seed < 0:
             raise SettingError(
                 "A study needs 1 day and 1 seed or more, seeds from 0, but it has "
-                f"{self.n_days} day(s) and {self.n_seeds} seed(s) from {self.first_seed}."
+                f"days {self.n_days} and seeds {self.n_seeds}, from {self.first_seed}."
             )
         for share in self.infested:
             if not 0.0 < share < 1.0:

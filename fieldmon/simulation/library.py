@@ -5,8 +5,11 @@ from __future__ import annotations
 from types import NoneType
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_be
+import numpy as np
+
+from fieldmon.compute.arguments import array_of, must_be
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.errors import SettingError
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
@@ -15,7 +18,6 @@ from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start, season_start
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.plot.plot import Plot
@@ -53,6 +55,12 @@ def draw_start(
     True
     """
     must_be_plot(plot)
+    chance = array_of(np.float64, "A chance map", chance)
+    if chance.shape != (len(plot.grid),) or not ((chance >= 0) & (chance <= 1)).all():
+        raise SettingError(
+            f"A chance map must have a chance in 0..1 for each of {len(plot.grid)} plants. Give "
+            "DayPlan.chance, for instance."
+        )
     return season_start(plot.grid, chance, share, RandomStreams(seed))
 
 

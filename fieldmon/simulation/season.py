@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.spread import Spread, night
@@ -88,6 +89,7 @@ class SeasonSettings:
     treating: TreatmentRule | None = None
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "A season's")
         if self.n_days < 1:
             raise SettingError(f"A season must have 1 day or more, but n_days is {self.n_days}.")
 

@@ -102,12 +102,12 @@ def test_records_that_name_rows_and_plants_or_plots_are_taken(run, tmp_path):
     words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-03-02", "--hours", 1]
     code, _, err, _ = run(*words, "--observations", "r.csv")
     assert code == 0, err
-    assert "dropped: 1 record(s) name 1 plant(s) that are not known: 99/1." in err
+    assert "dropped: 1 record names 1 plant not known: 99/1." in err
     (tmp_path / "p.csv").write_text("plot,date,count\nGATE,2026-03-01,4\nMoon,2026-03-01,2\n")
     code, _, err, _ = run(*words, "--observations", "p.csv")
     assert code == 0, err
-    assert "dropped: 1 record(s) name 1 plot(s) that are not known: Moon." in err
-    assert "1 record(s) are placed to" in err
+    assert "dropped: 1 record names 1 plot not known: Moon." in err
+    assert "1 record is placed to" in err
 
 
 def test_a_finding_is_printed_with_its_remedy_and_the_remedy_works(run, tmp_path):
@@ -154,3 +154,13 @@ def test_every_is_refused_where_no_plant_would_be_left_out_for_it(run, which):
     code, _, err, made = run("plan", ZIP, "--every", 3, *which)
     assert (code, made) == (2, set())
     assert "--every goes with a sampler that inspects every N-th" in err
+
+
+def test_a_day_in_which_clocks_change_says_by_how_much_arrivals_are_off(run):
+    words = ("plan", ZIP, "--feature", "Nursery", "--hours", "1", "-o", "r.csv", "--no-bound")
+    code, _, err, _ = run(*words, "--date", "2027-03-26", "--start", "01:30")
+    assert code == 0, err
+    assert "Clocks are put forward by 60 min during this day: arrivals after that are 60 min" in err
+    code, _, err, _ = run(*words, "--date", "2027-03-26", "--start", "06:00")
+    assert code == 0, err
+    assert "Clocks" not in err

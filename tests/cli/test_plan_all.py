@@ -138,7 +138,7 @@ def test_a_plot_is_not_refused_for_what_was_found_next_to_it(run, parcels, summa
     assert summary()["Plot 1"]["state"] == "planned"
     code, _, err, _ = run("plan", parcels, "--feature", "Plot 1", "-o", "one.geojson", *words)
     assert code == 0, err
-    assert "count for plants near enough to them, if any are" in err
+    assert "It counts for plants nearby, if there are any" in err
 
 
 @pytest.mark.parametrize("words", [["--rover"], ["--robot-times", "thesis"]])

@@ -169,7 +169,7 @@ def test_an_estate_is_planned_with_the_rows_and_blocks_of_its_plots(run, tmp_pat
     assert code == 0, err
     assert "2 of 2 plots planned" in out
     assert "On 1 of 2 plots no rows were drawn; straight ones are laid." in err
-    assert "1 line(s) part plots into 2 blocks." in err
+    assert "1 line parts plots into 2 blocks." in err
     stops = {
         name: json.loads((tmp_path / "routes" / f"{name}.geojson").read_text())["features"][1:]
         for name in ("1-west", "2-east")

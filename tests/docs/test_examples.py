@@ -64,7 +64,7 @@ def test_the_python_lines_of_the_readme_run(folder):
         warnings.simplefilter("always")
         exec(compile(block, "README.md", "exec"), known)  # noqa: S102 - our own lines
     assert {one.category for one in said} == {fieldmon.ImportDoubt}
-    assert any("669 of 998 record(s) lie outside Gate" in str(one.message) for one in said)
+    assert any("669 of 998 records lie outside Gate" in str(one.message) for one in said)
     assert (folder / "day.gpx").stat().st_size > 10_000
     assert len(known["day"].route) > 100
 

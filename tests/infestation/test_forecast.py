@@ -76,7 +76,7 @@ def test_the_interval_widens_as_nights_go_by():
 @pytest.mark.parametrize(
     ("weather", "basis"),
     [
-        (None, "no weather is known of"),
+        (None, "no weather is known"),
         (14, "by the weather forecast"),
         (0, "by the usual weather of the date"),
         (3, "by the weather forecast for 3 nights, then the usual"),

@@ -54,7 +54,7 @@ def test_each_of_many_plots_gets_its_own_rows_and_those_on_none_are_said():
     rows = [line((5, y), (75, y + 5)) for y in (10, 20, 30)] + [line((300, 0), (360, 0))]
     imported = rows_of_each(FIELDS, MultiLineString(rows))
     assert [len(field.row_lines.geoms) for field in imported.value] == [3, 0]
-    assert "1 row(s) that lie on no plot were left out." in said(imported)
+    assert "1 row that lies on no plot was left out." in said(imported)
     assert "On 1 of 2 plots no rows were drawn" in said(imported)
 
 
@@ -65,8 +65,8 @@ def test_blocks_lie_on_their_plot_and_none_over_another():
     assert FRAME.geometry_m(blocks[0].area).area == pytest.approx(40 * 60, rel=1e-4)
     assert FRAME.geometry_m(blocks[1].area).area == pytest.approx(20 * 60, rel=1e-4)
     told = " ".join(message.sentence for message in messages)
-    assert "Rows run in 2 block(s) as drawn: a, b." in told
-    assert "b lie over others; the first one counts" in told
+    assert "Rows run in 2 blocks as drawn: a, b." in told
+    assert "Blocks lie over others: b. The first one counts." in told
     assert "25 % of the plot (1200 m2) lies in no block" in told
 
 
@@ -76,16 +76,16 @@ def test_blocks_beside_all_plots_are_refused_and_left_over_ones_counted():
     mixed = (block("a", 0, 0, 80, 60), block("b", 100, 0, 180, 60), block("far", 500, 0, 540, 40))
     imported = blocks_of_each(FIELDS, mixed)
     assert [len(field.blocks) for field in imported.value] == [1, 1]
-    assert "1 block(s) lie on none of the plots" in said(imported)
+    assert "1 block lies on none of the plots" in said(imported)
 
 
 def test_lines_part_the_plots_they_pass_through():
     across = MultiLineString([line((40, -5), (40, 65)), line((140, -5), (140, 65))])
     imported = cut_each(FIELDS, across)
     assert [len(field.blocks) for field in imported.value] == [2, 2]
-    assert "2 line(s) part plots into 4 blocks." in said(imported)
+    assert "2 lines part plots into 4 blocks." in said(imported)
     idle = MultiLineString([line((40, -5), (40, 65)), line((300, -5), (300, 65))])
-    assert "1 line(s) pass through no plot" in said(cut_each(FIELDS[:1], idle))
+    assert "1 line passes through no plot" in said(cut_each(FIELDS[:1], idle))
     with pytest.raises(PlotError, match="none of 2 lines does"):
         cut_each(FIELDS, MultiLineString([line((300, 0), (300, 9)), line((310, 0), (310, 9))]))
 
@@ -104,13 +104,13 @@ def test_areas_and_lines_of_a_file_are_blocks_and_cuts(tmp_path):
     made = prepare(PlotRequest(PlotSources(home, blocks=areas)))
     assert made.plot.grid.n_blocks == 2
     assert made.assumed == ()
-    assert "Rows run in 2 block(s) as drawn: close, wide." in sentences(made)
+    assert "Rows run in 2 blocks as drawn: close, wide." in sentences(made)
     block_of = block_label(made.plot.grid)
     assert np.count_nonzero(block_of == 1) > 5 * np.count_nonzero(block_of == 2)
     cuts = write(tmp_path / "cut.geojson", [LineString([(40, -5), (45, 65)])])
     made = prepare(PlotRequest(PlotSources(home, blocks=cuts)))
     assert made.plot.grid.n_blocks == 2
-    assert "1 line(s) part the plot into 2 blocks." in sentences(made)
+    assert "1 line parts the plot into 2 blocks." in sentences(made)
 
 
 def test_a_column_tells_the_blocks_of_each_plot(tmp_path):
@@ -127,7 +127,7 @@ def test_a_column_tells_the_blocks_of_each_plot(tmp_path):
     one = PlotOptions(feature="east").naming(block="part")
     made = prepare(PlotRequest(PlotSources(path, one)))
     assert (made.plot.field.name, made.plot.grid.n_blocks) == ("east", 2)
-    assert "4 features are the blocks of 2 plot(s)." in sentences(made)
+    assert "4 features are the blocks of 2 plots." in sentences(made)
 
 
 def test_blocks_are_guessed_only_where_that_is_asked_for(tmp_path):

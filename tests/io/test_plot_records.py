@@ -38,7 +38,7 @@ def test_records_that_name_rows_and_plants_lie_on_the_plants_of_those_numbers(pa
     made = prepare(one(parcels, "Plot 1", ROWS))
     np.testing.assert_allclose(made.records.lonlat, [place(made.plot, 3, 7)], atol=1e-12)
     assert made.records.count.tolist() == [4]
-    assert "dropped: 1 record(s) name 1 plant(s) that are not known: 99/1." in said(made, "records")
+    assert "dropped: 1 record names 1 plant not known: 99/1." in said(made, "records")
 
 
 def test_records_of_rows_on_another_plot_are_left_out_and_counted(parcels):
@@ -46,8 +46,8 @@ def test_records_of_rows_on_another_plot_are_left_out_and_counted(parcels):
     expected = [place(made.plot, 2, 3), place(made.plot, 4, 1)]
     np.testing.assert_allclose(made.records.lonlat, expected, atol=1e-12)
     sentences = said(made, "records")
-    assert "dropped: 2 record(s) are of 1 other plot(s): Plot 2." in sentences
-    assert "dropped: 1 record(s) name 1 plot(s) that are not known: Moon." in sentences
+    assert "dropped: 2 records are of 1 other plot: Plot 2." in sentences
+    assert "dropped: 1 record names 1 plot not known: Moon." in sentences
     with pytest.raises(FileProblem, match="2 other plot"):
         prepare(one(parcels, "Plot 3", PLOTS_AND_ROWS))
 
@@ -60,7 +60,7 @@ def test_every_plot_of_an_estate_gets_its_own_rows_and_plants(parcels):
     np.testing.assert_allclose(estate.records.on(second).lonlat, expected, atol=1e-12)
     assert len(estate.records.on(third)) == 0
     sentences = said(estate, "records")
-    assert "dropped: Plot 2: 1 record(s) name 1 plant(s) that are not known: 99/1." in sentences
+    assert "dropped: Plot 2: 1 record names 1 plant not known: 99/1." in sentences
     assert sum("Moon" in sentence for sentence in sentences) == 1
     assert not any("other plot" in sentence for sentence in sentences)
 
@@ -81,7 +81,7 @@ def test_an_answer_that_is_no_plot_is_asked_again(parcels):
     options = RecordOptions(plot="Sun")
     with pytest.raises(ChoiceNeeded, match="not 'Sun'"):
         prepare_estate(one(parcels, records=ROWS, options=options))
-    with pytest.raises(FileProblem, match=r"1 plot\(s\) that are not known: Sun"):
+    with pytest.raises(FileProblem, match=r"1 plot not known: Sun"):
         prepare(one(parcels, "Plot 1", ROWS, options))
 
 
@@ -103,7 +103,7 @@ def test_a_plot_that_carries_no_plants_does_not_keep_the_others_from_their_recor
     write_geojson(tmp_path / "two.geojson", [area(0, 0), tiny])
     estate = prepare_estate(one(tmp_path / "two.geojson", records=PLOTS_AND_ROWS))
     assert [len(estate.records.on(field)) for field in estate.fields] == [2, 0]
-    assert any("2 record(s) are of 1 other plot(s): Plot 2" in line for line in said(estate))
+    assert any("2 records are of 1 other plot: Plot 2" in line for line in said(estate))
     only = csv(f"plot,row,plant,date,count\nPlot 2,1,1,{DAY},1\n")
     with pytest.raises(PlotError, match="room for one plant"):
         prepare_estate(one(tmp_path / "two.geojson", records=only))

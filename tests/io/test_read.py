@@ -158,7 +158,7 @@ def test_records_elsewhere_are_kept_apart_and_told():
     far = RECORDS + "\n35.3,30.36,2026-03-05,1,T. urticae"
     imported = read_records(Upload("mites.csv", far.encode()), near=plot)
     assert len(imported.value) == 3
-    assert any("1 of 4 record(s) lie outside home" in f.sentence for f in imported.messages)
+    assert any("1 of 4 records lies outside home" in f.sentence for f in imported.messages)
     with pytest.raises(ObservationError, match="km away"):
         read_records(Upload("m.csv", b"lon,lat,count\n34.8,31.2,1"), near=plot)
     with pytest.raises(ChoiceNeeded) as asked:

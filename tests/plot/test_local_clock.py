@@ -82,3 +82,22 @@ def test_the_latest_moment_of_a_local_time_is_that_time_or_later(zone, local):
     assert clock.at(latest + timedelta(minutes=1)) != local
     if clock.at(latest) == local:  # no other moment after it shows the same
         assert all(clock.at(latest + timedelta(minutes=15 * k)) > local for k in range(1, 9))
+
+
+@pytest.mark.parametrize(
+    ("zone", "start", "hours", "minutes"),
+    [
+        ("Asia/Jerusalem", "2027-03-26T01:00", 4, 60),
+        ("Asia/Jerusalem", "2027-03-26T01:00", 0.9, 0),
+        ("Asia/Jerusalem", "2027-03-26T03:00", 4, 0),
+        ("Asia/Jerusalem", "2026-10-25T00:30", 4, -60),
+        ("America/Santiago", "2026-09-05T22:00", 4, 60),  # at midnight
+        ("America/Santiago", "2026-09-06T06:00", 12, 0),
+        ("Australia/Lord_Howe", "2026-10-04T01:00", 4, 30),
+        ("Australia/Lord_Howe", "2027-04-04T00:30", 4, -30),
+        ("Asia/Kolkata", "2026-10-04T01:00", 24, 0),
+    ],
+)
+def test_by_how_much_a_clock_is_put_forward_or_back_during_a_day(zone, start, hours, minutes):
+    moved = LocalClock(zone).put_forward(datetime.fromisoformat(start), 3600 * hours)
+    assert moved == timedelta(minutes=minutes)

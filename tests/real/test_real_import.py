@@ -42,8 +42,8 @@ def test_riseholme_poles_and_paths_are_points_and_lines(shared):
     assert len(paths.value.geoms) == 106 - 18  # a node's link to itself has no length
     np.testing.assert_allclose(paths.value.geoms[0].coords[0], (-0.524551, 53.26801), atol=1e-9)
     said = " ".join(f.sentence for f in paths.messages)
-    assert "81 feature(s) that are no lines" in said
-    assert "18 line(s) that do not lead anywhere" in said
+    assert "81 features that are no lines" in said
+    assert "18 lines that do not lead anywhere" in said
 
 
 def test_the_banana_field_has_its_four_corners(shared):
@@ -179,9 +179,9 @@ def test_aphid_counts_lie_on_the_fields_they_name_and_six_names_are_unknown(shar
     path = folder / "parasitism-2011-2019.csv"
     read = read_records(path, options, places=NamedPlaces(fields))
     (unknown,) = [f.sentence for f in read.messages if "that are not known" in f.sentence]
-    assert "6 plot(s)" in unknown
+    assert "6 plots" in unknown
     assert unknown.endswith(": 110/110, 2110, 349_Clover, 4110, 635S, N1902.")
-    assert any("1 record(s) name no plot" in f.sentence for f in read.messages)
+    assert any("1 record names no plot" in f.sentence for f in read.messages)
     named = {field.name: field.boundary for field in fields}
     assert named["219"].contains(Point(read.value.lonlat[0]))
     assert read.value.count[:3].tolist() == [209, 430, 1005]

@@ -86,7 +86,7 @@ def read_isoxml(path: Path, name: str) -> Layer:
                 others[kind] = others.get(kind, 0) + 1
             limits.check("features", len(parts), limits.FEATURES, name)
     if others:
-        told = ", ".join(f"{n} {kind}(s)" for kind, n in others.items())
+        told = ", ".join(f"{kind} ({n})" for kind, n in others.items())
         messages.append(
             seen(
                 worded(

@@ -75,7 +75,8 @@ class Layer:
         flat[broken] = None
         if len(broken):
             said = worded(
-                "{n} feature(s) have coordinates that are no numbers; left out.", n=len(broken)
+                "{n} {n:feature has|features have} coordinates that are no numbers; left out.",
+                n=len(broken),
             )
             messages.append(dropped(said, f"feature {broken[0] + 1}"))
         return replace(self, geometry=flat, messages=(*self.messages, *messages))

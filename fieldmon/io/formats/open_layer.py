@@ -161,7 +161,7 @@ def _only_layer(staged: StagedMember, options: ReadOptions, names: tuple[str, ..
     return layer.saying(
         seen(
             worded(
-                "Layer {called} was read; {value} other(s) hold nothing.",
+                "Layer {called} was read; {value} {value:other holds|others hold} nothing.",
                 called=called,
                 value=len(names) - 1,
             )

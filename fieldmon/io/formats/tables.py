@@ -107,7 +107,12 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
         messages.append(seen(said))
     elif head:
         messages.append(
-            seen(worded("{head} line(s) above the column names were passed over.", head=head))
+            seen(
+                worded(
+                    "{head} {head:line|lines} above the column names {head:was|were} passed over.",
+                    head=head,
+                )
+            )
         )
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
@@ -129,7 +134,8 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
         messages.append(
             dropped(
                 worded(
-                    "{longer} line(s) have more cells than there are columns; those were left out.",
+                    "{longer} {longer:line has|lines have} more cells than there are columns; "
+                    "those were left out.",
                     longer=longer,
                 )
             )

@@ -30,7 +30,9 @@ def shapes(wkb: NDArray[np.object_]) -> tuple[NDArray[np.object_], list[ImportMe
     if len(lost) > len(broken):
         messages.append(closed(len(lost) - len(broken)))
     if len(broken):
-        said = worded("The shape of {n} feature(s) cannot be understood; left out.", n=len(broken))
+        said = worded(
+            "The shape of {n} {n:feature|features} cannot be understood; left out.", n=len(broken)
+        )
         messages.append(dropped(said, f"feature {broken[0] + 1}"))
     return geometry, messages
 
@@ -39,7 +41,7 @@ def closed(n_features: int) -> ImportMessage:
     """Return what to say of features whose rings were closed."""
     return repaired(
         worded(
-            "The outline of {n_features} feature(s) did not end where it "
+            "The outline of {n_features} {n_features:feature|features} did not end where it "
             "began; it was closed by a straight line.",
             n_features=n_features,
         )

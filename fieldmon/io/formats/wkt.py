@@ -82,7 +82,9 @@ def _about(
     messages = [closed(n)] if (n := int((lost & ~missing).sum())) else []
     said = np.array([bool(text(v)) for v in layer.columns[name]], dtype=bool)
     if (n := int((missing & said).sum())) > 0:
-        messages.append(dropped(worded("{n} shape(s) cannot be understood; left out.", n=n), name))
+        messages.append(
+            dropped(worded("{n} {n:shape|shapes} cannot be understood; left out.", n=n), name)
+        )
     return messages
 
 

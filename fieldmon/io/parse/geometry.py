@@ -170,7 +170,8 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Impo
         messages.append(
             dropped(
                 worded(
-                    "{n} part(s) too small or narrow for a plant were left out (under "
+                    "{n} {n:part|parts} too small or narrow for a plant {n:was|were} left out "
+                    "(under "
                     "{sliver_m2:g} m2 or {sliver_width_m:g} m wide).",
                     n=int((~is_wide).sum()),
                     sliver_m2=_SLIVER_M2,
@@ -189,7 +190,8 @@ def _repaired(
     drawn: MultiPolygon, whole: MultiPolygon, now: _PolygonSizes, name: str, why: str
 ) -> ImportMessage:
     """Return what to say of an area made valid: parts that overlap are one, holes stay holes."""
-    parts = "" if len(whole.geoms) == len(drawn.geoms) else f" in {len(whole.geoms)} part(s)"
+    n = len(whole.geoms)
+    parts = "" if n == len(drawn.geoms) else f" in {n} part{'' if n == 1 else 's'}"
     change = f"{_amount(area_m2(drawn))} as drawn, {_amount(now.area_m2.sum())}{parts} now"
     said = worded(
         "The shape was not valid ({why}) and was repaired: {change}.", why=why, change=change

@@ -94,7 +94,8 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
     if geometry is None or not points.any():
         raise FileProblem(
             worded(
-                "{file} must hold points, but it holds {areas} area(s) and {lines} line(s). "
+                "{file} must hold points, but it holds {areas} {areas:area|areas} and {lines} "
+                "{lines:line|lines}. "
                 "Choose another file or layer.",
                 file=layer.name,
                 areas=int(areas.sum()),
@@ -105,7 +106,13 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
     others = len(layer) - int(points.sum())
     if others:
         messages.append(
-            dropped(worded("{n} feature(s) that are no points were left out.", n=others))
+            dropped(
+                worded(
+                    "{n} {n:feature|features} that {n:is|are} no {n:point was|points were} "
+                    "left out.",
+                    n=others,
+                )
+            )
         )
     single, index = shapely.get_parts(geometry[points], return_index=True)
     kept = layer.take(np.flatnonzero(points)[index])
@@ -159,7 +166,7 @@ def _by_coordinates(
     if not there.any():
         raise FileProblem(
             worded(
-                "Column(s) {shown} of {name} must hold positions, but not one "
+                "{shown} of {name} must hold positions, but not one "
                 "record has any{seen_in}. Correct them or name other columns.",
                 shown=shown,
                 name=layer.name,
@@ -169,7 +176,7 @@ def _by_coordinates(
     messages += unread.messages()
     placed = place(xy[there], stated or crs, options)
     accuracy, coarse = _rounding(placed.step_m, int(there.sum()))
-    found = (seen(worded("Positions are in column(s) {shown}.", shown=shown)), *messages, *more)
+    found = (seen(worded("Positions were read from {shown}.", shown=shown)), *messages, *more)
     return LocatedFeatures(
         layer.take(np.flatnonzero(there)),
         placed.lonlat,
@@ -249,7 +256,7 @@ class _Unread(NamedTuple):
     def ask(self) -> ChoiceNeeded:
         return ChoiceNeeded(
             worded(
-                "{n_dotted} record(s) give degrees with two points{shown}. "
+                "{n_dotted} {n_dotted:record gives|records give} degrees with two points{shown}. "
                 "35.26.33 can mean degrees, minutes and seconds (degrees=dms) "
                 "or degrees and minutes with decimals (degrees=dm). Choose "
                 "one.",
@@ -264,7 +271,7 @@ class _Unread(NamedTuple):
         if not self.n:
             return []
         said = worded(
-            "{n} record(s) without a usable position were left out{shown}.",
+            "{n} {n:record|records} without a usable position {n:was|were} left out{shown}.",
             n=self.n,
             shown=self.shown(),
         )

@@ -117,7 +117,10 @@ def about_minus(cells: Iterable[str], words: ResultWords) -> list[ImportMessage]
     n = sum(plain_word(cell) in MINUS and words[cell] is None for cell in cells)
     if not n:
         return []
-    said = worded("{n} record(s) hold a minus alone: taken as not filled in, not as clean.", n=n)
+    said = worded(
+        "{n} {n:record holds|records hold} a minus alone: taken as not filled in, not as clean.",
+        n=n,
+    )
     return [doubtful(said, remedy=Remedy("clean", "-", worded("Take a minus as clean")))]
 
 

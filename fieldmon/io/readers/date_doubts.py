@@ -35,7 +35,7 @@ def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[Imp
     if not n_future:
         return []
     said = worded(
-        "{n} record(s) lie in the future, the last on {latest}.",
+        "{n} {n:record lies|records lie} in the future, the last on {latest}.",
         n=n_future,
         latest=np.nanmax(day),
     )

@@ -197,7 +197,8 @@ def _about_blocks(grid: PlantGrid, unnamed: int, last: int) -> tuple[ImportMessa
     if grid.n_blocks == 1 or not unnamed:
         return ()
     said = worded(
-        "{n} record(s) name no block: their rows were taken as counted on from block to block, 1 "
+        "{n} {n:record names|records name} no block: {n:its row was|their rows were} taken as "
+        "counted on from block to block, 1 "
         "to {last}. Where each block counts its rows from 1, give a column of blocks.",
         n=unnamed,
         last=last,

@@ -86,7 +86,8 @@ def dated(read: Imported[Inspections]) -> Imported[Inspections]:
     if not without.any() or without.all():
         return read
     said = worded(
-        "{n} record(s) have no date, as others have: left out. Give them one, or the day of all "
+        "{n} {n:record has|records have} no date, as others have: left out. Give them one, or "
+        "the day of all "
         "that have none.",
         n=int(without.sum()),
     )
@@ -134,7 +135,12 @@ def look_up(
     if len(once) < len(inspections):
         n_again = len(inspections) - len(once)
         said.append(
-            seen(worded("{n} record(s) say again what another one says; taken once.", n=n_again))
+            seen(
+                worded(
+                    "{n} {n:record says|records say} again what another one says; taken once.",
+                    n=n_again,
+                )
+            )
         )
     return once, tuple(said)
 
@@ -174,7 +180,7 @@ def _listed(
         messages.append(
             make(
                 worded(
-                    "{n} more record(s) are so.",
+                    "{n} more {n:record is|records are} so.",
                     n=len(records) - _LISTED,
                 ),
                 None,
@@ -192,7 +198,8 @@ def _about_numbers(
     if not alone.any():
         return []
     said = worded(
-        "{n} record(s) name a plant by its number alone: taken as files given out count them, 0 to "
+        "{n} {n:record names|records name} a plant by its number alone: taken as files given "
+        "out count them, 0 to "
         "{last} on the whole plot.",
         n=int(alone.sum()),
         last=len(grid) - 1,
@@ -208,7 +215,8 @@ def _about_faces(
     if not unsaid.any():
         return []
     said = worded(
-        "{n} record(s) do not say which face of a plant; taken for the first.", n=int(unsaid.sum())
+        "{n} {n:record does|records do} not say which face of a plant; taken for the first.",
+        n=int(unsaid.sum()),
     )
     return [guessed(said)]
 
@@ -219,7 +227,10 @@ def _about_accuracy(
     unsaid = snapped & np.isnan(rows.accuracy_m)
     if options.accuracy_m is not None or not unsaid.any():
         return []
-    said = worded("{n} position(s) state no accuracy and were taken as exact.", n=int(unsaid.sum()))
+    said = worded(
+        "{n} {n:position states|positions state} no accuracy and {n:was|were} taken as exact.",
+        n=int(unsaid.sum()),
+    )
     return [
         guessed(
             said, None, Remedy("accuracy_m", "3", worded("Say how far off they may be, in metres"))

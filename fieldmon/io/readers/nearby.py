@@ -55,7 +55,8 @@ class RecordsNearPlot:
         return [
             dropped(
                 worded(
-                    "{n} of {all} record(s) lie outside {plot} and were kept apart: {nearest} to "
+                    "{n} of {all} {all:record|records} {n:lies|lie} outside {plot} and "
+                    "{n:was|were} kept apart: {nearest} to "
                     "{farthest} away.",
                     n=n,
                     all=n + len(self.inside),
@@ -163,9 +164,10 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
         messages.append(
             doubtful(
                 worded(
-                    "{n} record(s) lie on no plant: {nearest} to {farthest} from the nearest. They "
-                    "count for the plants near them, if there are any, but belong to no single "
-                    "one.",
+                    "{n} {n:record lies|records lie} on no plant: {nearest} to {farthest} from "
+                    "the nearest. "
+                    "{n:It counts|They count} for plants nearby, if there are any, but "
+                    "{n:belongs|belong} to no single one.",
                     n=int(beside.sum()),
                     nearest=_far(away[beside].min()),
                     farthest=_far(away[beside].max()),
@@ -176,8 +178,10 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
         messages.append(
             seen(
                 worded(
-                    "{n} record(s) are placed to {far} while plants stand {plant_spacing_m:g} m "
-                    "apart: they count for the nearest plant and for those around it.",
+                    "{n} {n:record is|records are} placed to {far} while plants stand "
+                    "{plant_spacing_m:g} m "
+                    "apart: {n:it counts|they count} for the nearest plant and for those "
+                    "around it.",
                     n=int(rough.sum()),
                     far=_far(float(np.median(own_m[rough]))),
                     plant_spacing_m=grid.plant_spacing_m,
@@ -213,7 +217,8 @@ def _questioned(observations: Observations, field: Field) -> list[ImportMessage]
     return [
         doubtful(
             worded(
-                "{n} record(s) would lie on the plot with longitude and latitude exchanged. "
+                "{n} {n:record|records} would lie on the plot with longitude and latitude "
+                "exchanged. "
                 "Check their order.",
                 n=int(odd.sum()),
             ),

@@ -205,7 +205,8 @@ def _refuse_from_zero(wanted: list[str], match: NDArray[np.int64], known: list[s
     if zero:
         raise ObservationError(
             worded(
-                "Rows and plants of this plot are counted from 1, but {n} record(s) say 0: {some}. "
+                "Rows and plants of this plot are counted from 1, but {n} "
+                "{n:record says|records say} 0: {some}. "
                 "Add 1 to all where they were counted from 0; else leave these out.",
                 n=len(zero),
                 some=first_few(sorted(set(zero)), _MOST_NAMED),
@@ -243,7 +244,8 @@ def _about_blocks(
             return [guessed(worded("Rows were taken as counted from 1 in each block."))]
         return [guessed(worded("Rows were taken as counted on from block to block."))]
     said = worded(
-        "{n} record(s) name no block: their rows were taken as counted on from block to block, 1 "
+        "{n} {n:record names|records name} no block: {n:its row was|their rows were} taken as "
+        "counted on from block to block, 1 "
         "to {last}. Where each block counts its rows from 1, give a column of blocks.",
         n=len(row),
         last=len(set(plants.row.tolist())),
@@ -289,7 +291,7 @@ def _elsewhere(plot: NDArray[np.str_], places: NamedPlaces) -> list[ImportMessag
     return [
         dropped(
             worded(
-                "{n} record(s) are of {plots} other plot(s): {names}.",
+                "{n} {n:record is|records are} of {plots} other {plots:plot|plots}: {names}.",
                 n=len(others),
                 plots=len(named),
                 names=first_few(named, _MOST_NAMED),
@@ -319,7 +321,8 @@ def by_plot(names: NDArray[np.object_], places: NamedPlaces) -> PlacedByName:
     accuracy = np.where(there, reach[match], np.nan)
     said = seen(
         worded(
-            "{n} record(s) name a plot and lie somewhere on it: they were put at its "
+            "{n} {n:record names a plot and lies|records name a plot and lie} somewhere on it: "
+            "{n:it was|they were} put at its "
             "middle, with the plot's radius as their accuracy.",
             n=int(there.sum()),
         )
@@ -376,7 +379,7 @@ def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[I
         messages.append(
             dropped(
                 worded(
-                    "{n} record(s) name {total} {what}(s) that are not known: {some}.",
+                    "{n} {n:record names|records name} {total} {what}{total:|s} not known: {some}.",
                     n=n,
                     total=len(named),
                     what=what,
@@ -386,5 +389,7 @@ def _unmatched(wanted: list[str], match: NDArray[np.int64], what: str) -> list[I
         )
     if len(missing) > sum(bool(name) for name in missing):
         n = sum(not name for name in missing)
-        messages.append(dropped(worded("{n} record(s) name no {what} at all.", n=n, what=what)))
+        messages.append(
+            dropped(worded("{n} {n:record names|records name} no {what} at all.", n=n, what=what))
+        )
     return messages

@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
-from fieldmon.compute.wording import first_few, worded
+from fieldmon.compute.wording import counted, first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
@@ -72,7 +72,11 @@ def _with_blocks(
         plots.setdefault(name, []).append(_block(part, block))
     fields = [_of_blocks(name, own) for name, own in plots.items()]
     said = seen(
-        worded("{n} features are the blocks of {plots} plot(s).", n=len(parts), plots=len(fields))
+        worded(
+            "{n} features are the blocks of {plots} {plots:plot|plots}.",
+            n=len(parts),
+            plots=len(fields),
+        )
     )
     number = _number(list(plots), options.feature)
     if number > len(fields):
@@ -195,16 +199,22 @@ def _areas(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     missing = len(layer) - int((areas | lines | points).sum())
     if missing:
         messages.append(
-            dropped(worded("{n} feature(s) without a geometry were left out.", n=missing))
+            dropped(
+                worded(
+                    "{n} {n:feature|features} without a geometry {n:was|were} left out.", n=missing
+                )
+            )
         )
     if lines.any():
         said = worded(
-            "{n} line(s) were left out: import them as rows or paths.", n=int(lines.sum())
+            "{n} {n:line was|lines were} left out: import them as rows or paths.",
+            n=int(lines.sum()),
         )
         messages.append(dropped(said))
     if points.any():
         said = worded(
-            "{n} point(s) were left out: import them as plants or records.", n=int(points.sum())
+            "{n} {n:point was|points were} left out: import them as plants or records.",
+            n=int(points.sum()),
         )
         messages.append(dropped(said))
     return layer.take(np.flatnonzero(areas)), messages
@@ -218,7 +228,9 @@ def _outlines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
         return layer, []
     as_areas = shapes.copy()
     as_areas[closed] = [filled(line) for line in shapes[closed]]
-    said = worded("{n} closed line(s) were taken as the outlines of plots.", n=int(closed.sum()))
+    said = worded(
+        "{n} closed {n:line was|lines were} taken as the outlines of plots.", n=int(closed.sum())
+    )
     return replace(layer, geometry=as_areas), [guessed(said)]
 
 
@@ -226,7 +238,7 @@ def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
     if n_lines or n_points:
         offers = (("lines",) if n_lines else ()) + (("plants",) if n_points else ())
         what = " and ".join(
-            f"{n} {word}" for n, word in ((n_lines, "line(s)"), (n_points, "point(s)")) if n
+            counted(n, word) for n, word in ((n_lines, "line"), (n_points, "point")) if n
         )
         raise ChoiceNeeded(
             worded(
@@ -242,7 +254,7 @@ def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
     raise FileProblem(
         worded(
             "{file} must hold at least one plot with a boundary, but it holds {n} "
-            "feature(s) without any geometry. Choose another file or layer.",
+            "{n:feature|features} without any geometry. Choose another file or layer.",
             file=layer.name,
             n=len(layer),
         )
@@ -320,7 +332,7 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
         messages.append(
             seen(
                 worded(
-                    "{n} plot(s) have several parts, which were kept: {names}.",
+                    "{n} {n:plot has|plots have} several parts, which were kept: {names}.",
                     n=len(several),
                     names=first_few(several, _MOST_NAMED),
                 )
@@ -330,7 +342,7 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
         messages.append(
             seen(
                 worded(
-                    "{n} plot(s) have holes, kept as places without plants: {names}.",
+                    "{n} {n:plot has|plots have} holes, kept as places without plants: {names}.",
                     n=len(holed),
                     names=first_few(holed, _MOST_NAMED),
                 )

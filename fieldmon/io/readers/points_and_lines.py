@@ -129,8 +129,8 @@ def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
     if not lines.any():
         raise FileProblem(
             worded(
-                "{name} must hold lines, but it holds {n} area(s) and {others_n} "
-                "point(s). Choose another file or layer.",
+                "{name} must hold lines, but it holds {n} {n:area|areas} and {others_n} "
+                "{others_n:point|points}. Choose another file or layer.",
                 name=layer.name,
                 n=int(areas.sum()),
                 others_n=int(points.sum()),
@@ -140,7 +140,13 @@ def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
     others = len(layer) - int(lines.sum())
     if others:
         messages.append(
-            dropped(worded("{others} feature(s) that are no lines were left out.", others=others))
+            dropped(
+                worded(
+                    "{others} {others:feature|features} that {others:is|are} no "
+                    "{others:line was|lines were} left out.",
+                    others=others,
+                )
+            )
         )
     placed, more = place_geometry(layer.geometry[lines], layer.crs, options)
     parts = shapely.get_parts(shapely.get_parts(placed))
@@ -151,7 +157,9 @@ def lines_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
         messages.append(
             dropped(
                 worded(
-                    "{n_points} line(s) that do not lead anywhere were left out.", n_points=n_points
+                    "{n_points} {n_points:line|lines} that {n_points:leads|lead} nowhere "
+                    "{n_points:was|were} left out.",
+                    n_points=n_points,
                 )
             )
         )

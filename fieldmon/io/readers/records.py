@@ -145,7 +145,9 @@ def _once_each(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     if n_again == 0 or len(columns) < 3:
         return layer, []
     said = worded(
-        "{n_again} record(s) repeat another in every column and were left out.", n_again=n_again
+        "{n_again} {n_again:record repeats|records repeat} another in every column and "
+        "{n_again:was|were} left out.",
+        n_again=n_again,
     )
     return layer.take(kept), [dropped(said)]
 
@@ -159,7 +161,7 @@ def _days(
     zoned: list[ImportMessage] = []
     if len(set(parts)) == 3 and by_hand is None:
         read = dates_of_parts(*(numbers(table.layer.column(part)) for part in parts))
-        where = ", ".join(parts)
+        where, quoted = ", ".join(parts), ", ".join(map(repr, parts))
     else:
         name = table.named("date", frozenset(parts) if len(parts) > 1 else frozenset())
         if name is None:
@@ -167,11 +169,11 @@ def _days(
             said = worded("No column was recognised as the date of the records.")
             return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
         read = dates(table.layer.column(name), table.options.date_order)
-        where = name
+        where, quoted = name, repr(name)
         day, zoned = _as_local(read.day, table.cells(name), lonlat)
         read = read._replace(day=day)
     return read.day, [
-        seen(worded("Dates are in column(s) {where}.", where=where)),
+        seen(worded("Dates were read from {where}.", where=quoted)),
         *zoned,
         *_about_dates(read, where),
     ]
@@ -216,14 +218,19 @@ def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
     if read.n_serial:
         messages.append(
             guessed(
-                worded("{n} number(s) were read as days counted by Excel.", n=read.n_serial), where
+                worded(
+                    "{n} {n:number was|numbers were} read as days counted by Excel.",
+                    n=read.n_serial,
+                ),
+                where,
             )
         )
     if read.broken:
         messages.append(
             doubtful(
                 worded(
-                    "{n} record(s) have a date that is none ({shown}); it is left open.",
+                    "{n} {n:record has|records have} a date that is none ({shown}); it is left "
+                    "open.",
                     n=read.n_broken,
                     shown=_some(read.broken),
                 ),
@@ -333,7 +340,8 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
         messages.append(
             doubtful(
                 worded(
-                    "{n} count(s) say neither how many nor whether any ({shown}); left open.",
+                    "{n} {n:count says|counts say} neither how many nor whether any ({shown}); "
+                    "left open.",
                     n=len(none),
                     shown=_some(none),
                 ),
@@ -344,7 +352,7 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
         messages.append(
             doubtful(
                 worded(
-                    "{n} count(s) are no plain number ({shown}); read roughly.",
+                    "{n} {n:count is|counts are} no plain number ({shown}); read roughly.",
                     n=len(rough),
                     shown=_some(rough),
                 ),
@@ -354,7 +362,12 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     n_missing = int(np.count_nonzero(present == UNKNOWN)) - len(none)
     if n_missing:
         messages.append(
-            seen(worded("{n} record(s) have no count: not known, not zero.", n=n_missing), name)
+            seen(
+                worded(
+                    "{n} {n:record has|records have} no count: not known, not zero.", n=n_missing
+                ),
+                name,
+            )
         )
     return _Counts(count, present, messages)
 
@@ -383,7 +396,10 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
     if at_odds.any():
         messages.append(
             doubtful(
-                worded("{n} record(s) say another thing than their count.", n=int(at_odds.sum())),
+                worded(
+                    "{n} {n:record contradicts its|records contradict their} own count.",
+                    n=int(at_odds.sum()),
+                ),
                 name,
             )
         )
@@ -438,7 +454,8 @@ def _same_visit(observations: Observations) -> list[ImportMessage]:
     return [
         doubtful(
             worded(
-                "{n} record(s) give another count for a place and day that another record "
+                "{n} {n:record gives|records give} another count for a place and day that "
+                "another record "
                 "already has.",
                 n=n_stated - n_visits,
             )

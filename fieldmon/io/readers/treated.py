@@ -45,7 +45,9 @@ def treated_of(layer: Layer, options: PlotOptions) -> Imported[MultiPolygon]:
             )  # fmt: skip
         left = int(np.count_nonzero(~sprayed))
         if left:
-            said.append(seen(worded("{n} area(s) of rate 0 were not treated.", n=left)))
+            said.append(
+                seen(worded("{n} {n:area|areas} of rate 0 {n:was|were} not treated.", n=left))
+            )
         layer = layer.take(sprayed)
     read = plots_of(layer, options)
     whole = shapely.union_all([field.boundary for field in read.value])

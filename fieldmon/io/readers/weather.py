@@ -155,7 +155,9 @@ def _times(layer: Layer, options: WeatherOptions, taken: set[str]) -> _TimesRead
     if read.n_broken:
         shown = ", ".join(repr(cell) for cell in read.broken[:3])
         messages.append(
-            dropped(worded("{n} time(s) are none ({shown}).", n=read.n_broken, shown=shown))
+            dropped(
+                worded("{n} {n:time is|times are} none ({shown}).", n=read.n_broken, shown=shown)
+            )
         )
     return _TimesRead(at, zone, messages)
 
@@ -335,7 +337,7 @@ def _possible(rows: WeatherRows, name: str) -> tuple[WeatherRows, list[ImportMes
                 )
             )
         if n:
-            said = worded("{n} value(s) of {measure} are impossible; left out.", n=n,
+            said = worded("{n} {n:value|values} of {measure} {n:is|are} impossible; left out.", n=n,
                           measure=measure)  # fmt: skip
             messages.append(dropped(said))
         measured[measure] = np.where(wrong, np.nan, values)

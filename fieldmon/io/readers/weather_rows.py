@@ -88,13 +88,17 @@ class WeatherRows:
         timed = ~np.isnat(self.at)
         if not timed.all():
             n = int(np.count_nonzero(~timed))
-            messages.append(dropped(worded("{n} line(s) without a time were left out.", n=n)))
+            messages.append(
+                dropped(worded("{n} {n:line|lines} without a time {n:was|were} left out.", n=n))
+            )
         rows = self.chosen(np.flatnonzero(timed))
         rows = rows.chosen(np.argsort(rows.at, kind="stable"))
         again = np.zeros(len(rows.at), bool)
         again[:-1] = rows.at[1:] == rows.at[:-1]
         if n_again := int(np.count_nonzero(again)):
-            said = worded("{n} time(s) stand twice; the last of each was taken.", n=n_again)
+            said = worded(
+                "{n} {n:time stands|times stand} twice; the last of each was taken.", n=n_again
+            )
             messages.append(dropped(said))
             rows = rows.chosen(np.flatnonzero(~again))
         return rows, messages

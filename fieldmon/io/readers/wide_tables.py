@@ -72,7 +72,10 @@ def _unfolded(layer: Layer, days: dict[str, str], messages: list[ImportMessage])
     if blank:
         messages.append(
             seen(
-                worded("{blank} cell(s) are not filled in: nothing is known of them.", blank=blank)
+                worded(
+                    "{blank} {blank:cell is|cells are} not filled in: nothing is known of them.",
+                    blank=blank,
+                )
             )
         )
     return replace(

@@ -8,7 +8,7 @@ from fieldmon.compute.wording import worded
 
 KNOWN = KnownSentences([
     "{n} record(s) lie on {name}.", "{n} record(s) lie on {name}, {far} away.", "{a}, {b}",
-    "Rows {name} and {name} cross each other.",
+    "Rows {name} and {name} cross each other.", "{n} {n:time stands|times stand} twice.",
 ])  # fmt: skip
 
 
@@ -20,6 +20,8 @@ KNOWN = KnownSentences([
          {"n": "3", "name": "A", "far": "26 m"}),
         ("Rows 3 and 3 cross each other.", "Rows {name} and {name} cross each other.",
          {"name": "3"}),
+        ("1 time stands twice.", "{n} {n:time stands|times stand} twice.", {"n": "1"}),
+        ("20 times stand twice.", "{n} {n:time stands|times stand} twice.", {"n": "20"}),
     ],
 )  # fmt: skip
 def test_the_words_with_the_most_letters_are_those_of_a_sentence(sentence, words, blanks):
@@ -36,7 +38,7 @@ def test_a_number_with_a_point_ends_no_sentence():
 
 
 def test_a_sentence_kept_as_text_is_said_as_the_one_it_was_made_of(speaking):
-    said = worded("{n} block(s) lie on none of the plots.", n=3)
+    said = worded("{n} {n:block lies|blocks lie} on none of the plots.", n=3)
     also = worded("On {bare} of {n} plots no rows were drawn; straight ones are laid.", bare=1, n=4)
     speaking("es")
     assert language.in_words(str(said)) == language.in_words(said)

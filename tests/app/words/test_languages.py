@@ -28,10 +28,12 @@ SAME_WORDS = {
 
 
 def blanks(words):
-    """Return what is filled into a text, and how it is written."""
+    """Return what is filled into a text, and how it is written: no words chosen by a number."""
     return {
-        (field, form, how) for _, field, form, how in string.Formatter().parse(words) if field
-    }  # fmt: skip
+        (field, form, how)
+        for _, field, form, how in string.Formatter().parse(words)
+        if field and "|" not in (form or "")
+    }
 
 
 def strings(held, entry):

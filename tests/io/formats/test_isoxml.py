@@ -35,7 +35,7 @@ def test_guidance_lines_are_lines_and_other_areas_are_counted(tmp_path):
     layer = read(tmp_path, pfd(1, "x", pln(1, SQUARE), pln(3, POND), pattern))
     assert layer.columns["kind"].tolist() == ["partfield", "guidance line"]
     assert shapely.get_coordinates(layer.geometry[1]).tolist() == [list(p) for p in GUIDE]
-    assert "1 water surface(s)" in sentences(layer)
+    assert "water surface (1)" in sentences(layer)
 
 
 def test_partfields_may_be_in_a_file_that_is_led_to(tmp_path):

@@ -74,7 +74,7 @@ def test_the_only_layer_with_anything_in_it_is_read_and_that_is_said(tmp_path, r
     POINTS.iloc[:0].to_file(path, layer="empty")
     layer = open_layer(path, NOTHING, room)
     assert len(layer) == 2
-    assert "Layer vines was read; 1 other(s) hold nothing." in sentences(layer)
+    assert "Layer vines was read; 1 other holds nothing." in sentences(layer)
 
 
 def test_layers_that_hold_nothing_are_refused(tmp_path, room):

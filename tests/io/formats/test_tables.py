@@ -60,7 +60,7 @@ def test_a_mark_told_by_hand_is_taken(tmp_path):
 def test_lines_of_title_above_the_names_are_passed_over_and_said(tmp_path):
     layer = read(tmp_path, "Estate Paran\nspring 2026\nlon,lat,count\n35,30,4\n")
     assert rows_of(layer) == [["lon", "lat", "count"], ["35", "30", "4"]]
-    assert "2 line(s) above the column names were passed over" in sentences(layer)
+    assert "2 lines above the column names were passed over" in sentences(layer)
 
 
 def test_columns_without_a_name_are_numbered_and_repeated_ones_told_apart(tmp_path):
@@ -75,7 +75,7 @@ def test_columns_without_a_name_are_numbered_and_repeated_ones_told_apart(tmp_pa
 def test_cells_beyond_the_last_column_are_left_out_and_said(tmp_path):
     layer = read(tmp_path, "lon,lat\n1,2,3\n4,5,\n")
     assert rows_of(layer)[1:] == [["1", "2"], ["4", "5"]]
-    assert "1 line(s) have more cells" in sentences(layer)
+    assert "1 line has more cells" in sentences(layer)
 
 
 @pytest.mark.parametrize(

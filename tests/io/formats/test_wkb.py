@@ -33,7 +33,7 @@ def test_a_ring_is_closed_by_a_straight_line_and_counted():
     geometry, (said,) = read(wkb((0, 0), (2, 0), (2, 2), (0, 2)), SQUARE.wkb)
     assert geometry[0].equals(SQUARE)
     assert said.severity == Severity.REPAIRED
-    assert "The outline of 1 feature(s) did not end where it began" in said.sentence
+    assert "The outline of 1 feature did not end where it began" in said.sentence
 
 
 def test_what_is_no_ring_is_left_out_and_named():

@@ -44,5 +44,5 @@ def test_open_rings_are_closed_and_broken_shapes_are_counted():
     layer = with_shapes(table(wkt=[opened, "POLYGON ((1 2, 3))"]), None)
     assert np.isclose(layer.geometry[0].area, SQUARE.area)
     said = sentences(layer)
-    assert "1 feature(s) did not end where it began" in said
-    assert "1 shape(s) cannot be understood" in said
+    assert "1 feature did not end where it began" in said
+    assert "1 shape cannot be understood" in said

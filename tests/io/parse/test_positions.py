@@ -68,7 +68,7 @@ def test_records_without_a_position_are_left_out_and_one_is_shown():
     )
     assert found.layer.columns["n"].tolist() == [1]
     (left_out,) = [m for m in found.messages if m.severity is Severity.DROPPED]
-    assert left_out.sentence.startswith("2 record(s) without a usable position")
+    assert left_out.sentence.startswith("2 records without a usable position")
     assert "'east / 30.4' in record 3" in left_out.sentence
     with pytest.raises(FileProblem, match="not one record has any"):
         located(table(lon=[None, "east"], lat=[None, None]), ANY)
@@ -114,7 +114,7 @@ def test_several_points_in_a_feature_are_a_record_each_and_other_shapes_are_left
     shapes = [MultiPoint([(5.0, 45.0), (5.1, 45.0)]), box(5, 45, 6, 46), Point(5.2, 45.0), None]
     found = located(Layer("p", {"n": column([1, 2, 3, 4])}, column(shapes), "OGC:CRS84"), ANY)
     assert found.layer.columns["n"].tolist() == [1, 1, 3]
-    assert "2 feature(s) that are no points" in sentences(found)
+    assert "2 features that are no points" in sentences(found)
 
 
 # --- records that name a place -----------------------------------------------------------------

@@ -38,12 +38,12 @@ def days_from_now(n):
 def test_a_day_to_come_is_doubted_but_not_tomorrow_which_is_today_elsewhere():
     (said,) = in_future(np.array([days_from_now(3), days_from_now(0), days_from_now(9)]))
     assert said.severity == Severity.DOUBTFUL
-    assert f"2 record(s) lie in the future, the last on {days_from_now(9)}" in said.sentence
+    assert f"2 records lie in the future, the last on {days_from_now(9)}" in said.sentence
     assert in_future(np.array([days_from_now(0), np.datetime64("NaT")])) == []
 
 
 def test_findings_of_a_day_to_come_are_doubted():
     file = Upload("found.csv", f"plant,found,date\n1,yes,{days_from_now(40)}\n".encode())
     read = read_inspections(file, rectangle(2, 5), None)
-    assert any("1 record(s) lie in the future" in message.sentence for message in read.messages)
+    assert any("1 record lies in the future" in message.sentence for message in read.messages)
     assert len(read.value) == 1

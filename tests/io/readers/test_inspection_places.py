@@ -87,7 +87,7 @@ def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
     )
     first, second = sorted((3, twin))
     assert imported.value.plant.tolist() == [3, twin, first, second, first]
-    assert any("1 record(s) do not say which face" in f.sentence for f in imported.messages)
+    assert any("1 record does not say which face" in f.sentence for f in imported.messages)
     lon, lat = grid.lonlat(np.array([twin]))[0]
     snapped = read(f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},0.1,x\n", grid=grid)
     assert snapped.value.plant.tolist() == [first]
@@ -113,7 +113,7 @@ def test_rows_of_a_named_block_may_be_counted_from_one_and_how_is_said(two_block
     assert on.value.plant.tolist() == there
     unnamed = read(f"row,plant,found\n{rows + 1},3,x\n2,1,x\n", grid=grid)
     assert unnamed.value.plant.tolist() == there
-    assert "2 record(s) name no block" in unnamed.messages[-1].sentence
+    assert "2 records name no block" in unnamed.messages[-1].sentence
     wrong = read("block,row,plant,found\n7,1,1,x\n1,1,1,x\n", grid=grid)
     assert wrong.value.plant.tolist() == [plant_at(grid, 1, 1)]
     assert "row 1 of block 7 (blocks are 1 to 2" in wrong.of(Severity.DROPPED)[0].sentence

@@ -129,7 +129,7 @@ def test_notes_and_blanks_make_no_other_inspection():
 def test_what_a_file_says_twice_is_taken_once():
     imported = read("plant,found\n7,x\n8,no\n7,yes\n")
     assert imported.value.plant.tolist() == [7, 8]
-    assert any("say again" in f.sentence for f in imported.messages)
+    assert any("says again" in f.sentence for f in imported.messages)
 
 
 # --- the formats -------------------------------------------------------------------------------
@@ -182,7 +182,7 @@ def test_an_edited_layer_is_found_among_the_others_of_a_project(tmp_path):
     named = InspectionOptions(layer="inspections")
     unknown = read_inspections(path, GRID, named)
     assert len(unknown.value) == 0
-    assert any("2 record(s) have a note, but no result" in f.sentence for f in unknown.messages)
+    assert any("2 records have a note, but no result" in f.sentence for f in unknown.messages)
 
 
 def test_a_season_file_edited_in_qfield_gives_what_was_added_and_not_what_was_undone(tmp_path):
@@ -242,7 +242,10 @@ def test_waypoints_are_read_by_their_names():
     ]
     np.testing.assert_array_equal(findings.count, [3, *[np.nan] * 5, 2, np.nan])
     assert set(when(findings).astype(str)) == {"2026-11-18T08:30:00"}
-    assert any("2 of 10 record(s) carry no finding" in f.sentence for f in imported.messages)
+    assert any(
+        "2 of 10 records left unknown: no finding in the name" in f.sentence
+        for f in imported.messages
+    )
 
 
 def test_a_file_that_says_nothing_of_findings_asks_for_its_columns():
@@ -319,14 +322,12 @@ def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, tak
 def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
     brought = dated(read("plant,result,date\n1,found,2026-04-06\n2,clean,\n3,clean,2026-04-07\n"))
     assert brought.value.plant.tolist() == [1, 3]
-    assert any("1 record(s) have no date" in str(one) for one in brought.messages)
+    assert any("1 record has no date" in str(one) for one in brought.messages)
     none = read("plant,result\n1,found\n")
     assert dated(none) is none
 
 
 def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():
-    alone = (
-        "record(s) name a plant by its number alone: taken as files given out count them, 0 to 59"
-    )
+    alone = "record names a plant by its number alone: taken as files given out count them, 0 to 59"
     assert any(alone in str(one) for one in read("plant,count\n1,2\n").messages)
     assert not any(alone in str(one) for one in read("plant,row,number,count\n1,1,2,2\n").messages)

@@ -49,8 +49,8 @@ def test_a_plant_is_known_by_its_row_and_number_and_no_other():
     np.testing.assert_array_equal(named.lonlat[:2], known.lonlat[[2, 1]])
     assert np.isnan(named.lonlat[2:]).all()
     assert [message.sentence for message in named.messages] == [
-        "1 record(s) name 1 plant(s) that are not known: 9/1.",
-        "1 record(s) name no plant at all.",
+        "1 record names 1 plant not known: 9/1.",
+        "1 record names no plant at all.",
     ]
 
 
@@ -62,7 +62,7 @@ def test_numbers_as_tables_write_them_are_the_same_numbers_and_that_is_said():
     assert np.isnan(named.lonlat[3]).all()
     assert [message.sentence for message in named.messages] == [
         "Names were compared as numbers: 03 and 3.0 are 3.",
-        "1 record(s) name 1 plant(s) that are not known: 1.5/1.",
+        "1 record names 1 plant not known: 1.5/1.",
     ]
     apart = replace(known, row=np.array(["1", "01", "2"]), plant=np.array(["1", "1", "1"]))
     named = by_plant(cells("01", "1", "02"), cells("1", "1", "1"), apart)
@@ -86,10 +86,10 @@ def test_rows_are_those_of_the_plot_that_is_named():
     assert np.isnan(named.lonlat[2:]).all()
     assert named.plot.tolist() == ["South", "North 1", "South", "East 2", "", ""]
     assert {(message.feature, message.sentence) for message in named.messages} == {
-        (None, "1 record(s) name 1 plot(s) that are not known: Moon."),
-        (None, "1 record(s) name no plot at all."),
-        (None, "1 record(s) are of 1 other plot(s): East 2."),
-        ("South", "1 record(s) name 1 plant(s) that are not known: 7/7."),
+        (None, "1 record names 1 plot not known: Moon."),
+        (None, "1 record names no plot at all."),
+        (None, "1 record is of 1 other plot: East 2."),
+        ("South", "1 record names 1 plant not known: 7/7."),
     }
 
 
@@ -146,7 +146,7 @@ def test_rows_without_a_block_are_said_to_be_counted_on(two_blocks):
     named = by_plant(cells(1, 2), cells(3, 4), plants)
     assert named.lonlat == pytest.approx(np.array([plant_of(grid, 1, 3), plant_of(grid, 2, 4)]))
     (said,) = named.messages
-    assert "2 record(s) name no block" in said.sentence
+    assert "2 records name no block" in said.sentence
     assert "give a column of blocks" in said.sentence
 
 
@@ -173,9 +173,9 @@ def test_records_of_a_file_are_put_into_the_block_they_name(two_blocks):
 
 
 def test_rows_counted_from_zero_are_refused_but_where_rows_are_called_so():
-    with pytest.raises(ObservationError, match=r"counted from 1, but 1 record\(s\) say 0: 0/1\."):
+    with pytest.raises(ObservationError, match=r"counted from 1, but 1 record says 0: 0/1\."):
         by_plant(cells(0, 1), cells(1, 2), plants(0))
-    with pytest.raises(ObservationError, match=r"say 0: 1/0\."):
+    with pytest.raises(ObservationError, match=r"says 0: 1/0\."):
         by_plant(cells(1, 1), cells(0, 2), plants(0))
     known = plants(0)
     called = Plants(known.lonlat, np.array(["0", "0", "1"]), known.plant)

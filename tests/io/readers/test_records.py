@@ -54,7 +54,7 @@ def test_a_word_says_whether_where_no_count_does():
 def test_a_word_that_contradicts_its_count_is_doubted_and_believed():
     records = read(count=[3, 0, 2], present=["yes", "yes", None])
     assert records.value.present.tolist() == [PRESENT, PRESENT, PRESENT]
-    assert "1 record(s) say another thing than their count" in said(records, Severity.DOUBTFUL)
+    assert "1 record contradicts its own count" in said(records, Severity.DOUBTFUL)
 
 
 def test_a_file_that_only_lists_places_asks_what_was_found_and_offers_what_could_be_a_count():
@@ -107,8 +107,8 @@ def test_days_that_are_none_stay_open_and_those_to_come_are_doubted():
     records = read(count=[1, 1, 1], date=["2026-04-01", "soon", ahead])
     assert np.isnat(records.value.day).tolist() == [False, True, False]
     doubts = said(records, Severity.DOUBTFUL)
-    assert "1 record(s) have a date that is none ('soon')" in doubts
-    assert f"1 record(s) lie in the future, the last on {ahead}" in doubts
+    assert "1 record has a date that is none ('soon')" in doubts
+    assert f"1 record lies in the future, the last on {ahead}" in doubts
 
 
 def test_a_file_without_days_says_so_and_offers_a_column_that_holds_some():
@@ -122,7 +122,7 @@ def test_records_that_repeat_another_in_every_column_are_left_out():
     layer = table(lon=[35.150123] * 3, lat=[30.360789] * 3, count=[1, 1, 2])
     records = records_of(layer, ANY)
     assert records.value.count.tolist() == [1.0, 2.0]
-    assert "1 record(s) repeat another" in said(records, Severity.DROPPED)
+    assert "1 record repeats another" in said(records, Severity.DROPPED)
     assert "another count for a place and day" in said(records, Severity.DOUBTFUL)
 
 
@@ -170,8 +170,8 @@ def test_what_is_no_count_is_not_said_to_be_read_roughly():
     records = read(count=["<5", "5+", "TNTC", "-3", "4"])
     assert records.value.present.tolist() == [PRESENT, PRESENT, UNKNOWN, UNKNOWN, PRESENT]
     doubts = said(records, Severity.DOUBTFUL)
-    assert "2 count(s) say neither how many nor whether any ('TNTC', '-3'); left open." in doubts
-    assert "2 count(s) are no plain number ('<5', '5+'); read roughly." in doubts
+    assert "2 counts say neither how many nor whether any ('TNTC', '-3'); left open." in doubts
+    assert "2 counts are no plain number ('<5', '5+'); read roughly." in doubts
 
 
 def test_dates_in_both_orders_are_doubted_with_how_many_could_be_either():

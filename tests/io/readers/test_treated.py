@@ -21,7 +21,7 @@ def test_zones_of_a_decision_come_back_without_the_rest_of_the_plot(tmp_path, na
     read = read_treated(write_treatment_map(OF, tmp_path / name))
     assert read.value.area == pytest.approx(sum(zone.area for zone in ZONES), rel=1e-6)
     assert read.value.symmetric_difference(MultiPolygon([z.geoms[0] for z in ZONES])).area < 1e-12
-    assert any("rate 0 were not treated" in one.sentence for one in read.messages)
+    assert any("rate 0 was not treated" in one.sentence for one in read.messages)
 
 
 def test_areas_without_rates_were_treated_all(tmp_path):

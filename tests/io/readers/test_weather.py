@@ -131,7 +131,7 @@ def test_a_unit_of_something_else_is_refused(read, header, sentence):
 def test_values_of_no_weather_are_left_out_or_refuse_the_file(read):
     days = "\n".join(f"2026-10-{day:02d},20" for day in range(1, 31))
     imported = read(f"date,temp (C)\n{days}\n2026-10-31,999")
-    assert "1 value(s) of temperature_c are impossible" in said(imported)
+    assert "1 value of temperature_c is impossible" in said(imported)
     assert imported.value.gaps == 0  # after the last known nothing is missing
     with pytest.raises(FileProblem, match=r"3 of 3 values are beyond it \(the first is 201\)"):
         read("date,temp (C)\n2026-11-18,201\n2026-11-19,205\n2026-11-20,199")
@@ -242,4 +242,4 @@ def test_fuzzed_tables_are_read_or_refused_with_a_sentence(tmp_path):
 def test_dates_of_no_station_are_no_times(read):
     imported = read("date,temp (C)\n0001-01-01,20\n2026-11-18,20\n9999-12-31,21\n2026-11-19,22")
     assert len(imported.value) == 2
-    assert "2 line(s) without a time" in said(imported)
+    assert "2 lines without a time" in said(imported)

@@ -109,7 +109,7 @@ def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessa
         return []
     shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(odd))[:5])
     said = worded(
-        "{n} record(s) say neither clean nor found ({shown}); left unknown.",
+        "{n} {n:record says|records say} neither clean nor found ({shown}); left unknown.",
         n=len(odd),
         shown=shown,
     )

@@ -81,15 +81,18 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
     if noted:
         messages.append(
             doubtful(
-                worded("{noted} record(s) have a note, but no result: left unknown.", noted=noted)
+                worded(
+                    "{noted} {noted:record has|records have} a note, but no result: left unknown.",
+                    noted=noted,
+                )
             )
         )
     if not said.all():
-        what = "carry no finding in their name" if columns.marks else "are not filled in"
+        what = worded("no finding in the name") if columns.marks else worded("not filled in")
         messages.append(
             seen(
                 worded(
-                    "{n} of {total} record(s) {what}: unknown.",
+                    "{n} of {total} {total:record|records} left unknown: {what}.",
                     n=int((~said).sum()),
                     total=len(layer),
                     what=what,
@@ -129,7 +132,9 @@ def _without_lines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     lines = np.isin(kinds, (1, 2, 5))
     if not lines.any() or lines.all():
         return layer, []
-    said = seen(worded("{n} line(s) beside the points were passed over.", n=int(lines.sum())))
+    said = seen(
+        worded("{n} {n:line|lines} beside the points {n:was|were} passed over.", n=int(lines.sum()))
+    )
     return layer.take(np.flatnonzero(~lines)), [said]
 
 

@@ -80,7 +80,7 @@ def _about_times(
         messages.append(
             doubtful(
                 worded(
-                    "{n_broken} time(s) are none ({shown}); left open.",
+                    "{n_broken} {n_broken:time is|times are} none ({shown}); left open.",
                     n_broken=len(broken),
                     shown=shown,
                 )
@@ -94,7 +94,8 @@ def _about_times(
     if n_utc:
         remedy = Remedy("zone", "+02:00", worded("Name the plot's time zone"))
         said = worded(
-            "{n_utc} time(s) name a time zone of their own; their clock was kept as it is.",
+            "{n_utc} {n_utc:time has|times have} a time zone of "
+            "{n_utc:its own; it was|their own; they were} kept as the clock said.",
             n_utc=n_utc,
         )
         messages.append(guessed(said, None, remedy))

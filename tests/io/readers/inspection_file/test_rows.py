@@ -26,13 +26,13 @@ def test_only_rows_that_say_anything_are_kept_with_their_numbers_in_the_file():
     assert rows.who.tolist() == ["Noa", ""]
     assert rows.source_row.tolist() == [1, 3]
     assert len({len(values) for values in vars(rows).values()}) == 1
-    assert "1 of 3 record(s) are not filled in" in sentences(read)
+    assert "1 of 3 records left unknown: not filled in" in sentences(read)
 
 
 def test_a_note_without_a_result_is_doubtful():
     read = rows_in(table(plant=[7, 8], found=[None, "no"], notes=["thorns", None]), NOTHING)
     assert len(read.value) == 1
-    assert "1 record(s) have a note, but no result" in sentences(read)
+    assert "1 record has a note, but no result" in sentences(read)
 
 
 def test_what_a_season_marks_as_undone_is_passed_over():
@@ -45,7 +45,7 @@ def test_the_driven_line_of_a_file_given_out_is_passed_over():
     cells = table(plant=[None, 7], found=[None, "x"])
     read = rows_in(Layer("route", cells.columns, shapes, "OGC:CRS84"), NOTHING)
     assert read.value.plant.tolist() == [7]
-    assert "1 line(s) beside the points" in sentences(read)
+    assert "1 line beside the points" in sentences(read)
 
 
 @pytest.fixture
@@ -87,7 +87,7 @@ def test_where_none_of_ours_reports_anything_the_first_of_them_is_read(tmp_path,
     path = season(tmp_path / "s.gpkg", stops=[None] * 3, plants=[None] * 3)
     read = rows_of(path, NOTHING, room)
     assert len(read.value) == 0
-    assert "3 of 3 record(s) are not filled in" in sentences(read)
+    assert "3 of 3 records left unknown: not filled in" in sentences(read)
 
 
 def test_layers_of_others_are_asked_for(tmp_path, room):

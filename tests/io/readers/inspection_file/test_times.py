@@ -89,7 +89,7 @@ def test_a_day_that_is_none_is_not_taken_for_the_planned_day_or_the_day_told(col
 def test_times_that_are_none_are_left_open_and_shown():
     times = read(time=["soon", "2026-11-18 8:30"])
     assert np.isnat(times.when).tolist() == [True, False]
-    assert "1 time(s) are none ('soon')" in times.messages[0].sentence
+    assert "1 time is none ('soon')" in times.messages[0].sentence
 
 
 def test_days_that_could_be_months_are_told():

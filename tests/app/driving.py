@@ -59,7 +59,7 @@ def begun(app, name="Gate 2026"):
 
 def press(app, label):
     """Press the button with this label."""
-    next(button for button in app.button if button.label == label).click()
+    next(button for button in app.button if apart(button.label) == label).click()
     return app.run()
 
 

@@ -34,6 +34,8 @@ def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, ov
 
 def show_progress(running: Comparison) -> None:
     """Say how far it is; while there is no answer yet, wait a little for the first."""
+    if not running.running and not running.done:  # nothing was begun: that says no more than this
+        return
     draw = st.progress
     for _ in range(_STEPS):
         said = texts.COMPARE_PROGRESS.format(done=running.done, total=running.total)

@@ -17,6 +17,7 @@ from fieldmon.reports.advice import advice_report
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
 
+from ..show.advice import is_below
 from ..state import deciding, notices, widget_memory
 from ..state.chosen_units import units
 from ..words import language, texts
@@ -170,7 +171,8 @@ def files(choices: Choices, advice: Advice) -> None:
     name = f"zones_{choices.day}{ending}"
     of = partial(advice.treatment_map, choices.plot.field, product)
     st.download_button(
-        texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of(), name), name, type="primary",
+        texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of(), name), name,
+        type="secondary" if is_below(advice) else "primary",
         key="decide download", on_click="ignore",
     )  # fmt: skip
 

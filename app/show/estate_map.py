@@ -62,7 +62,7 @@ def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapC
             "p": np.round(shapely.get_coordinates(ring), 7).tolist(),
             "t": said(plots[number]),
             "n": number,
-            "c": [*_COLOURS[state_of(plots[number])], 130],
+            "c": [*_COLOURS[state_of(plots[number])], 200],
         }
         for number, ring in parts
     ]

@@ -92,7 +92,8 @@ def _interval(e: SummaryStatistics, form: str, unit: str = "") -> str:
     mean = number(e.mean, form) + unit
     if isnan(e.low):
         return mean
-    return f"{mean} ({number(e.low, form)} .. {number(e.high, form)})"
+    low, high = number(e.low, form), number(e.high, form)
+    return texts.INTERVAL_OF.format(value=mean, low=low, high=high)
 
 
 def _word(o: Outcome, base: float) -> str:

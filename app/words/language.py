@@ -22,6 +22,7 @@ from fieldmon.compute.wording import Worded, estimate, written
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
+from .counted_words import in_numbers
 from .kept_sentences import KnownSentences, sentences
 
 if TYPE_CHECKING:
@@ -43,6 +44,9 @@ SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_n
 # signs that embed, override or isolate a direction, and their ends (Unicode Standard Annex 9)
 _TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
 _LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
+
+# what stands after a number, and not on the next line
+_UNIT = re.compile(r"(?<=\d) (?=%|(?:h|m|km|ha|ft|mi|l|°C)\b)")
 
 _NUMBER = re.compile(r"[+−-]?\d[\d,]*(\.\d+)?")
 
@@ -223,9 +227,15 @@ def in_words(sentence: str) -> str:
     """
     language = current()
     if language == ENGLISH or not sentence or isinstance(sentence, Text):  # the app's own has words
-        return leading_nowhere(str(sentence))
+        return together(leading_nowhere(in_numbers(str(sentence), language)))
     said = _said(sentence, language) or _said_again(str(sentence), language)
-    return leading_nowhere(marked_as_english(sentence) if said is None else _from_the_right(said))
+    said = marked_as_english(sentence) if said is None else _from_the_right(said)
+    return together(leading_nowhere(in_numbers(said, language)))
+
+
+def together(text: str) -> str:
+    """Return a text in which no line ends between a number and its sign or unit."""
+    return _UNIT.sub("\u00a0", text)
 
 
 def _from_the_right(said: str) -> str:
@@ -401,7 +411,7 @@ def about(value: float) -> str:
 
 def _number(value: Any, form: str, language: str) -> str:  # noqa: ANN401 - any number
     said = written(value, form) if language in _SHARE_APART else format(value, form)
-    return _separated(said, language)
+    return together(_separated(said, language))
 
 
 def _separated(written: str, language: str) -> str:

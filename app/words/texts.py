@@ -182,7 +182,7 @@ MAP_WORDS = {
     "select_rows": "Select rows", "rows_hint": "Tap plants or row numbers: a whole row each.",
     "too_many": "At most {most} plants can be selected at once.",
     "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
-            "Escape leaves.", "corners": "{n} point(s)",
+            "Escape leaves.", "corners": "Points: {n}",
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
     "scale": "The scale bar is {bar} long; the arrow points north.",
     "speed": "Speed", "follow": "Follow the robot",
@@ -541,6 +541,10 @@ DECIDE_AREA, DECIDE_LIQUID, DECIDE_LITRES = "To be sprayed", "Liquid", "{value} 
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
 DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
+DECIDE_ANYWAY = (
+    "The zones on the map are below the threshold too. By these costs, spraying them would still "
+    "save more than it costs."
+)
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
 DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "wrong in"
@@ -863,6 +867,7 @@ TOO_MANY = "Compare 1 to {most} strategies at once, but these are {n}. Choose fe
 BEST, NO_DIFFERENCE = "best", "no clear difference"
 WORSE = "{percent:+.0f} % loss ({low:+.0f} to {high:+.0f})"
 ONE_SEASON = "(one season: no interval)"
+INTERVAL_OF = "{value} ({low} to {high})"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"

@@ -9,7 +9,7 @@ from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
 from fieldmon.compute.wording import hours_figure
 
 from . import texts
-from .language import day_and_month, in_words, weekday
+from .language import day_and_month, in_words, together, weekday
 
 __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 
@@ -54,7 +54,7 @@ class UnitsInLanguage(library.Units):
 
 def hours(value_h: float) -> str:
     """Return hours."""
-    return texts.IN_HOURS.format(hours=in_words(hours_figure(value_h)))
+    return together(texts.IN_HOURS.format(hours=in_words(hours_figure(value_h))))
 
 
 def usual(language: str) -> UnitsInLanguage:

@@ -59,7 +59,7 @@ def begun(app, name="Gate 2026"):
 
 def press(app, label):
     """Press the button with this label."""
-    next(button for button in app.button if button.label == label).click()
+    next(button for button in app.button if apart(button.label) == label).click()
     return app.run()
 
 
@@ -95,7 +95,13 @@ def plants(app, name="plants-chance"):
 
 
 def metric(app, label):
-    return next(m.value for m in app.metric if m.label.removesuffix(" *") == label)
+    found = next(m.value for m in app.metric if m.label.removesuffix(" *") == label)
+    return apart(found)
+
+
+def apart(text):
+    """Return a text with plain spaces where numbers and their units stay on one line."""
+    return text.replace("\u00a0", " ")
 
 
 def plot_name(app):
@@ -113,13 +119,13 @@ def headline(app):
     """Return the sentence at the top of Today: what there is to do."""
     leads = ("Inspect ", "Nothing to inspect")
     (said,) = (text.value for text in app.markdown if text.value.startswith(leads))
-    return said
+    return apart(said)
 
 
 def texts_of(app):
     """Return everything the page says."""
     parts = [*app.markdown, *app.caption, *app.error, *app.warning, *app.success, *app.info]
-    return "\n".join(part.value for part in parts)
+    return apart("\n".join(part.value for part in parts))
 
 
 def upload(app, **files):

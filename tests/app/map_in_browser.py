@@ -232,7 +232,7 @@ def scale_px_of_m(page):
     """Return how many pixels a metre has by the scale bar on the map."""
     scale = page.get_by_role("img", name="The scale bar is")
     text = scale.locator(".text").inner_text().strip()
-    metres = float(text.removesuffix(" m"))
+    metres = float(text.removesuffix("\u00a0m"))
     return scale.locator(".bar").bounding_box()["width"] / metres
 
 

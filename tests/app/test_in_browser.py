@@ -607,7 +607,7 @@ def drawn_by_clicks(page):
     open_drawing(page)
     draw_by_click(page, "corners of a no-go area")
     for number, corner in enumerate([(0.4, 0.4), (0.6, 0.4), (0.5, 0.65)], start=1):
-        at_share(page, corner, says=f"{number} point(s)")
+        at_share(page, corner, says=f"Points: {number}")
     page.get_by_role("button", name="Finish").click()
     page.get_by_text("corners of a no-go area: 3").wait_for(timeout=180_000)
     rest(page)
@@ -616,7 +616,7 @@ def drawn_by_clicks(page):
     page.get_by_text("corners of a no-go area: 3").wait_for(state="detached", timeout=180_000)
     draw_by_click(page, "points of a path")
     path = [at_share(page, share) for share in ((0.2, 0.2), (0.5, 0.25), (0.8, 0.2))]
-    page.get_by_text("3 point(s)").wait_for()
+    page.get_by_text("Points: 3").wait_for()
     page.get_by_role("button", name="Finish").click()
     page.get_by_text("points of a path: 3").wait_for(timeout=180_000)
     rest(page)
@@ -862,8 +862,27 @@ def test_on_a_phone_plot_and_day_are_one_line_that_unfolds(on_a_phone):
     line.get_by_role("button").click()
     boxes.get_by_role("combobox", name=texts.WHICH_PLOT).wait_for(timeout=60_000)
     assert boxes.get_by_text(texts.SAMPLE_NOTE).is_visible()
+    assert boxes.get_by_role("slider", name=texts.HOURS).is_visible()
     page.keyboard.press("Escape")
     boxes.wait_for(state="hidden", timeout=60_000)
+
+
+def test_on_a_phone_the_map_s_tools_are_as_large_as_a_thumb_and_layers_lie_above_the_legend(
+    on_a_phone,
+):
+    page = on_a_phone
+    for tool in page.locator(".tools .tool").all():
+        size = tool.bounding_box()
+        assert min(size["width"], size["height"]) >= 44
+    page.get_by_role("button", name=texts.MAP_WORDS["layers"]).click()
+    title = page.locator(".card .title").first
+    title.wait_for()
+    seen = title.evaluate(
+        "(one) => { const { x, y } = one.getBoundingClientRect();"
+        " return one.getRootNode().elementFromPoint(x + 4, y + 6) === one; }"
+    )
+    assert seen, "the legend lies over it"
+    page.get_by_role("button", name=texts.MAP_WORDS["layers"]).click()
 
 
 def test_the_sheet_is_pulled_up_and_let_down_again(on_a_phone):
@@ -892,7 +911,7 @@ def test_on_a_phone_two_taps_cut_the_plot_into_blocks(page, address):
     low, high = plot.grid.xy_m.min(axis=0) - 9, plot.grid.xy_m.max(axis=0) + 9
     across = [((low[0] + high[0]) / 2, y) for y in (low[1], high[1])]
     for number, place in enumerate(pixels(view(page), plot.grid.frame.lonlat(across)), start=1):
-        click(page, place, says=f"{number} point(s)")
+        click(page, place, says=f"Points: {number}")
     bar, sheet = page.locator(".drawbar").bounding_box(), page.locator(".st-key-panel")
     assert bar["y"] + bar["height"] <= sheet.bounding_box()["y"], "what is asked is under the sheet"
     page.get_by_role("button", name="Finish").click()

@@ -121,10 +121,12 @@ export class Drawing {
     if (!this.points.length) return [];
     const area = ["area", "lasso"].includes(this.mode.kind) && this.points.length > 2;
     const path = area ? [...this.points, this.points[0]] : this.points;
-    const line = { "@@type": "PathLayer", id: "drawing", data: [{ p: path }], getPath: "@@=p",
-                   getColor: colour, getWidth: 2, widthUnits: "pixels" };
-    if (this.mode.kind === "lasso") return [line];
-    return [line, {
+    // a casing lets it be seen on plants of its own colour
+    const around = colour.reduce((sum, one) => sum + one, 0) > 382 ? [0, 0, 0] : [255, 255, 255];
+    const lines = [["drawing-casing", around, 7], ["drawing", colour, 3]].map(([id, getColor, getWidth]) => (
+      { "@@type": "PathLayer", id, data: [{ p: path }], getPath: "@@=p", getColor, getWidth, widthUnits: "pixels" }));
+    if (this.mode.kind === "lasso") return lines;
+    return [...lines, {
       "@@type": "ScatterplotLayer", id: "corners", data: this.points.map((p) => ({ p })), getPosition: "@@=p",
       getFillColor: [255, 255, 255], getLineColor: colour, stroked: true, getRadius: 6, radiusUnits: "pixels",
       getLineWidth: 2, lineWidthUnits: "pixels",

@@ -23,7 +23,9 @@ export function withHot(labels, jsons) {
 function beyond(viewport, p, away, half, tall, gap) {
   const [x, y] = viewport.project(p), [u, v] = viewport.project(away), far = Math.hypot(u - x, v - y);
   if (!far) return [0, 0];
-  const dx = (u - x) / far, dy = (v - y) / far, step = gap + Math.abs(dx) * half + Math.abs(dy) * tall;
+  const dx = (u - x) / far, dy = (v - y) / far;
+  // as far as its own edge that way
+  const step = gap + Math.min(half / Math.abs(dx), tall / Math.abs(dy));
   return [dx * step, dy * step];
 }
 

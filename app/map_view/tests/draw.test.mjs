@@ -79,7 +79,9 @@ test("what is drawn so far is shown: closed from the third corner on, with a han
   assert.deepEqual(drawing.layers([1, 2, 3]), []);
   for (const [k, corner] of [[0.3, -0.3], [0.5, -0.3], [0.4, -0.5]].entries()) {
     drawing.click(corner, view);
-    const [line, corners] = drawing.layers([1, 2, 3]);
+    const [casing, line, corners] = drawing.layers([1, 2, 3]);
+    assert.ok(casing.getWidth > line.getWidth && casing.getColor.every((one) => one === 255), "seen on any plants");
+    assert.deepEqual(drawing.layers([200, 210, 220])[0].getColor, [0, 0, 0]);
     assert.equal(line.data[0].p.length, k === 2 ? 4 : k + 1);
     assert.equal(corners.data.length, k + 1);
   }

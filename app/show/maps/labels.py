@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _STOP_PX = 16.0
 # so far from its place the word beside a ring begins
 _RING_PX = 12
+# an outline farther than this from the gate, in rows, is not that of its headland
+_NEAR_ROWS = 4
 _EARTH_M, _TILE_PX = 40_075_016.686, 512
 
 
@@ -71,14 +73,24 @@ def rows(grid: PlantGrid) -> list[Label]:
 def places(plot: Plot) -> list[Label]:
     """Return the names of the gate and of areas that are not driven through."""
     grid = plot.grid
-    # beside the ring of the gate, away from the rows
+    # beside the ring of the gate, away from the rows, beyond the outline if that is near
     x, y = plot.aisles.gate_m
-    gap_m = grid.row_spacing_m if y > grid.xy_m[:, 1].mean() else -grid.row_spacing_m
-    at, away = np.round(grid.frame.lonlat(np.array([[x, y], [x, y + gap_m]])), 7).tolist()
+    side = 1.0 if y > grid.xy_m[:, 1].mean() else -1.0
+    out = side * _to_outline(plot, (x, y), side * _NEAR_ROWS * grid.row_spacing_m)
+    ends_m = np.array([[x, y + out], [x, y + out + side]])
+    at, away = np.round(grid.frame.lonlat(ends_m), 7).tolist()
     gate = {"p": at, "away": away, "gap": _RING_PX, "t": texts.LABEL_GATE, "k": "place"}
     inner = shapely.point_on_surface(shapely.get_parts(plot.field.no_go))
     no_go = np.round(shapely.get_coordinates(inner), 7).tolist()
     return [gate, *({"p": p, "t": texts.LABEL_NO_GO, "k": "place"} for p in no_go)]
+
+
+def _to_outline(plot: Plot, place_m: tuple[float, float], far_m: float) -> float:
+    """Return how far the outline is from a place in y; 0: farther than `far_m`."""
+    x, y = place_m
+    edge = shapely.transform(plot.field.boundary.boundary, plot.grid.frame.xy_m)
+    met = shapely.get_coordinates(edge.intersection(shapely.LineString([(x, y), (x, y + far_m)])))
+    return float(np.abs(met[:, 1] - y).max()) if len(met) else 0.0
 
 
 def blocks(grid: PlantGrid) -> list[Label]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from fieldmon.plot.robot import Robot
-from tests.app.driving import go, press, row_box
+from tests.app.driving import apart, go, press, row_box
 
 
 def test_a_robot_too_wide_for_the_aisles_is_said_and_a_narrow_one_planned(app):
@@ -13,7 +13,7 @@ def test_a_robot_too_wide_for_the_aisles_is_said_and_a_narrow_one_planned(app):
     assert "but the widest here is" in app.error[0].value
     app.number_input(key="robot_width").set_value(0.6).run()
     assert not app.error
-    assert any("plants reach 0.25 m" in one.value for one in app.caption)
+    assert any("plants reach 0.25 m" in apart(one.value) for one in app.caption)
     go(app, "plot")
     row_box(app, "half_canopy").set_value(1.8).run()
     go(app, "today")

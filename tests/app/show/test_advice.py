@@ -1,5 +1,7 @@
 """What is shown of advice: a row a zone, an outline a zone on the map, each with its number."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -29,7 +31,7 @@ def test_each_zone_has_a_row_with_its_place_and_how_often_it_is_wrong(made):
     assert table[texts.DECIDE_ROWS].tolist() == ["2", "7"]
     assert table[texts.DECIDE_PLANTS].tolist() == ["2-5", "21-24"]
     assert set(table[texts.DECIDE_ITSELF]) == {"treat"}
-    assert set(table[texts.DECIDE_WRONG]) == {"0 %"}
+    assert set(table[texts.DECIDE_WRONG]) == {"0\u00a0%"}
 
 
 def test_each_zone_is_outlined_and_numbered_on_the_map(made):
@@ -42,3 +44,13 @@ def test_each_zone_is_outlined_and_numbered_on_the_map(made):
         corners = np.array(zone["p"])
         assert (corners.min(axis=0) <= number["p"]).all()
         assert (corners.max(axis=0) >= number["p"]).all()
+
+
+@pytest.mark.parametrize(
+    ("verdict", "above", "zones", "below"),
+    [("do not treat", 0, 2, True), ("do not treat", 1, 2, False), ("do not treat", 0, 0, False),
+     ("treat", 0, 2, False), ("look on", 0, 2, False)],
+)  # fmt: skip
+def test_zones_that_only_pay_are_said_to_be_below_the_threshold(verdict, above, zones, below):
+    advice = SimpleNamespace(verdict=verdict, above=above, zones=range(zones))
+    assert shown.is_below(advice) == below

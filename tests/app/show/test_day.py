@@ -13,7 +13,7 @@ from app.state.chosen_day import DayRoute
 from app.words import texts
 from fieldmon.plot.grid import row_label
 from tests.app.chosen import a_plot, chosen, in_season, records_at
-from tests.app.driving import go, row_box, tap, texts_of
+from tests.app.driving import apart, go, row_box, tap, texts_of
 from tests.monitoring.seasons import BEGINS, Insects, a_season
 
 
@@ -92,6 +92,6 @@ def test_rows_that_rose_most_come_first(worked):
     rise = [np.mean((mornings[1] - mornings[0])[line == k]) for k in range(line.max() + 1)]
     best = int(np.argmax(rise))
     if rise[best] > 0.001:
-        assert f"rose most: {best + 1} (+{100 * rise[best]:.1f} %)" in said
+        assert f"rose most: {best + 1} (+{100 * rise[best]:.1f} %)" in apart(said)
     else:
         assert "rose most" not in said

@@ -6,6 +6,7 @@ import streamlit as st
 from app.show import learnt
 from app.words import texts
 from fieldmon.infestation.learnt import Learnt
+from tests.app.driving import apart
 
 
 @pytest.fixture
@@ -18,7 +19,7 @@ def shown(monkeypatch):
         monkeypatch.setattr(st, "caption", lines.append)
         monkeypatch.setattr(learnt.chosen_day, "learnt", lambda _: estimates)
         learnt.show(None)
-        return lines[1:]
+        return [apart(line) for line in lines[1:]]
 
     return show
 

@@ -71,10 +71,10 @@ def test_what_is_drawn_has_its_kind_its_hint_and_where_it_snaps(sent):
 
 
 def test_scale_bars_are_in_the_person_s_unit(sent, session):
-    assert [100.0, "100 m"] in sent(content())["lengths"]
+    assert [100.0, "100\u00a0m"] in sent(content())["lengths"]
     session["length"] = "ft"
     feet = sent(content())["lengths"]
-    assert [pytest.approx(30.48), "100 ft"] in feet
+    assert [pytest.approx(30.48), "100\u00a0ft"] in feet
     assert feet == [list(one) for one in UnitsInLanguage(length="ft").lengths()]
 
 

@@ -13,6 +13,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.samplers.base import NEVER, Scene
 from tests.app.chosen import a_plot
+from tests.app.driving import apart
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +36,7 @@ def test_the_way_is_as_long_as_the_route_to_the_first_stop(plot):
     stop = next_stop(plan, 0, UnitsInLanguage())
     line = plan.route.line_m[: plan.route.line_stop[0] + 1]
     metres = np.hypot(*np.diff(line, axis=0).T).sum()
-    assert stop.direction.startswith(f"{metres:.0f} m ")
+    assert apart(stop.direction).startswith(f"{metres:.0f} m ")
     assert stop.plant == plan.route.plant[0]
     assert stop.lonlat == pytest.approx(plot.grid.lonlat()[stop.plant].tolist())
 
@@ -59,5 +60,5 @@ def test_compass_and_arrow_point_from_here_to_there(plot, at):
 
 def test_stops_done_and_left_and_hours_are_counted(plot):
     plan = planned(plot)
-    said = next_stop(plan, 17, UnitsInLanguage()).chance
+    said = apart(next_stop(plan, 17, UnitsInLanguage()).chance)
     assert said == f"Chance 1.0 % · stop 17 done, {len(plan.route)} to go · 2:00 left"

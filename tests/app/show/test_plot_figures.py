@@ -6,11 +6,12 @@ from app.show import plot_figures
 from app.words.units import UnitsInLanguage
 from fieldmon.io.parse.geometry import area_m2
 from tests.app.chosen import a_plot
+from tests.app.driving import apart
 
 
 class Metrics(dict):
     def __call__(self, label, value, **_):
-        self[label] = value
+        self[label] = apart(value) if isinstance(value, str) else value
 
 
 @pytest.fixture

@@ -69,7 +69,7 @@ def test_the_table_says_by_how_much_in_percent_of_the_best():
 @pytest.mark.parametrize("found", [(99.0, 100.0, 98.0), (0.0, 1.0, 0.5)])
 def test_an_interval_of_percent_stays_within_percent(found):
     (cell,) = verdicts.table([outcome(BEST, [1.0, 2.0, 3.0], found=found)])["found at the end"]
-    low, high = cell.partition("(")[2].rstrip(")").split(" .. ")
+    low, high = cell.partition("(")[2].rstrip(")").split(" to ")
     assert 0 <= float(low) < float(high) <= 100
 
 

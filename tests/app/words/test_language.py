@@ -28,8 +28,8 @@ def test_numbers_in_a_text_are_written_as_in_the_language(speaking):
     assert texts.VERDICT.format(**verdict).startswith("**A** is best: 12,345 infested")
     speaking("es")
     assert "12.345 días-planta" in texts.VERDICT.format(**verdict)
-    assert UnitsInLanguage().metres(1234.5) == "1,23 km"
-    assert language.number(0.125, ".1%") == "12,5 %"
+    assert UnitsInLanguage().metres(1234.5) == "1,23\u00a0km"
+    assert language.number(0.125, ".1%") == "12,5\u00a0%"
 
 
 def test_a_worded_sentence_of_the_library_is_said_in_the_language(speaking):
@@ -82,16 +82,16 @@ def test_a_share_has_its_sign_apart_where_the_language_sets_it_so(speaking):
     assert (
         language.number(0.125, ".1%")
         == language.Text("{share:.1%}").format(share=0.125)
-        == "12.5 %"
+        == "12.5\u00a0%"
     )
-    for code, said in (("es", "12,5 %"), ("he", "12.5%")):
+    for code, said in (("es", "12,5\u00a0%"), ("he", "12.5%")):
         speaking(code)
         assert language.number(0.125, ".1%") == said
         assert language.Text("{share:.1%}", code).format(share=0.125) == said
 
 
 def test_a_figure_has_its_sign_as_the_sentences_around_it(speaking):
-    for code, said in (("es", "12,5 %"), ("he", "12.5%"), ("ar", "12.5%")):
+    for code, said in (("es", "12,5\u00a0%"), ("he", "12.5%"), ("ar", "12.5%")):
         speaking(code)
         assert language.in_words(figure(12.5, ".1f", " %")) == said
         assert language.in_words(figure(0.125, ".1%")) == said

@@ -83,6 +83,29 @@ class _Said:
         self.skipped |= report.skipped
 
 
+class FixturesReach:
+    """Keeps what fixtures reach as they are set up: all tests that use them reach it, too."""
+
+    def __init__(self, seen):
+        self.seen, self.reached = seen, {}
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef):
+        before = {*self.seen}
+        self.seen.clear()
+        try:
+            return (yield)
+        finally:
+            self.reached.setdefault(fixturedef, set()).update(self.seen)
+            self.seen |= before
+
+    def of(self, item):
+        """Return the code that the fixtures of a test reached, whichever test set them up."""
+        info = getattr(item, "_fixtureinfo", None)
+        every = [] if info is None else info.name2fixturedefs.values()
+        return set().union(*(self.reached.get(one, ()) for defs in every for one in defs))
+
+
 class _Compiling(event.Listener):
     """Sums the processor time that goes into compiling."""
 
@@ -294,7 +317,7 @@ class Warm:
         self.at_import |= loops_run()
         self.items = {item.nodeid: item for item in self.session.items}
         self.functions = functions_within(tree / "fieldmon")
-        self.answers = answers_kept("fieldmon")
+        self.answers = answers_kept("fieldmon") + answers_kept("tests")
         self.names_of = {getattr(one, "__file__", None): vars(one) for one in sys.modules.values()}
         gc.freeze()
 
@@ -331,6 +354,8 @@ class Warm:
     def _measured(self, items, at, told):
         seen, others, compiling = set(), [], _Compiling(self.shared)
         event.register("numba:compile", compiling)
+        fixtures = FixturesReach(seen)
+        self.session.config.pluginmanager.register(fixtures)
 
         def trace(frame, *_):
             seen.add(frame.f_code)
@@ -349,7 +374,7 @@ class Warm:
                 sys.settrace(None)
                 threading.settrace(None)
                 takes_s = time.process_time() - began_s - (compiling.sum_s - before_s)
-                reached = self._reached(seen)
+                reached = self._reached(seen | fixtures.of(item))
                 good = not said.failed and not said.skipped
                 values = {"at": at, "s": round(takes_s, 3), "ok": good, "reach": sorted(reached)}
                 values["elsewhere"] = bool(others)

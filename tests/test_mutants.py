@@ -187,3 +187,52 @@ def test_a_fault_shows_in_loops_that_were_compiled_before(tmp_path, monkeypatch)
         changed = mutants_warm.put_in(pairs, standing)
         mutants_warm.let_go(lambda one: one.__code__ in changed)
         assert loops_of_mutants.seats(4) == 13
+
+
+SHARING = """
+import pytest
+from threading import Barrier
+
+@pytest.fixture(scope="module")
+def ground():
+    return Barrier(2)
+
+@pytest.fixture(scope="module")
+def plot(ground):
+    return ground.parties
+
+def test_first(plot):
+    assert plot == 2
+
+def test_second(plot):
+    assert plot == 2
+
+def test_third():
+    assert True
+"""
+
+
+def test_what_a_fixture_of_several_tests_reaches_each_of_them_reaches(tmp_path):
+    file = tmp_path / "test_sharing_of_mutants.py"
+    file.write_text(SHARING)
+    seen, told = set(), {}
+    fixtures = mutants_warm.FixturesReach(seen)
+
+    class Measured:
+        @pytest.hookimpl(wrapper=True)
+        def pytest_runtest_protocol(self, item):
+            seen.clear()
+            before = sys.gettrace()
+            sys.settrace(lambda frame, *_: seen.add(frame.f_code))
+            try:
+                return (yield)
+            finally:
+                sys.settrace(before)
+                told[item.name] = {code.co_qualname for code in seen | fixtures.of(item)}
+
+    config = ["-p", "no:cacheprovider", "-p", "no:terminal", "-n0", f"--rootdir={tmp_path}"]
+    assert pytest.main([*config, "-c", "/dev/null", str(file)], [fixtures, Measured()]) == 0
+    reached = {name for name, codes in told.items() if "Barrier.__init__" in codes}
+    assert reached == {"test_first", "test_second"}
+    assert "ground" in told["test_second"]
+    assert "ground" not in told["test_third"]

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from fieldmon.compute.random_streams import coin
+from fieldmon.infestation import ensemble
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.spread import Spread
@@ -33,6 +35,24 @@ def test_a_find_is_certain_until_treated_and_raises_its_neighbours():
     treated = belief.learn(LOOK, np.array([True]), Learning())
     assert not treated.fields[:, 27].any()
     assert treated.chance[[19, 26, 28, 35]].mean() > 2 * belief.chance[[19, 26, 28, 35]].mean()
+
+
+@pytest.mark.parametrize("found", [[False, True], [True, False], [False, False]])
+def test_no_coin_is_tossed_twice(found, monkeypatch):
+    """Chances that are drawn of one coin would hang on each other."""
+    tossed = []
+
+    def told(key, k):
+        tossed.append(int(k))
+        return coin(key, k)
+
+    monkeypatch.setattr(ensemble, "coin", told)
+    belief = Ensemble.of(GRID, np.full(64, 0.4), clustering=0.3)
+    fields, plants = belief.fields[:40].copy(), np.array([27, 50], np.int32)
+    rule = np.full(2, 0.5), False
+    ensemble._learn.py_func(fields, GRID.adjacent, (plants, np.array(found)), rule, np.uint64(3))
+    assert len(tossed) > 40
+    assert len(set(tossed)) == len(tossed)
 
 
 def test_a_night_adds_infested_plants_and_takes_none():

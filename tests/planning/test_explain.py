@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from fieldmon.planning.explain import explain
-from fieldmon.planning.workday import plan_work
+from fieldmon.planning.workday import Workday, plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER
@@ -60,6 +60,20 @@ def test_rows_are_told_by_how_long_they_were_not_inspected():
     scene = day(last=3)
     said = explain(scene, plan_work(scene, Adaptive()))
     assert all("not inspected for 9 days" in s for s in said)
+
+
+def test_up_to_six_blocks_of_rows_are_told_each_and_more_as_one():
+    """Rows two apart are one block, three apart two."""
+    for n, expected in ((1, 1), (6, 6), (7, 1)):
+        rows = 5 * np.arange(n)
+        plants = np.concatenate([30 * rows + 3, 30 * (rows + 2) + 4]).astype(np.int32)
+        arrive_s = 60.0 * np.arange(len(plants))
+        found, ones = np.zeros(len(plants), np.bool_), np.ones(len(plants))
+        said = explain(day(), Workday(plants, arrive_s, found, 40 * ones, ones, 0.0))
+        assert len(said) == expected
+        assert counts(said) == 2 * n
+        low, high = (1, 5 * n - 2) if expected == 1 else (1, 3)
+        assert said[0].split(": ")[0].endswith(f"in rows {low} to {high}")
 
 
 def test_a_day_without_stops_says_so():

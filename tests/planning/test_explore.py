@@ -52,6 +52,15 @@ def _plants(day):
     ).data
 
 
+def test_neither_the_plot_nor_stops_hide_plants(layers):
+    assert not layers["plot"].filled
+    assert layers["plot"].stroked
+    assert not layers["stops"].filled
+    assert layers["stops"].stroked
+    said = {name for name, layer in layers.items() if getattr(layer, "pickable", False)}
+    assert said == {"plants", "stops"}
+
+
 def test_the_route_is_the_line_that_is_driven_and_its_stops_say_when(day, layers):
     (line,) = layers["route"].data
     np.testing.assert_allclose(line["path"], day.route.line_lonlat())

@@ -142,6 +142,23 @@ def test_who_drive_towards_each_other_are_nearest_when_a_clock_of_a_hundredth_ha
     assert np.array(sorted(found.tolist())) == pytest.approx(np.array(sorted(told)), abs=0.05)
 
 
+def test_two_who_pass_each_other_with_half_the_room_they_need_between_them_do_not_meet():
+    grid = Aisles.of(rectangle(4, 10)).grid
+    x, low, high = grid.xy_m[:, 0].min() - 2.0, *np.sort(grid.lane_y_m)[[0, -1]]
+
+    def drive(at_x, from_y, to_y):
+        ends = np.array([[at_x, from_y]]), np.array([[at_x, to_y]])
+        return Steps(*ends, np.zeros(1), np.full(1, 20.0))
+
+    for apart_m, meets in ((0.5, True), (4.9, True), (5.1, False), (9.0, False), (19.0, False)):
+        pair = drive(x, low, high), drive(x - apart_m, high, low)
+        when = headlands_of(grid).meet(*pair, 10.0)
+        assert len(when) == meets
+        for at_s, *place in when:
+            assert at_s == pytest.approx(10.0)
+            assert place == pytest.approx([x, (low + high) / 2])
+
+
 def test_a_headland_is_as_wide_as_from_the_nearest_row_to_the_edge_of_the_plot():
     grid = rectangle(4, 10)
     headlands = headlands_of(grid)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from fieldmon.planning.meetings import meetings
+from fieldmon.planning.meetings import _presences, meetings
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
 from fieldmon.plot.layout import rectangle
@@ -47,6 +47,20 @@ def test_two_with_stops_in_one_aisle_at_one_time_meet_there():
     assert met.who == (0, 1)
     assert met.aisle == AISLES.grid.corridor[AISLES.grid.row[13]]
     assert met.since_s < met.until_s
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("plant", [11, 17])
+def test_one_is_in_an_aisle_from_its_end_on_until_it_is_left_or_the_day_ends_there(plant, returns):
+    robot = Robot(row_change_s=0.0, turn_180_s=0.0, returns=returns)
+    never = np.full(40, NEVER, np.int32)
+    scene = Scene(AISLES, robot, np.full(40, 0.1), never, seconds_left=robot.day_s)
+    day, grid = plan_in(scene, Fixed(plant)).route, AISLES.grid
+    (one,) = [each for each in _presences(day, 100.0) if each.aisle == grid.corridor[1]]
+    # the gate is at the low end
+    deep_s = (grid.along_m[plant] - grid.lane_x_m[1, 0]) / robot.speed_m_s
+    assert one.since_s == pytest.approx(100.0 + day.arrive_s[0] - deep_s)
+    assert one.until_s == pytest.approx(100.0 + day.leave_s[0] + (deep_s if returns else 0.0))
 
 
 def test_two_in_different_aisles_do_not_meet():

@@ -129,3 +129,16 @@ def test_a_plot_is_planned_alike_wherever_it_lies_and_however_it_is_turned(place
     here, there = planned(5.0, 45.0, 0.0), planned(*place)
     assert there.plant.tolist() == here.plant.tolist()
     assert there.arrive_s == pytest.approx(here.arrive_s, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        ({"records": [[35.1, 30.2]]}, "Records must be Observations"),
+        ({"robot": 4}, "must be"),
+        ({"plot": "gate.kml"}, "must be"),
+    ],
+)
+def test_what_is_no_plot_no_robot_and_no_records_is_refused_by_name(plot, asked, sentence):
+    with pytest.raises(SettingError, match=sentence):
+        plan_day(**{"plot": plot, "on": "2026-11-18", "robot": Robot(hours=0.2), **asked})

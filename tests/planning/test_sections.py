@@ -76,6 +76,19 @@ def test_an_aisle_is_worth_its_best_drive():
         assert worth.seconds[p, 0, GRID.corridor[row]] == pytest.approx(seconds)
 
 
+@pytest.mark.parametrize("price", [12, 15])
+def test_a_row_that_pays_at_both_ends_is_driven_through(price):
+    """Where a second is cheap: in and out from one end, as far as the other, is twice as far."""
+    chance = np.where((GRID.row == 4) & np.isin(np.arange(len(GRID)) % 20, [0, 19]), 0.9, 0.0)
+    worth = aisle_worth(AISLES, [ROBOT], chance)
+    clock = Scene(AISLES, ROBOT, chance, np.full(len(GRID), NEVER, np.int32)).clock
+    low, high = GRID.lane_x_m[4]
+    spent_s = clock.row_change_s + 2 * clock.visit_s + (high - low) / clock.speed_m_s
+    at = GRID.corridor[4]
+    assert worth.seconds[price, 0, at] == pytest.approx(spent_s)
+    assert worth.net[price, 0, at] == pytest.approx(1.8 - worth.price[price] * spent_s)
+
+
 def test_what_is_worth_more_is_shared_among_more():
     chance = np.where(GRID.row < 3, 0.4, 0.01)
     worth = aisle_worth(AISLES, [ROBOT, ROBOT], chance)

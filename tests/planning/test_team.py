@@ -9,8 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
+from fieldmon.planning import team as team_room
 from fieldmon.planning.meetings import meetings
 from fieldmon.planning.members import TeamMember, team_of
+from fieldmon.planning.routes import bound
 from fieldmon.planning.team import (
     _day,
     _first_wait,
@@ -182,6 +184,45 @@ def test_a_bound_of_two_gates_holds_what_only_the_farther_gate_can_reach():
     assert team_bound([_Task(at_low, robot, worth), _Task(at_high, robot, worth)]) >= 1.0 - 1e-9
 
 
+def test_with_time_for_all_a_team_is_bound_by_what_all_plants_hold_from_whatever_gates(
+    monkeypatch,
+):
+    """Each of two could visit all alone: only a price of plants tells that nobody need do both."""
+    monkeypatch.setattr(team_room, "_WITHIN_S", 1e9)  # loops may have to be compiled
+    grid = rectangle(6, 8)
+    low, high = grid.xy_m.min(axis=0) - 3.0, grid.xy_m.max(axis=0) + 3.0
+    gates = [Aisles.of(grid, (float(at[0]), float(at[1]))) for at in (low, high)]
+    worth = np.random.default_rng(3).random(len(grid))
+    whole = [_Task(at, Robot(hours=3.0), worth) for at in gates]
+    assert team_bound(whole) == pytest.approx(worth.sum(), rel=0.02)
+
+
+def test_a_bound_of_one_gate_is_that_of_one_with_the_hours_of_all(monkeypatch):
+    """It changes aisles once more between two of them: as quick and sharp-eyed as any is."""
+    monkeypatch.setattr(team_room, "_by_prices", lambda *_: np.inf)
+    plot = plot_of(8, 8)
+    value = chances(plot)
+    quick = Robot(hours=0.1, speed_m_s=1.2, row_change_s=4.0, turn_180_s=9.0, look_s=50.0)
+    slow = Robot(hours=0.2, speed_m_s=0.4, row_change_s=20.0, turn_180_s=3.0, look_s=30.0)
+    for team in ((quick,), (quick, slow), (slow, quick, quick)):
+        tasks = [_Task(plot.aisles, robot, value * share) for robot, share in
+                 zip(team, (0.5, 0.9, 0.7), strict=False)]  # fmt: skip
+        most = np.max([task.value for task in tasks], axis=0)
+        best_of_all = Robot(
+            speed_m_s=max(one.speed_m_s for one in team),
+            row_change_s=min(one.row_change_s for one in team),
+            turn_180_s=min(one.turn_180_s for one in team),
+            stop_s=0.0, look_s=min(one.visit_s for one in team),
+        )  # fmt: skip
+        seconds = sum(one.day_s for one in team)
+        seconds += (len(team) - 1) * best_of_all.row_change_s
+        expected = bound(plot.aisles, most, best_of_all, seconds)
+        assert team_bound(tasks) == pytest.approx(expected, rel=1e-6)
+        # from gates of their own, or where one stays out, it says nothing
+        other = replace(team[-1], returns=False)
+        assert team_bound([*tasks[:-1], tasks[-1]._replace(robot=other)]) == np.inf
+
+
 def two_tasks(plot, hours=0.4, starts_s=0.0):
     value = chances(plot)
     return [_Task(plot.aisles, Robot(hours=hours), value * 0.84, at) for at in (0.0, starts_s)]
@@ -262,6 +303,20 @@ def test_routes_are_looked_for_where_the_others_are_not_and_never_get_worse():
     assert _of(tasks[0], shared[0], there) == pytest.approx(value)
     untaken = search._untaken(shared, 1)
     assert np.flatnonzero(~untaken).tolist() == sorted(shared[0].tolist())
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_the_way_round_is_the_one_on_which_fewer_are_met_and_a_one_way_day_has_but_one(returns):
+    plot = plot_of(8, 8)
+    tasks = [_Task(plot.aisles, Robot(hours=0.4, returns=returns), chances(plot), 0.0)] * 2
+    search = _StopSearch(plot, tasks, lambda *_: None)
+    stops = [np.array([3, 20, 36, 52]), np.array([5, 22, 38, 54])]
+    first, second = search.turned(stops)
+    assert first.work.plant.tolist() == stops[0].tolist()
+    ways = [_day(tasks[1], own) for own in (stops[1], stops[1][::-1])]
+    met_s = [_met_s([first, day], np.zeros(2)) for day in ways]
+    assert met_s[0] > met_s[1]
+    assert second.work.plant.tolist() == (stops[1][::-1] if returns else stops[1]).tolist()
 
 
 def test_where_two_would_meet_the_poorer_looks_elsewhere_and_the_other_stays():

@@ -1,5 +1,8 @@
 """A day of several as it goes: the clock, the aisles, and what finds change."""
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,9 +14,9 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.planning.members import Teamwork
 from fieldmon.planning.route import route_of
-from fieldmon.planning.team_day import merged, team_day
-from fieldmon.planning.team_worker import Posted
-from fieldmon.planning.workday import work_day
+from fieldmon.planning.team_day import _TeamDay, merged, team_day
+from fieldmon.planning.team_worker import Posted, StopMade
+from fieldmon.planning.workday import Workday, work_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -217,6 +220,77 @@ def test_in_narrow_headlands_nobody_meets_head_on():
 def test_whoever_decides_nobody_meets_head_on(name, returns):
     day = Day(n=4, robot=Robot(hours=0.7, detection=1.0, returns=returns), infested=0.1)
     day.check(day.work(Teamwork(passing_m=30.0), name), 30.0)
+
+
+def stopping(team, plants, stop_s=40.0):
+    """Return a plan that makes stops, each the way from the one before, from where its first is."""
+    drives = [team.workers[0].seconds(i, j) for i, j in pairwise(plants)]
+    arrive_s = np.append(0.0, np.cumsum(np.array(drives) + stop_s))
+    n = len(plants)
+    return Workday(np.array(plants, np.int32), arrive_s, np.zeros(n, np.bool_),
+                   np.full(n, stop_s), np.ones(n), float(arrive_s[-1]))  # fmt: skip
+
+
+def standing(day, at, plan, teamwork=AT_ONCE, learn=None):
+    """Return a day on its way: the first stands at a plant, 40 s after it came there at 60 s."""
+    posts = [Posted(day.scene(), 0.0, day.would_find) for _ in range(2)]
+    team = _TeamDay(posts, sampler("naive"), teamwork, learn, None)
+    worker = team.workers[0]
+    worker.done = [StopMade(at, 60.0, 100.0, False, 1.0, 0.0)]
+    worker.at, worker.visit, worker.anew = at, 1, False
+    worker.holds = worker.claims = int(team.corridor[at])
+    team.holder[worker.holds] = 0
+    worker.plan, worker.plan_from_s = stopping(team, plan) if plan else None, 100.0
+    return team, worker
+
+
+@pytest.mark.parametrize("at", [0, 1, 4, 6, 7, 8, 15, 40, 47])
+@pytest.mark.parametrize("target", [22, 24, 31, 63])
+def test_who_waits_in_vain_drives_home_from_the_end_of_the_aisle_where_it_stood(at, target):
+    """Back through its own aisle, and on, where that end is not the one on the way home."""
+    plain = Robot(hours=1.0, row_change_s=0.0, turn_180_s=0.0, detection=1.0)
+    day = Day(Aisles.of(rectangle(8, 8)), robot=plain)
+    grid, speed_m_s = day.aisles.grid, plain.speed_m_s
+    team, worker = standing(day, at, [target])
+    worker.claims = int(team.corridor[target])
+    away, home = (worker.legs.leg(at, one) for one in (target, GATE))
+    worker.leg = away
+    worker.out_s = worker.free_s = 100.0 + worker.share_out() * worker.seconds(at, target)
+    team.waiting = [worker]
+    team._give_up(worker, 2000.0)
+    team._go_at_last(worker)
+    from_end_m = abs(
+        grid.along_m[at] - grid.lane_x_m[grid.row[at], worker.legs.leg(at, target).end % 2]
+    )
+    same = worker.legs.leg(at, target).end == home.end
+    home_s = worker.seconds(at, GATE) + (-1.0 if same else 1.0) * from_end_m / speed_m_s
+    assert worker.target() == GATE
+    assert worker.over
+    assert worker.end_s == pytest.approx(2000.0 + home_s)
+    # what it did not drive since its last stop, it waited
+    assert worker.end_s == pytest.approx(100.0 + worker.seconds(at, GATE) + worker.wait_home_s)
+
+
+@pytest.mark.parametrize("aisle", range(8))
+def test_within_its_aisle_one_drives_straight_to_the_next_stop(aisle):
+    day = Day(Aisles.of(rectangle(8, 8)))
+    row = int(np.flatnonzero(day.aisles.grid.corridor == aisle)[0])
+    one, other = 8 * row + 2, 8 * row + 5
+    team, worker = standing(day, one, [other])
+    team._ready(worker, 100.0)
+    assert [stop.plant for stop in worker.done] == [one, other]
+    assert worker.done[-1].arrive_s == pytest.approx(100.0 + worker.seconds(one, other))
+
+
+def test_who_has_done_its_share_goes_on_with_what_the_slow_would_not_come_to():
+    day = Day(Aisles.of(rectangle(8, 8)), infested=0.0)
+    quick, slow = day.scene(), Robot(hours=1.0, look_s=300.0, detection=1.0)
+    team = [Posted(quick, 0.0, day.would_find),
+            Posted(replace(quick, robot=slow), 0.0, day.would_find)]  # fmt: skip
+    first = _TeamDay(team, sampler("adaptive"), Teamwork(least_gain=0.0), day.learn, None)
+    own = np.flatnonzero(first.sections.owner[first.corridor] == 0)
+    work, _ = team_day(team, sampler("adaptive"), Teamwork(least_gain=0.0), day.learn)
+    assert set(own.tolist()) < set(work.plant.tolist())
 
 
 def test_days_of_a_team_are_one_in_order_of_the_clock():

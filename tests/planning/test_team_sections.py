@@ -1,12 +1,14 @@
 """Who has which aisle as a team's day goes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.planning.members import Teamwork
-from fieldmon.planning.sections import even_sections
+from fieldmon.planning.sections import aisle_heights, even_sections
 from fieldmon.planning.team_news import TeamNews
 from fieldmon.planning.team_sections import TeamSections
 from fieldmon.planning.team_worker import Posted, TeamWorker
@@ -78,3 +80,37 @@ def test_aisles_are_shared_out_anew_for_those_who_are_still_at_work():
     assert made.share_anew(1.0) == [0, 1]
     assert (made.owner[:4] == 1).all()
     assert made.share_anew(1.0) == []
+
+
+@pytest.mark.parametrize("by_worth", [True, False])
+def test_what_nobody_had_is_given_out_and_the_rest_stays(by_worth):
+    teamwork = Teamwork(least_gain=0.01)
+    made, _ = sections(uneven(), teamwork, by_worth=by_worth)
+    made.begin(None)
+    anew, other = made.owner.copy(), 1 - made.owner
+    # as good as it was: nothing is gained
+    made.begin(other)
+    assert (made.owner == other).all()
+    some = np.arange(len(anew)) % 3 == 0
+    made, _ = sections(uneven(), Teamwork(least_gain=1e9), by_worth=by_worth)
+    made.begin(np.where(some, -1, other))
+    assert (made.owner == np.where(some, anew, other)).all()
+    # all to one: who has none would have nothing to do
+    made, _ = sections(uneven(), teamwork, by_worth=by_worth)
+    made.begin(np.zeros_like(anew))
+    assert (made.owner == (anew if by_worth else 0)).all()
+
+
+@pytest.mark.parametrize("speed_m_s", [0.3, 1.0, 2.0])
+def test_the_way_to_a_section_is_that_across_the_plot_to_the_nearest_of_its_aisles(speed_m_s):
+    made, workers = sections(uneven())
+    scene = replace(workers[0].scene, robot=Robot(hours=0.5, speed_m_s=speed_m_s))
+    workers[0].post = Posted(scene, 0.0, np.zeros(N, bool))
+    workers[0].at = 16 * 2 + 5
+    by_height = np.argsort(np.argsort(aisle_heights(GRID)))
+    owner = np.where(np.isin(by_height, [7, 9]), 0, 1)
+    nearest_m = np.sort(aisle_heights(GRID))[7] - GRID.lane_y_m[2]
+    # who is at the gate yet may begin anywhere
+    way_s = made._way_s(owner, made._stands())
+    assert way_s.tolist() == pytest.approx([nearest_m / speed_m_s, 0.0])
+    assert made._way_s(np.ones_like(owner), made._stands()).tolist() == [0.0, 0.0]

@@ -169,6 +169,15 @@ def test_the_visits_behind_a_bound_hold_what_it_says_and_are_parts_of_a_visit(ho
     assert found.visits @ reward == pytest.approx(found.value, rel=0.01)
 
 
+@pytest.mark.parametrize("hours", [0.3, 0.4, 0.6])
+def test_of_two_drives_so_much_of_each_is_visited_as_fills_the_hours(hours):
+    """Where they are of the least price, that is the bound itself."""
+    reward = np.random.default_rng(2).random(120) ** 3
+    found = bounded(Aisles.of(rectangle(6, 20)), reward, Robot(hours=hours))
+    assert ((found.visits > 0.0) & (found.visits < 1.0)).any()
+    assert found.visits @ reward == pytest.approx(found.value, rel=1e-6)
+
+
 def test_with_time_for_all_the_visits_behind_a_bound_are_all_there_is():
     aisles, reward = Aisles.of(rectangle(4, 5)), np.linspace(0.1, 1.0, 20)
     found = bounded(aisles, reward, Robot(hours=12.0))

@@ -35,6 +35,27 @@ def test_a_proposal_holds_what_its_stops_hold_and_takes_about_the_hours(returns,
         assert used_s(AISLES, robot, stops) <= 1.15 * seconds
 
 
+@pytest.mark.parametrize("returns", [True, False])
+def test_proposals_are_for_a_little_more_than_the_hours_for_them_and_for_a_little_less(returns):
+    """The time that their ways are charged, but for half a step of each that was rounded."""
+    seconds, priced = 1500.0, priced_by(Robot(returns=returns))
+    made = [*proposals(priced, 0.006, seconds)]
+    used_s = []
+    for drawn, prices in made:
+        at_s = float((drawn.passes[:-1] * priced.ladder.up_m).sum() * priced.costs.metre_s)
+        offers = {price: priced.ways(price) for price in set(prices.tolist())}
+        for k, price in enumerate(prices.tolist()):
+            offered, way = offers[price], drawn.way[k]
+            at_s += (offered.reward[k, way] - offered.worth[k, way]) / price
+        used_s.append(at_s)
+    rounded_s = 2 * len(priced.ladder.across_m) * 1.02 * seconds / 2500
+    shares = np.array([1.02, 1.0, 0.98])
+    assert len(made) == 3
+    assert (np.array(used_s) <= shares * seconds + rounded_s).all()
+    assert (np.array(used_s) >= (shares - 0.05) * seconds - rounded_s).all()
+    assert used_s[0] > used_s[1] > used_s[2]
+
+
 def test_more_hours_hold_more():
     priced = priced_by(Robot())
     held = [max(drawn.reward for drawn, _ in proposals(priced, 0.006, seconds))

@@ -1,6 +1,6 @@
 """Several ladders for parts that lie apart: each is a bound, and closer than one ladder."""
 
-from itertools import pairwise
+from itertools import pairwise, permutations, product
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,9 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, box
 
-from fieldmon.planning.routes import best, bound
+from fieldmon.planning.routes import best, blocks, bound
 from fieldmon.planning.routes.best_route import upper_bound
-from fieldmon.planning.routes.blocks import _MOST_BLOCKS, _NEAR_M, Blocks, blockings
+from fieldmon.planning.routes.blocks import (
+    _MOST_BLOCKS,
+    _NEAR_M,
+    Blocks,
+    _apart_m,
+    _gate,
+    _order,
+    _tours,
+    _way_out,
+    blockings,
+)
 from fieldmon.planning.routes.pendant_parts import ladder_with_parts
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Ladders
@@ -134,3 +144,123 @@ def test_two_aisles_that_lie_apart_are_two_blocks_and_two_that_touch_are_none():
     (block,) = blocks_at(400.0)
     assert sorted(block) == [0, 1]
     assert blocks_at(3.0) == []
+
+
+def some_rungs(seed, n=5):
+    """Return rungs, and the three blocks that they are in."""
+    rng = np.random.default_rng(seed)
+    apart_m = rng.uniform(1.0, 40.0, (2, 2, n + 1, n + 1)) + 250.0 * rng.integers(0, 2, n + 1)
+    if seed == 0:
+        apart_m[0, 1, 0, 1] = apart_m[1, 0, 2, -1] = 0.0
+    apart_m[:, :, range(n + 1), range(n + 1)] = np.inf
+    # the gate's two ends are one, and as far from here as here from there
+    apart_m[:, 1, :, -1] = apart_m[:, 0, :, -1]
+    apart_m[0, :, -1] = apart_m[1, :, -1] = apart_m[:, 0, :, -1]
+    block = np.append([0, 1, 2], rng.integers(0, 3, n - 3))
+    return SimpleNamespace(apart_m=apart_m, up=rng.permutation(n) * 10.0), block
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_ways_between_blocks_are_what_is_left_of_the_shortest_round_by_others_too(seed):
+    rungs, block = some_rungs(seed)
+    n, gate = len(block), 3
+    out = _way_out(rungs, block)
+    for side, k in product(range(2), range(n)):
+        outside = [rungs.apart_m[side, other, k, j] for other in range(2) for j in range(n)
+                   if block[j] != block[k]]  # fmt: skip
+        to_gate = rungs.apart_m[side, 0, k, -1]
+        assert out[side, k] == pytest.approx(min(0.5 * min(outside), to_gate))
+        assert out[side, k] <= min(0.5 * min(outside), to_gate)
+    metres = _apart_m(rungs, block, out)
+    left = np.full((gate + 1, gate + 1), np.inf)
+    for a, b, i, j in product(range(2), range(2), range(n), range(n)):
+        if block[i] != block[j]:
+            way = max(rungs.apart_m[a, b, i, j] - out[a, i] - out[b, j], 0.0)
+            for one, other in ((block[i], block[j]), (block[j], block[i])):
+                left[one, other] = min(left[one, other], way)
+    for a, i in product(range(2), range(n)):
+        way = max(rungs.apart_m[a, 0, i, -1] - out[a, i], 0.0)
+        left[block[i], gate] = left[gate, block[i]] = min(left[gate, block[i]], way)
+    for a, b in product(range(gate + 1), repeat=2):
+        if a == b:
+            assert metres[a, b] == 0.0
+            continue
+        between = [k for k in range(gate + 1) if k not in (a, b)]
+        ways = [(a, *middle, b) for n_by in range(3) for middle in permutations(between, n_by)]
+        shortest = min(sum(left[i, j] for i, j in pairwise(way)) for way in ways)
+        assert metres[a, b] == pytest.approx(shortest, abs=1e-6)
+    for k in range(3):
+        own = np.flatnonzero(block == k)
+        to_gate, up = _gate(rungs, own, out)
+        assert (to_gate == out[:, own]).all()
+        assert up == rungs.up[own[np.argmin(out[:, own].min(axis=0))]]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_ways_through_each_set_of_blocks_are_the_shortest_of_all_orders(seed):
+    n = 4
+    metres = np.random.default_rng(seed).uniform(1.0, 100.0, (n + 1, n + 1))
+    metres = metres + metres.T
+    tours = _tours(metres)
+
+    def length(order, home):
+        return sum(metres[i, j] for i, j in pairwise([n, *order, *([n] if home else [])]))
+
+    assert tours.closed_m[0] == 0.0
+    assert _order(tours, 0, -1) == []
+    for chosen in range(1, 1 << n):
+        orders = [*permutations([k for k in range(n) if chosen >> k & 1])]
+        assert tours.closed_m[chosen] == pytest.approx(min(length(one, True) for one in orders))
+        assert length(_order(tours, chosen, -1), False) == pytest.approx(
+            min(length(one, False) for one in orders)
+        ) or length(_order(tours, chosen, -1), True) == pytest.approx(tours.closed_m[chosen])
+        for last in range(n):
+            ends = [length(one, False) for one in orders if one[-1] == last]
+            assert tours.open_m[chosen, last] == pytest.approx(min(ends, default=np.inf))
+            if ends:
+                order = _order(tours, chosen, last)
+                assert sorted(order) == sorted(orders[0])
+                assert order[-1] == last
+                assert length(order, False) == pytest.approx(min(ends))
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("first", [0.05, 0.3, 1.0])
+def test_the_part_in_which_most_time_is_won_is_driven_for_what_the_others_leave(
+    returns, first, monkeypatch
+):
+    aisles, robot = far_apart(), Robot(hours=0.9, returns=returns)
+    reward = np.random.default_rng(2).random(len(aisles.grid))
+    west = aisles.grid.xy_m[:, 0] < aisles.grid.xy_m[:, 0].mean()
+    reward = np.where(west, first * (reward > 0.95), reward**6)
+    ladders = Ladders(aisles)
+    (block, *_) = blockings(ladders.rungs)
+    parts, asked = Blocks(ladders, block, reward, robot), []
+    monkeypatch.setattr(blocks, "proposals", lambda *told: asked.append(told) or ())
+    sets, n_asked = ((1, 0), (2, 0 if returns else 1), (3, 0)), 0
+    for (chosen, last), high in product(sets, (0.003, 0.01)):
+        low = high / 5
+        short, long = (parts._through(chosen, last, price) for price in (high, low))
+        asked.clear()
+        (stops,) = parts._between(short, long, (low, high), robot.day_s)
+        assert stops.tolist() == parts.stops(short, high).tolist()
+
+        def seconds(drives, price):
+            return [(drive.reward - drive.worth) / price for _, _, drive in drives]
+
+        took_s, takes_s = seconds(short.drives, high), seconds(long.drives, low)
+        k = int(np.argmax(np.subtract(takes_s, took_s)))
+        number, ends, _ = short.drives[k]
+        way_m = parts.tours.closed_m[chosen] if returns else parts.tours.open_m[chosen, last]
+        others_s = sum(took_s) - took_s[k] + way_m / robot.speed_m_s
+        left_s = robot.day_s + robot.row_change_s - others_s
+        assert len(asked) == (left_s > 0.0 and takes_s[k] > 0.0)
+        if not asked:
+            continue
+        n_asked += 1
+        (told,) = asked
+        assert told[0] is (parts.open if ends else parts.closed)[number]
+        assert told[1] == low
+        # a first change of aisle is charged to each that none pays
+        assert told[2] == pytest.approx(left_s)
+    assert n_asked >= 3

@@ -91,3 +91,19 @@ def test_states_between_aisles_are_the_five_of_ratliff_and_rosenthal():
         reached = more
     reached &= used
     assert sorted(passes[list(reached)].tolist()) == [[0, 2], [1, 1], [2, 0], [2, 2], [2, 2]]
+
+
+def test_at_the_gate_stubs_are_driven_an_even_number_of_times_or_an_odd_one_on_one_way_days():
+    every = {(left, right) for left, right in product(range(3), repeat=2) if left + right}
+    assert {*GATE_CLOSED} == {each for each in every if sum(each) % 2 == 0}
+    assert {*GATE_OPEN} == {each for each in every if sum(each) % 2 == 1}
+    assert len(GATE_CLOSED) == len(GATE_OPEN) == 4
+
+
+def test_in_an_aisle_an_odd_number_of_passes_meets_its_ends_where_the_day_ends_there():
+    for way in WAYS:
+        assert (way.left + way.right) % 2 == way.ends
+        assert max(way.left, way.right) <= 2
+        # what is driven through is driven by both ends, and from neither on is nothing
+        assert not way.meets or min(way.left, way.right) > 0
+    assert len({*WAYS}) == len(WAYS)

@@ -75,6 +75,32 @@ def filled(travel, clock, tour, reward, least):
     _fill(travel, clock, tour, reward, least)
 
 
+_move = improve._move
+
+
+@loop
+def moved(travel, clock, tour):
+    return _move(travel, clock, tour)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_where_stops_of_an_aisle_are_made_elsewhere_the_drive_is_shorter(returns):
+    """Turned round too, where that is what makes it so."""
+    aisles, robot = Aisles.of(rectangle(6, 9)), Robot(returns=returns)
+    clock, rng, n_moved = robot_clock(robot, 1e6), np.random.default_rng(5), 0
+    for _ in range(30):
+        runs = [9 * row + np.sort(rng.permutation(9)[:3])[:: rng.choice([1, -1])]
+                for row in rng.permutation(6)[:4]]  # fmt: skip
+        tour = Tour.of(np.concatenate(runs), 54)
+        before = tour.stops
+        did = moved(aisles.travel, clock, tour)
+        assert sorted(tour.stops.tolist()) == sorted(before.tolist())
+        shorter_s = used_s(aisles, robot, before) - used_s(aisles, robot, tour.stops)
+        assert shorter_s > 0.0 if did else tour.stops.tolist() == before.tolist()
+        n_moved += did
+    assert n_moved > 5
+
+
 def runs_of(aisles, stops):
     """Return where stops in one aisle begin, and where all end."""
     aisle = aisles.grid.corridor[aisles.grid.row[stops]]

@@ -9,9 +9,16 @@ from shapely import MultiPolygon, box
 from fieldmon.planning.routes import best
 from fieldmon.planning.routes.best_route import upper_bound
 from fieldmon.planning.routes.blocks import Blocks, blockings
-from fieldmon.planning.routes.pendant_parts import _tree, ladder_with_parts
+from fieldmon.planning.routes.pendant_parts import (
+    LadderWithParts,
+    PendantPart,
+    _tree,
+    _with_place,
+    ladder_with_parts,
+)
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import Ladders
+from fieldmon.planning.routes.relaxation import Ladders, Rungs
+from fieldmon.planning.routes.stops import stops_of
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
@@ -106,3 +113,85 @@ def test_each_part_hangs_on_the_nearest_of_those_before_it(seed):
         nearest_m = either_m[np.ix_(order[:k], order[k:])].min()
         assert onto[order[k]] in order[:k]
         assert either_m[onto[order[k]], order[k]] == nearest_m
+
+
+@pytest.mark.parametrize(("ends", "driven"), [(True, "ends"), (False, "back")])
+def test_where_the_day_ends_in_a_part_its_drive_there_is_the_one_that_stays(ends, driven):
+    aisles = parts((0, 0, 40, 30))
+    reward = np.random.default_rng(1).random(len(aisles.grid))
+    ladder = Ladders(aisles).whole(hanging=False)
+    both = {
+        name: LadderWithParts(ladder, reward, Robot(returns=name == "back"), {})
+        for name in ("ends", "back")
+    }
+    part = PendantPart(both["back"], both["ends"], 0.0, 1)
+    drawn = both[driven].best(0.001)
+    expected = stops_of(both[driven], drawn, np.full(len(drawn.way), 0.001), both[driven].robot)
+    assert part.stops(0.001, ends=ends).tolist() == expected.tolist()
+    other = both["back" if ends else "ends"]
+    assert other.best(0.001).worth != drawn.worth
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_drive_through_a_part_comes_back_and_only_the_last_of_a_one_way_day_stays(returns):
+    chain = parts(*((300 * k, 0, 300 * k + 40, 30) for k in range(3)))
+    reward = np.random.default_rng(3).random(len(chain.grid))
+    ladders = Ladders(chain)
+    block = max(blockings(ladders.rungs), key=lambda each: each.max())
+    whole = ladder_with_parts(ladders, block, reward, Robot(returns=returns))
+    every = [*whole._all_parts()]
+    assert len(every) == block.max()
+    for part in every:
+        assert part.back.robot.returns
+        assert part.back.best(0.001).worth <= (part.ends or part.back).best(0.001).worth
+        # in a drive that comes back no part is where the day ends
+        assert all(deeper.ends is None for deeper in part.back.parts.values())
+    for part in whole.parts.values():
+        assert (part.ends is None) == returns
+        assert returns or not part.ends.robot.returns
+        stays = {} if returns else part.ends.parts
+        assert all(deeper.ends is not None for deeper in stays.values())
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_part_is_a_place_to_which_no_way_is_longer_than_it_is_and_some_are_as_long(seed):
+    """What is driven in the part, the rest up to the headland, and on that: together at most so."""
+    rng, n = np.random.default_rng(seed), 6
+    apart_m = rng.uniform(5.0, 90.0, (2, 2, n + 1, n + 1)) * (0.02 if seed == 0 else 1.0)
+    apart_m[:, 1, :, -1] = apart_m[:, 0, :, -1]
+    apart_m[0, :, -1] = apart_m[1, :, -1]
+    low, high, up = rng.uniform(0.0, 10.0, n), rng.uniform(20.0, 50.0, n), rng.permutation(n) * 3.0
+    rungs = Rungs(low, high, up, apart_m, np.zeros(n, np.int64))
+    inside, outside = np.array([1, 4]), np.array([0, 2, 3, 5])
+    kept = SimpleNamespace(rungs=rungs, of=lambda made: made)
+    made, into_m, away_m = _with_place(kept, inside, outside)
+    out = [*outside.tolist(), -1]
+    nearest = [[min(min(apart_m[end, side, f, e], apart_m[side, end, e, f]) for e in out
+                    for side in range(2)) for f in inside] for end in range(2)]  # fmt: skip
+    assert into_m == pytest.approx(np.array(nearest) - np.min(nearest))
+    assert len(made.low) == n + 1
+    assert made.part[:-1].tolist() == [0] * n
+    spare = np.full((2, len(outside) + 1, 2, len(inside)), np.inf)
+    for j, e in enumerate([*outside.tolist(), -1]):
+        for side in range(2):
+            on_m = made.apart_m[side, :, e, n].min()
+            assert (made.apart_m[side, :, e, n] == on_m).all()
+            assert (made.apart_m[:, side, n, e] == on_m).all()
+            for end in range(2):
+                for k, f in enumerate(inside):
+                    true_m = min(apart_m[end, side, f, e], apart_m[side, end, e, f])
+                    spare[side, j, end, k] = true_m - into_m[end, k] - away_m - on_m
+    assert (spare >= -1e-9).all()
+    # each end of the part, and each place outside, is as far as some way truly is
+    tight = spare < 1e-6
+    assert tight[:, :-1].any(axis=(2, 3)).all()
+    assert tight[:, -1].any()
+    to_place = made.apart_m[:, 0, outside, n]
+    assert min(to_place.min(), made.apart_m[0, 0, -1, n]) == pytest.approx(0.0, abs=1e-6)
+    # between others all is as it was
+    others = np.append(np.arange(n), n + 1)
+    assert (made.apart_m[:, :, others[:, None], others] == apart_m).all()
+    side, at = np.unravel_index(np.argmin(to_place), to_place.shape)
+    assert made.part[-1] == side + 1
+    assert made.up[-1] == up[outside[at]]
+    assert made.low[-1] == made.high[-1] == (low, high)[side][outside[at]]

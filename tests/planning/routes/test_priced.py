@@ -72,3 +72,70 @@ def test_a_kind_of_drive_begins_and_ends_in_its_own_stretches(row, returns):
     # nor does it take what lies out of its stretches
     assert (worth[at[0] + 1 :] < worth[at]).all()
     assert (worth[:, : at[1]] < worth[at]).all()
+
+
+def all_drives(priced, metre):
+    """Yield worth, reward, first element and last of every drive by the tables."""
+    ladder, tables, room = priced.ladder, priced.tables, priced._room
+    n = len(ladder.across_m)
+    onward = [
+        [[tuple(one) for one in ways if one[0] == state] for state in range(len(tables.passes))]
+        for ways in ((tables.gate if k == ladder.gate else tables.aisle).tolist() for k in range(n))
+    ]
+    waiting = [(0, 0, 0.0, 0.0, -1)]
+    while waiting:
+        k, state, worth, reward, begin = waiting.pop()
+        for _, way, after in onward[k][state]:
+            if room.worth[k, way] < -1e200 or (after == 1 and k < ladder.gate):
+                continue
+            first = k if begin < 0 and after != 0 else begin
+            on = worth + room.worth[k, way], reward + room.reward[k, way]
+            if after == 1:
+                yield *on, first, k
+            elif k + 1 < n:
+                up = float(tables.passes[after] @ ladder.up_m[k])
+                waiting.append((k + 1, after, on[0] - metre * up, on[1], first))
+
+
+@pytest.mark.parametrize(
+    ("returns", "rows", "gate_y"),
+    [(True, 2, -9.0), (True, 2, 9.0), (True, 3, 1.0), (False, 2, -9.0), (False, 2, 0.0)],
+)
+def test_the_best_drive_and_that_of_each_kind_are_the_best_of_all_drives(returns, rows, gate_y):
+    robot, price = Robot(returns=returns, row_change_s=2.0, speed_m_s=0.5), 0.003
+    aisles = Aisles.of(rectangle(rows, 4), gate_xy_m=(-4.0, gate_y))
+    reward = np.random.default_rng(7).random(len(aisles.grid)) ** 2
+    priced = Priced(ladder_below(aisles), reward, robot)
+    drawn = priced.best(price)
+    metre = price * priced.costs.metre_s
+    drives = [*all_drives(priced, metre)]
+    assert drawn.worth == pytest.approx(max(drives)[0])
+    assert drawn.reward == pytest.approx(max(drives)[1])
+    # what it is made of comes to that worth
+    at = np.arange(len(drawn.way)), drawn.way
+    up = (drawn.passes[:-1] * priced.ladder.up_m).sum()
+    assert drawn.worth == pytest.approx(priced._room.worth[at].sum() - metre * up)
+    worth, held = priced.kinds(price)
+    gate = priced.ladder.gate
+    assert worth.shape == (gate + 1, len(drawn.way) - gate)
+    for begin, end in np.ndindex(worth.shape):
+        kind = [one[:2] for one in drives if one[2:] == (begin, gate + end)]
+        if kind:
+            assert worth[begin, end] == pytest.approx(max(kind)[0])
+            assert held[begin, end] == pytest.approx(max(kind)[1])
+        else:
+            assert worth[begin, end] < -1e200
+
+
+def test_it_says_how_many_cross_links_and_hanging_aisles_its_ladder_has():
+    plain = ladder_below(Aisles.of(rectangle(4, 4)))
+    hangs = np.where(np.arange(len(plain.hangs)) == 1, 2, 0)
+    reward = np.ones(16)
+    said = {
+        "price of time on a ladder of aisles": (0, 0 * hangs),
+        "on a ladder with 0 cross links and 1 hanging aisles": (0, hangs),
+        "on a ladder with 3 cross links and 0 hanging aisles": (3, 0 * hangs),
+    }
+    for sentence, (links, each) in said.items():
+        ladder = plain._replace(cross_links=links, hangs=each)
+        assert sentence in Priced(ladder, reward, Robot()).how

@@ -15,6 +15,7 @@ from fieldmon.planning.routes import relaxation
 from fieldmon.planning.routes.relaxation import (
     Ladders,
     _from_left_to_right,
+    _hanging,
     _take_crossing,
 )
 from fieldmon.plot.field import Field
@@ -76,6 +77,49 @@ def test_nobody_crosses_by_an_aisle_that_hangs_on_the_left(corners):
     ladder = Ladders(aisles).whole(hanging=True)
     assert (ladder.hangs == 1).any()
     assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
+
+
+@pytest.mark.parametrize("hangs", [[0, 0, 0, 0, 0], [1, 0, 2, 0, 1], [2, 2, 0, 1, 0]])
+def test_both_ends_of_an_aisle_that_hangs_are_one_place_and_the_other_headland_has_none(hangs):
+    n, ends = len(hangs), {0: ((0,), (1,)), 1: ((0, 1), ()), 2: ((), (0, 1))}
+    apart_m = np.random.default_rng(1).uniform(1.0, 50.0, (2, 2, n, n))
+    found = relaxation._lines(apart_m, np.array(hangs))
+    for a, b, side, other in np.ndindex(n, n, 2, 2):
+        ways = [apart_m[s, t, a, b] for s in ends[hangs[a]][side] for t in ends[hangs[b]][other]]
+        assert found[side, other, a, b] == min(ways, default=np.inf)
+
+
+@pytest.mark.parametrize("at_m", [0.0, -500.0, 700.0])
+@pytest.mark.parametrize(
+    ("rungs", "expected"),
+    [
+        # alone at their heights
+        ([(0, 50, 0), (10, 40, 3), (0, 5, 6)], [0, 0, 0]),
+        # of two beside each other one much shorter hangs, on the side where it lies
+        ([(0, 50, 0), (60, 74, 0)], [0, 2]),
+        ([(0, 14, 0), (30, 80, 0)], [1, 0]),
+        ([(0, 16, 0), (30, 80, 0)], [0, 2]),
+        # the main one goes on from below, though another is longer by less than three times
+        ([(0, 50, 0), (0, 30, 3), (40, 90, 3)], [0, 0, 2]),
+        ([(0, 50, 0), (0, 10, 3), (40, 90, 3)], [0, 1, 0]),
+        # a third hangs on the main one, not on the longest
+        ([(0, 50, 0), (0, 40, 3), (50, 60, 3), (70, 75, 3)], [0, 0, 2, 2]),
+        ([(40, 90, 0), (0, 10, 3), (20, 30, 3), (40, 90, 3)], [0, 1, 1, 0]),
+        # where the main one ends below, the longest is the next
+        ([(70, 80, 3), (0, 60, 3), (90, 100, 3), (200, 250, 0)], [2, 0, 2, 0]),
+        # nearly at one height is beside, farther up is not
+        ([(0, 50, 0), (60, 80, 0.5), (60, 80, 1.2)], [0, 2, 0]),
+    ],
+)  # fmt: skip
+def test_beside_the_main_aisle_of_a_height_the_others_hang_on_the_headland_where_they_lie(
+    rungs, expected, at_m
+):
+    low, high, up = np.array(rungs, np.float64).T
+    place = relaxation.Rungs(low + at_m, high + at_m, up, np.empty(0), np.zeros(len(up), np.int64))
+    for order in (np.arange(len(up)), np.arange(len(up))[::-1]):
+        members = order if (np.diff(np.sort(up)) > 0).all() else np.arange(len(up))
+        found = _hanging(place, members, 1.0)
+        assert found.tolist() == [expected[k] for k in members]
 
 
 @given(crooked_aisles(max_radius_m=60.0, max_plants=400))

@@ -22,7 +22,6 @@ from fieldmon.compute.wording import Worded, estimate, written
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
-from .counted_words import in_numbers
 from .kept_sentences import KnownSentences, sentences
 
 if TYPE_CHECKING:
@@ -227,10 +226,10 @@ def in_words(sentence: str) -> str:
     """
     language = current()
     if language == ENGLISH or not sentence or isinstance(sentence, Text):  # the app's own has words
-        return together(leading_nowhere(in_numbers(str(sentence), language)))
+        return together(leading_nowhere(str(sentence)))
     said = _said(sentence, language) or _said_again(str(sentence), language)
     said = marked_as_english(sentence) if said is None else _from_the_right(said)
-    return together(leading_nowhere(in_numbers(said, language)))
+    return together(leading_nowhere(said))
 
 
 def together(text: str) -> str:

@@ -42,6 +42,16 @@ def test_all_hear_once_of_what_was_made_by_then_in_order_of_the_clock():
     assert (news.believed[0] == said.chance).all()
 
 
+def test_each_of_many_stops_is_told_once():
+    workers = a_team((30, 100.0, True), (5, 60.0, False))
+    workers[0].done.append(StopMade(31, 105.0, 145.0, False, 0.9, 0.0))
+    workers[0].done.append(StopMade(32, 150.0, 190.0, True, 0.9, 0.0))
+    news = TeamNews(workers, learn)
+    told = [[stop.plant for stop in news.hear(now_s)] for now_s in (100.0, 100.0, 145.0, 190.0)]
+    assert told == [[5, 30], [], [31], [32]]
+    assert [worker.told for worker in workers] == [3, 1]
+
+
 def test_one_knows_its_own_stops_before_the_others_hear_of_them():
     workers = a_team((30, 100.0, True), (5, 100.0, True))
     news = TeamNews(workers, learn)

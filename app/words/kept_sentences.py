@@ -44,7 +44,7 @@ class KeptWords:
         for literal, name, form, _ in Formatter().parse(self.words):
             made += re.escape(literal)
             if form and "|" in form:  # words chosen by a number
-                made += f"(?:{'|'.join(map(re.escape, form.split('|')))})"
+                made += f"(?:{'|'.join(map(re.escape, (*form.split('|'), _for_any(form))))})"
             elif name in known:
                 made += f"(?P={name})"
             elif name is not None:
@@ -63,6 +63,19 @@ class KeptWords:
             return None
         found = self._pattern.fullmatch(sentence)
         return None if found is None else found.groupdict()
+
+
+def _for_any(form: str) -> str:
+    """Return words chosen by a number as seasons before 0.2.0 keep them.
+
+    Examples
+    --------
+    >>> _for_any("record lies|records lie")
+    'record(s) lie'
+    """
+    noun = form.partition("|")[0].partition(" ")[0]
+    many = form.partition("|")[2]
+    return many.replace(f"{noun}s", f"{noun}(s)", 1)
 
 
 class KnownSentences:

@@ -340,7 +340,9 @@ class _AsKept(Formatter):
     def convert_field(self, value: Any, conversion: Any) -> Any:  # noqa: ANN401, ARG002
         return value
 
-    def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401, ARG002
+    def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401
+        if "|" in format_spec:  # words chosen by a number
+            return format_spec.split("|")[value != "1"]
         return str(value)
 
 

@@ -21,6 +21,7 @@ KNOWN = KnownSentences([
         ("Rows 3 and 3 cross each other.", "Rows {name} and {name} cross each other.",
          {"name": "3"}),
         ("1 time stands twice.", "{n} {n:time stands|times stand} twice.", {"n": "1"}),
+        ("4 time(s) stand twice.", "{n} {n:time stands|times stand} twice.", {"n": "4"}),
         ("20 times stand twice.", "{n} {n:time stands|times stand} twice.", {"n": "20"}),
     ],
 )  # fmt: skip
@@ -39,9 +40,12 @@ def test_a_number_with_a_point_ends_no_sentence():
 
 def test_a_sentence_kept_as_text_is_said_as_the_one_it_was_made_of(speaking):
     said = worded("{n} {n:block lies|blocks lie} on none of the plots.", n=3)
+    one = worded("{n} {n:block lies|blocks lie} on none of the plots.", n=1)
     also = worded("On {bare} of {n} plots no rows were drawn; straight ones are laid.", bare=1, n=4)
     speaking("es")
     assert language.in_words(str(said)) == language.in_words(said)
+    assert language.in_words(str(one)) == language.in_words(one) != language.in_words(said)
+    assert language.in_words("3 block(s) lie on none of the plots.") == language.in_words(said)
     both = language.in_words(f"{said} {also}")
     assert both == f"{language.in_words(said)} {language.in_words(also)}"
     assert language.in_words(f"{said} Nobody knows it.").endswith("[English]")

@@ -70,9 +70,10 @@ class _Turns:
         if depth == 0 and fcntl is not None:
             with suppress(OSError):
                 descriptor = os.open(file, os.O_RDONLY)
-                end = time.monotonic() + self.most_s
-                while not _locked(descriptor) and time.monotonic() < end:
+                began = time.monotonic()
+                while not _locked(descriptor) and time.monotonic() < began + self.most_s:
                     time.sleep(0.02)
+                FIRST_USE.waited(time.monotonic() - began)
         self._held[file] = descriptor, depth + 1
 
     def end(self, file: str) -> None:

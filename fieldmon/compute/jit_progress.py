@@ -18,7 +18,7 @@ class FirstUse:
     def __init__(self) -> None:
         self.compiled = 0
         self._depth = 0
-        self._since = 0.0
+        self._since = self._began = self._took_s = 0.0
         self._listener: Listener | None = None
 
     def tell(self, listener: Listener) -> None:
@@ -30,8 +30,23 @@ class FirstUse:
         """Return whether one is being compiled."""
         return self._depth > 0
 
+    def work_clock(self) -> float:
+        """Return seconds by a clock that stands while loops are compiled, or waited for.
+
+        Work that may take so long and no longer goes by it: what an installation compiles once
+        must not cost the first plan what all others get.
+        """
+        now = monotonic()
+        return now - self._took_s - (now - self._began if self._depth else 0.0)
+
+    def waited(self, seconds: float) -> None:
+        """Note how long another process was waited for that compiles the same loops."""
+        self._took_s += seconds
+
     def began(self) -> None:
         """Note that a loop's compiling has begun; loops it calls are compiled within."""
+        if not self._depth:
+            self._began = monotonic()
         if not self.compiled and not self._depth:
             self._since = monotonic()
         self._depth += 1
@@ -39,6 +54,9 @@ class FirstUse:
 
     def ended(self) -> None:
         """Note that it is done, or has failed."""
+        if self._depth == 1:
+            now = monotonic()
+            self._took_s, self._began = self._took_s + now - self._began, now
         self._depth -= 1
         self.compiled += 1
         self._say()

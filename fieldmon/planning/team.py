@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import PROVED, bound_sentence
@@ -254,7 +254,7 @@ def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
     A plant that is visited by more than one gets dearer, one that is visited by none cheaper, by
     steps as Polyak's, in a direction that remembers the last ones. Any price gives a bound.
     """
-    until = monotonic() + _WITHIN_S
+    until = FIRST_USE.work_clock() + _WITHIN_S
     price = direction = np.zeros(len(most))
     least, kept, step, in_vain = np.inf, price, 1.0, 0
     for _ in range(_PRICES):
@@ -272,7 +272,7 @@ def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
         direction = slope + _MEMORY * direction
         direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
         norm = float((direction**2).sum())
-        if norm == 0.0 or value <= held * (1.0 + PROVED) or monotonic() > until:
+        if norm == 0.0 or value <= held * (1.0 + PROVED) or FIRST_USE.work_clock() > until:
             break
         price = np.clip(price - step * (value - held) / norm * direction, 0.0, most)
     return least

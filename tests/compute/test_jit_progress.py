@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 
+from fieldmon.compute import jit_progress
 from fieldmon.compute.jit_progress import FirstUse
 
 A_NIGHT = """
@@ -25,6 +26,30 @@ def test_a_loop_within_a_loop_is_counted_and_the_outer_one_ends_last():
     use.ended()
     use.ended()
     assert heard == [(0, True), (0, True), (1, True), (2, False)]
+
+
+def test_the_clock_of_work_stands_while_loops_are_compiled_or_waited_for(monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(jit_progress, "monotonic", lambda: now[0])
+    use = FirstUse()
+    began = use.work_clock()
+
+    def after(seconds):
+        now[0] += seconds
+        return use.work_clock() - began
+
+    assert after(2.0) == 2.0
+    use.began()
+    assert after(30.0) == 2.0
+    use.began()
+    use.ended()
+    assert after(10.0) == 2.0
+    use.ended()
+    assert after(0.0) == 2.0
+    assert after(1.5) == 3.5
+    now[0] += 20.0
+    use.waited(20.0)
+    assert after(0.5) == 4.0
 
 
 def test_only_the_first_use_of_an_installation_compiles(tmp_path):

@@ -184,11 +184,8 @@ def test_a_bound_of_two_gates_holds_what_only_the_farther_gate_can_reach():
     assert team_bound([_Task(at_low, robot, worth), _Task(at_high, robot, worth)]) >= 1.0 - 1e-9
 
 
-def test_with_time_for_all_a_team_is_bound_by_what_all_plants_hold_from_whatever_gates(
-    monkeypatch,
-):
+def test_with_time_for_all_a_team_is_bound_by_what_all_plants_hold_from_whatever_gates():
     """Each of two could visit all alone: only a price of plants tells that nobody need do both."""
-    monkeypatch.setattr(team_room, "_WITHIN_S", 1e9)  # loops may have to be compiled
     grid = rectangle(6, 8)
     low, high = grid.xy_m.min(axis=0) - 3.0, grid.xy_m.max(axis=0) + 3.0
     gates = [Aisles.of(grid, (float(at[0]), float(at[1]))) for at in (low, high)]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import FINDS, PROVED, bound_sentence, share_above
@@ -270,10 +270,10 @@ def _bounds(posed: _Posed, within_s: float = np.inf) -> list[PriceBound]:
 
     The first is there however long it takes; compiled loops let others go on beside.
     """
-    until = monotonic() + within_s
+    until = FIRST_USE.work_clock() + within_s
 
     def bounded_by(make: Callable[[], Priced | Blocks | None]) -> PriceBound | None:
-        left_s = until - monotonic()
+        left_s = until - FIRST_USE.work_clock()
         below = make() if left_s > 0.0 or make is ways[0] else None
         return None if below is None else upper_bound(below, posed.clock.seconds_left, left_s)
 
@@ -307,7 +307,7 @@ def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf
     one lowest place. The next price tried is where the lines of the best drives known to either
     side of it cross, or between them where that comes nearer too slowly (Kelley's cutting planes).
     """
-    began = monotonic()
+    began = FIRST_USE.work_clock()
     reward, costs = below.of_all, below.costs
     stop_s = max(costs.stop_s, 1e-9)
     high = float(reward.max()) / stop_s
@@ -330,7 +330,7 @@ def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf
         left_s = seconds - below.seconds(one, middle)
         met[left_s < 0.0] = one, middle
         lines[left_s < 0.0] = here - middle * left_s, left_s
-        if monotonic() - began > within_s or here <= least * (1.0 + _SAME):
+        if FIRST_USE.work_clock() - began > within_s or here <= least * (1.0 + _SAME):
             break
         if left_s < 0.0:
             low = middle
@@ -338,7 +338,7 @@ def upper_bound(below: Priced | Blocks, seconds: float, within_s: float = np.inf
             break
         else:
             high = middle
-    if monotonic() - began <= within_s:
+    if FIRST_USE.work_clock() - began <= within_s:
         value = min(value, below.bound_by_kind(seconds, price, began + within_s))
     return PriceBound(value * (1.0 + _ROUNDED), price, below, tuple(met.values()))
 

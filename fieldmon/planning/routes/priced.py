@@ -6,12 +6,12 @@ then follows from its plants alone, and the best drive from a sweep up the ladde
 
 from __future__ import annotations
 
-from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.planning.routes.aisle_ways import IMPOSSIBLE, Costs, LadderRoom, value_ways
 from fieldmon.planning.routes.frontier import GATE_CLOSED, GATE_OPEN, N_WAYS, Tables, tables
 
@@ -189,7 +189,7 @@ def least_by_kind(
     price
         Where to begin.
     until_s
-        Up to which moment of the clock prices are tried.
+        Up to which moment of `FIRST_USE.work_clock` prices are tried.
     """
     worth, reward = kinds(price)
     shape = worth.shape
@@ -203,7 +203,7 @@ def least_by_kind(
         low = np.where(too_long, np.maximum(low, price), low)
         high = np.where(too_long, high, np.minimum(high, price))
         at = np.unravel_index(np.argmax(least), shape)
-        if high[at] < _CLOSE * low[at] or monotonic() > until_s:
+        if high[at] < _CLOSE * low[at] or FIRST_USE.work_clock() > until_s:
             break
         price = float(np.sqrt(low[at] * high[at]))
     return least

@@ -322,7 +322,7 @@ def test_a_record_speaks_of_its_nearest_plant_unless_that_is_too_far():
 
 
 def test_records_from_nowhere_say_nothing_about_plants():
-    lost = Observations.of([[np.nan, np.nan], [30.36, 35.15], [1e6, 1e6]], [PRESENT] * 3)
+    lost = Observations.of([[np.nan, np.nan], [30.36, 35.15], [-179.0, 89.0]], [PRESENT] * 3)
     assert (record_states(GRID, lost) == UNKNOWN).all()
     assert (record_states(GRID, Observations.none()) == UNKNOWN).all()
 

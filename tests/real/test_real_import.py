@@ -43,7 +43,7 @@ def test_riseholme_poles_and_paths_are_points_and_lines(shared):
     np.testing.assert_allclose(paths.value.geoms[0].coords[0], (-0.524551, 53.26801), atol=1e-9)
     said = " ".join(f.sentence for f in paths.messages)
     assert "81 features that are no lines" in said
-    assert "18 lines that do not lead anywhere" in said
+    assert "18 lines that lead nowhere" in said
 
 
 def test_the_banana_field_has_its_four_corners(shared):
@@ -178,7 +178,7 @@ def test_aphid_counts_lie_on_the_fields_they_name_and_six_names_are_unknown(shar
     options = RecordOptions().naming(count="SweepsPeaAphids")
     path = folder / "parasitism-2011-2019.csv"
     read = read_records(path, options, places=NamedPlaces(fields))
-    (unknown,) = [f.sentence for f in read.messages if "that are not known" in f.sentence]
+    (unknown,) = [f.sentence for f in read.messages if "plots not known" in f.sentence]
     assert "6 plots" in unknown
     assert unknown.endswith(": 110/110, 2110, 349_Clover, 4110, 635S, N1902.")
     assert any("1 record names no plot" in f.sentence for f in read.messages)

@@ -123,11 +123,14 @@ class PhoneBrowser:
 
     def kill(self):
         """End it as a phone does that runs out of battery: no goodbye."""
-        mine = f"--user-data-dir={self.folder}"
+        mine, killed = f"--user-data-dir={self.folder}", []
         for one in psutil.process_iter(["pid", "cmdline"]):
             if mine in (one.info["cmdline"] or []):
                 with suppress(ProcessLookupError):
                     os.kill(one.info["pid"], 9)
+                    killed.append(one)
+        # until it is gone its disk is locked for the next one
+        psutil.wait_procs(killed, timeout=180)
         with suppress(PlaywrightError):
             self.window.close()
         self.open()

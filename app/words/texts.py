@@ -954,6 +954,8 @@ SCOUT_PAGE = {
     "row": "Row", "plant": "Plant", "no_such_plant": "There is no such plant.",
     "no_picture": "This is no picture that the phone can read.",
     "phone_full": "The phone is full: this was NOT kept. Make room and try again.",
+    "no_disk": "This phone keeps nothing for this page now, so no work can begin. Leave private "
+    "browsing and close other windows of this page. It tries again by itself.",
     "not_kept": "This was NOT kept ({why}). Try again.",
     "plan_rest": "Plan the rest anew", "ahead_takes": "What is ahead takes {minutes} minutes.",
     "your_rows": "Your part: rows {low} to {high}.",

@@ -12,6 +12,7 @@ from datetime import date
 import pytest
 
 from app.state.scout_page import invitation
+from app.words import texts
 from fieldmon.monitoring import Season, photos, scouts
 from fieldmon.monitoring.day_ahead import route_ahead
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
@@ -148,6 +149,26 @@ def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, li
         else:
             assert plant_of(phone.page) == before, "what was not kept is asked for again"
         assert sorted(records) == sorted(said)
+
+
+_NO_DISK = """() => {
+  const open = IDBFactory.prototype.open;
+  IDBFactory.prototype.open = function (...told) {
+    if (!window.diskIsBack) throw new DOMException("no disk", "UnknownError");
+    return open.apply(this, told);
+  };
+}"""
+
+
+def test_a_phone_that_keeps_nothing_is_said_and_work_begins_when_it_does(season, line, phone):
+    invited(phone, line, season)
+    line.go()
+    phone.page.add_init_script(f"({_NO_DISK})()")
+    phone.page.reload()
+    phone.page.get_by_role("alert").get_by_text(str(texts.SCOUT_PAGE["no_disk"])).wait_for()
+    phone.page.evaluate("() => { window.diskIsBack = true; }")
+    phone.page.locator("#clean").wait_for()
+    assert phone.page.get_by_role("alert").count() == 0
 
 
 # a network comes, so often; each time until the page says how it went

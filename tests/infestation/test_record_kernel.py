@@ -281,7 +281,9 @@ def test_exchanged_longitude_and_latitude_are_recognised():
 
 
 def test_metres_taken_for_degrees_are_recognised():
-    with pytest.raises(ObservationError, match="longitude and latitude in degrees, but one is 735000"):
+    with pytest.raises(
+        ObservationError, match="longitude and latitude in degrees, but one is 735000"
+    ):
         heard(Observations.of([[735_000.0, 3_360_000.0], [np.nan, np.nan]], [PRESENT, ABSENT]))
 
 

@@ -5,9 +5,11 @@ import { Page } from "./page.js";
 import { Runner } from "./runner.js";
 import { openStore } from "./store.js";
 import { Sync } from "./sync.js";
-import { phones } from "./words.js";
+import { phones, say, speak } from "./words.js";
 
 const isApple = "standalone" in navigator;
+// a disk is waited for so long before it is said, and so long before it is asked for again
+const SLOW_MS = 5000, AGAIN_MS = 1000;
 
 /** Who may do what, from the address that the code holds; the key is then out of sight. */
 function accessOfAddress() {
@@ -19,10 +21,36 @@ function accessOfAddress() {
   return { access, language: said.get("lang") };
 }
 
+/** The phone's disk. As long as it cannot be had, as in some private windows, that is said and it is tried again. */
+async function storeOfPhone() {
+  const slow = setTimeout(sayNoDisk, SLOW_MS);
+  for (;;) {
+    try {
+      const store = await openStore();
+      clearTimeout(slow);
+      return store;
+    } catch {
+      await sayNoDisk();
+      await new Promise((done) => setTimeout(done, AGAIN_MS));
+    }
+  }
+}
+
+async function sayNoDisk() {
+  const root = document.getElementById("page");
+  if (root.children.length > 0) return;
+  const said = document.createElement("p");
+  said.className = "large";
+  said.setAttribute("role", "alert");
+  root.append(said);
+  await speak(phones()).catch(() => {}); // without a network, the words may be out of reach, too
+  said.textContent = say("no_disk");
+}
+
 async function begin() {
   if (isApple) document.querySelector("link[rel=manifest]")?.remove();
   const { access, language } = accessOfAddress();
-  const store = await openStore();
+  const store = await storeOfPhone();
   const field = new Field(store);
   const page = new Page(document.getElementById("page"), field, store);
   const [choices] = await Promise.all([store.get("choices"), field.open(access)]);

@@ -151,29 +151,17 @@ def _clock(second: float) -> str | None:
     return f"{hour:02d}:{rest // 60:02d}:{rest % 60:02d}"
 
 
-def not_held(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> NDArray[np.bool_]:
-    """Return ``(k,)`` which rows are new: none that counts, nor one before it, is alike."""
-    at = schema.INSPECTIONS.names.index("digest")
-    held = "SELECT 1 FROM inspections WHERE digest = ? AND undone = 0"
-    marks = [row[at] for row in made]
-    first = {mark: k for k, mark in reversed(list(enumerate(marks)))}
-    new = [
-        first[mark] == k and db.execute(held, (mark,)).fetchone() is None
-        for k, mark in enumerate(marks)
-    ]
-    return np.array(new, bool)
-
-
-def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> int:
-    """Add inspections that are not there yet; return how many were new."""
+def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> NDArray[np.bool_]:
+    """Add inspections that are not there yet; return ``(k,)`` which were new."""
     names = schema.INSPECTIONS.names
     into = (
         f"INSERT OR IGNORE INTO inspections ({', '.join(names)}) "  # noqa: S608 - names of ours
         f"VALUES ({', '.join('?' * len(names))})"
     )
-    new = db.executemany(into, made).rowcount  # without what the file itself notes of them
+    # counted without what the file itself notes of them
+    new = [db.execute(into, row).rowcount > 0 for row in made]
     touch(db, schema.INSPECTIONS.name)
-    return max(new, 0)
+    return np.array(new, bool)
 
 
 def in_words(result: NDArray[np.int8], on: NDArray[np.datetime64]) -> dict[str, object]:

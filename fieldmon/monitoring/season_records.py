@@ -162,10 +162,9 @@ class SeasonRecords(OpenSeason):
         made = inspection_table.rows(
             news, self.plot.grid, self.label, settings_of(db), (batch, who)
         )
-        news = news.take(inspection_table.not_held(db, made))
-        new = inspection_table.store(db, made)
-        batches.end(db, batch, new, grows=into is not None)
-        if new:
+        news = news.take(inspection_table.store(db, made))
+        batches.end(db, batch, len(news), grows=into is not None)
+        if len(news):
             self._log_seen(db, news, (batch, source, who))
         return batch, news
 

@@ -128,7 +128,7 @@ def _write(
     source, who = f"route-{on(day)}.csv", WHO[day % 2]
     batch = batches.begin(db, "findings", source, who)
     rows = inspection_table.rows(seen, season.plot.grid, season.label, settings, (batch, who))
-    batches.end(db, batch, inspection_table.store(db, rows))
+    batches.end(db, batch, int(inspection_table.store(db, rows).sum()))
     season_log.append(
         db, "seen", who, states=season_log.states(db, [batch]), batch=batch, source=source,
         **inspection_table.in_words(seen.result, seen.date),

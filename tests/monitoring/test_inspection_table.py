@@ -24,7 +24,7 @@ MONDAY = np.datetime64(BEGINS)
 
 def kept(db, inspections, batch=(1, "Ann")):
     rows = inspection_table.rows(inspections, GRID, LABEL, SETTINGS, batch)
-    return inspection_table.store(db, rows)
+    return int(inspection_table.store(db, rows).sum())
 
 
 def one(plant=7, result=FOUND, on=MONDAY, **columns):

@@ -32,7 +32,7 @@ def record(db, rng, who, clock):
     db.execute("UPDATE batches SET at = ? WHERE fid = ?", (f"2026-04-06T{clock:06d}", batch))
     found = Inspections.of(plant, result, on)
     rows = inspection_table.rows(found, GRID, LABEL, SETTINGS, (batch, who))
-    batches.end(db, batch, inspection_table.store(db, rows))
+    batches.end(db, batch, int(inspection_table.store(db, rows).sum()))
     counting = [fid for (fid,) in db.execute("SELECT fid FROM inspections WHERE undone = 0")]
     if counting and rng.random() < 0.3:
         batches.undo_one(db, rng.choice(counting))

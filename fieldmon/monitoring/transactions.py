@@ -236,19 +236,25 @@ def wait_until_free(
     if path in _still() or not path.is_file():
         return True
     began = time.monotonic()
-    with _sentences(path), _opened(path) as db:
-        (usual_ms,) = db.execute("PRAGMA busy_timeout").fetchone()
-        db.execute(f"PRAGMA busy_timeout = {round(1000 * min(_ASK_AGAIN_S, patience_s))}")
-        try:
-            while not _is_free(db, to_write=to_write):
-                waited_s = time.monotonic() - began
-                if waited_s >= patience_s:
-                    return False
-                if waited_s >= _MOMENT_S:
-                    tell(waited_s)
-        finally:
-            db.execute(f"PRAGMA busy_timeout = {usual_ms}")
+    with _sentences(path), _opened(path) as db, _patience(db, min(_ASK_AGAIN_S, patience_s)):
+        while not _is_free(db, to_write=to_write):
+            waited_s = time.monotonic() - began
+            if waited_s >= patience_s:
+                return False
+            if waited_s >= _MOMENT_S:
+                tell(waited_s)
     return True
+
+
+@contextmanager
+def _patience(db: sqlite3.Connection, seconds: float) -> Iterator[None]:
+    """Let a connection wait for others so long within this block."""
+    (usual_ms,) = db.execute("PRAGMA busy_timeout").fetchone()
+    db.execute(f"PRAGMA busy_timeout = {round(1000 * seconds)}")
+    try:
+        yield
+    finally:
+        db.execute(f"PRAGMA busy_timeout = {usual_ms}")
 
 
 def _is_free(db: sqlite3.Connection, *, to_write: bool) -> bool:
@@ -372,11 +378,8 @@ def _into_one_file(db: sqlite3.Connection) -> None:
     That program may still have it open: then it stays so until it is closed.
     """
     if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
-        (patience_ms,) = db.execute("PRAGMA busy_timeout").fetchone()
-        db.execute("PRAGMA busy_timeout = 0")
-        with suppress(sqlite3.OperationalError):
+        with _patience(db, 0.0), suppress(sqlite3.OperationalError):
             db.execute("PRAGMA journal_mode = DELETE")
-        db.execute(f"PRAGMA busy_timeout = {patience_ms}")
 
 
 def _version(db: sqlite3.Connection) -> int | None:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.wording import digits_of_estimate
+
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -38,4 +40,4 @@ def of(
 
 def _rounded(value: float | None) -> float | None:
     """Return an estimate as precise as `about` says it; a number, by which a table can sort."""
-    return None if value is None else round(value, 0 if round(value, 1) >= 10 else 1)
+    return None if value is None else round(value, digits_of_estimate(value))

@@ -97,6 +97,17 @@ def figure(value: float, form: str = ",", after: str = "") -> Worded:
     return worded(f"{{n:{form}}}{after}", n=value)
 
 
+def digits_of_estimate(value: float) -> int:
+    """Return how many digits behind the point an estimate is worth: none from 10 on, else one.
+
+    Examples
+    --------
+    >>> digits_of_estimate(9.96), digits_of_estimate(4.593)
+    (0, 1)
+    """
+    return 0 if round(abs(value), 1) >= 10 else 1
+
+
 def estimate(value: float) -> Worded:
     """Return an estimate as precise as it is worth saying: from 10 on as a whole number.
 
@@ -105,7 +116,7 @@ def estimate(value: float) -> Worded:
     >>> estimate(1645.93), estimate(9.96), estimate(4.593)
     ('1,646', '10', '4.6')
     """
-    return figure(value, ",.0f" if round(abs(value), 1) >= 10 else ".1f")
+    return figure(value, f",.{digits_of_estimate(value)}f")
 
 
 def hours_figure(value_h: float) -> Worded:

@@ -6,6 +6,7 @@ the browser's; the server hears of taps, of finished drawings and of selections.
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
@@ -163,7 +164,7 @@ def show(content: MapContent, answers: MapAnswers | None = None) -> None:
     """Show the map, or what has changed of it."""
     answers = answers or MapAnswers()
     _component(
-        key=KEY, data=as_data(content, answers), height="stretch",
+        key=KEY, data=as_bytes(as_data(content, answers)), height="stretch",
         on_tapped_change=lambda: _heard(answers),
         on_drawn_change=lambda: _heard(answers),
         on_selected_change=lambda: _heard(answers),
@@ -172,6 +173,14 @@ def show(content: MapContent, answers: MapAnswers | None = None) -> None:
         # the device turned dark or light: the run that follows draws in its colours
         on_turned_change=lambda: None,
     )  # fmt: skip
+
+
+def as_bytes(data: dict[str, Any]) -> bytes:
+    """Return what the browser is sent as JSON of few bytes, written once.
+
+    Streamlit writes what is no bytes twice: to send it, and to tell whether it is the same.
+    """
+    return json.dumps(data, ensure_ascii=False, separators=(",", ":")).encode()
 
 
 def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def map_of(app):
     """Return what the map's component is sent, with each layer's JSON in its place."""
     named = (one.proto for one in app.get("bidi_component"))
     (sent,) = (one for one in named if one.component_name == "fieldmon_map")
-    data = json.loads(sent.json)
+    data = json.loads(sent.bytes)
     data["layers"] = [{**one, **json.loads(fetched(one["url"]))} for one in data["layers"]]
     return data
 

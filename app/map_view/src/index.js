@@ -682,10 +682,12 @@ function saved(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
+const UTF8 = new TextDecoder();
+
 export function mount(component) {
   const { parentElement } = component;
   parentElement.mapPage ??= new MapPage(parentElement);
-  parentElement.mapPage.show(component);
+  parentElement.mapPage.show({ ...component, data: JSON.parse(UTF8.decode(component.data)) });
   return () => {
     parentElement.mapPage?.end();
     parentElement.mapPage = null;

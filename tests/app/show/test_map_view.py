@@ -161,3 +161,11 @@ def test_every_word_of_the_map_is_one_that_its_script_shows():
     assert "words[heard.standing]" in source
     standings = {*(WAITING, LIVE, PAUSED, FAILED, LOST), "ended", "away"}
     assert asked | standings == set(texts.MAP_WORDS)
+
+
+def test_the_browser_is_sent_the_same_in_few_bytes():
+    data = {"alt": "מפה", "layers": [{"id": "plants", "url": "/a"}], "play": None, "at": [1.5, -2]}
+    sent = map_view.as_bytes(data)
+    assert json.loads(sent) == data
+    assert len(sent) < len(json.dumps(data))
+    assert "מפה".encode() in sent

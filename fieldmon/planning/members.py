@@ -13,6 +13,9 @@ from fieldmon.plot.robot import Robot
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+# our choice: no plot has so many aisles that they would not meet
+_MOST_MEMBERS = 1000
+
 
 @dataclass(frozen=True)
 class TeamMember:
@@ -100,6 +103,8 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
                 n=n,
             )
         )
+    if n > _MOST_MEMBERS:
+        raise SettingError(f"A team must have {_MOST_MEMBERS} members at most, but it has {n}.")
     return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
 
 

@@ -211,7 +211,10 @@ class Movement:
         _must("movement", "along_over_across", ratio, "0.01 to 100", 0.01 <= ratio <= 100)
         if not isinstance(self.hours, tuple | list) or len(self.hours) != 2:
             raise SettingError(
-                f"Hours of movement must be a pair, as (20.0, 6.0), but it is {shown(self.hours)}."
+                worded(
+                    "Hours of movement must be two, as 20 and 6, but they are {hours}.",
+                    hours=shown(self.hours),
+                )
             )
         for hour in self.hours:
             _must("movement", "hours", hour, "0 to 24", 0 <= hour <= 24)

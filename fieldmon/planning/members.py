@@ -104,7 +104,11 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
             )
         )
     if n > _MOST_MEMBERS:
-        raise SettingError(f"A team must have {_MOST_MEMBERS} members at most, but it has {n}.")
+        raise SettingError(
+            worded(
+                "A team must have {most} members at most, but it has {n}.", most=_MOST_MEMBERS, n=n
+            )
+        )
     return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.infestation.observations import MOST_COUNTED
 from fieldmon.monitoring import findings, photos
 
 #: findings in one request
@@ -50,7 +51,7 @@ FINDING: dict[str, Any] = {
             "description": "From 0, as in plot.",
         },
         "result": {"enum": [*RESULT_NAMES.values(), None]},
-        "count": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
+        "count": {"type": ["number", "null"], "minimum": 0, "maximum": MOST_COUNTED},
         "stage": {"type": "string", "maxLength": 60},
         "leaves": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
         "notes": {"type": "string", "maxLength": 2000},

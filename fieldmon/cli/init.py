@@ -32,6 +32,7 @@ from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -157,7 +158,7 @@ def init(options: InitOptions) -> None:
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)
     ahead = season.status(settings.begins).estimate
     typer.echo(
-        f"Season begun in {path}: {len(known.records)} records, about {ahead.expected:.0f} plants "
-        f"believed infested ({ahead.low} to {ahead.high})."
+        f"Season begun in {path}: {len(known.records)} records, about {estimate(ahead.expected)} "
+        f"plants believed infested ({ahead.low} to {ahead.high})."
     )
     typer.echo(f"Next: fieldmon plan {shlex.quote(str(path))} -o route.geojson")

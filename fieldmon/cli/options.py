@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -219,6 +220,19 @@ LastDate = Annotated[
 StartTime = Annotated[str, typer.Option(help="Local time at which work starts, HH:MM.")]
 
 
+#: settings of `Robot`: the option of each, how many of its units make one of the setting's, and
+#: the unit where a rule does not say it
+_WORKER_OPTIONS = {
+    "hours": ("hours", 1.0, " h"),
+    "look_s": ("look", 1.0, " s"),
+    "speed_m_s": ("speed", 3.6, " km/h"),
+    "row_change_s": ("row_change", 1.0, " s"),
+    "turn_180_s": ("turn", 1.0, " s"),
+    "width_m": ("width", 1.0, ""),
+    "length_m": ("length", 1.0, ""),
+}
+
+
 @dataclass(frozen=True)
 class WorkerOptions:
     """Who inspects, and how long."""
@@ -235,17 +249,19 @@ class WorkerOptions:
     robot_times: RobotTimesName = None
 
     def given(self) -> dict[str, float]:
-        """Return what was said, as settings of `Robot`."""
-        said = {
-            "hours": self.hours,
-            "look_s": self.look,
-            "speed_m_s": None if self.speed is None else self.speed / 3.6,
-            "row_change_s": self.row_change,
-            "turn_180_s": self.turn,
-            "width_m": self.width,
-            "length_m": self.length,
-        }
-        return {name: value for name, value in said.items() if value is not None}
+        """Return what was said, as settings of `Robot`; refuse in the option's own words."""
+        from fieldmon.plot.robot import broken_rule
+
+        given = {}
+        for name, (option, units, unit) in _WORKER_OPTIONS.items():
+            value = getattr(self, option)
+            if value is None:
+                continue
+            if rule := broken_rule(name, value, units):
+                flag = f"--{option.replace('_', '-')}"
+                raise SettingError(f"{flag} must be {_with_unit(rule, unit)}, but it is {value:g}.")
+            given[name] = value / units
+        return given
 
     def robot(self) -> Robot:
         """Return the robot, or the scout, with what was said."""
@@ -262,6 +278,11 @@ class WorkerOptions:
 
         charged = robot if self.robot_times is None else robot.with_times(self.robot_times)
         return replace(charged, **self.given())  # type: ignore[arg-type]
+
+
+def _with_unit(rule: str, unit: str) -> str:
+    """Return a rule with the unit behind its number: "108 km/h at most"."""
+    return re.sub(r"\d+(\.\d+)?", lambda number: number[0] + unit, rule, count=1)
 
 
 @dataclass(frozen=True)

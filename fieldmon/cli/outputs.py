@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -88,8 +89,8 @@ def day_in_words(route: Route) -> str:
     """Return what a planned day comes to, and what no other route can exceed, where it is known."""
     said = (
         f"{len(route)} of {len(route.aisles.grid)} plants in {route.end_s / 3600:.1f} h, "
-        f"{route.drive_m / 1000:.2f} km; about {route.expected_finds:.1f} of them infested, "
-        f"about {route.expected_found:.1f} of these would be found."
+        f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_finds)} of them infested, "
+        f"about {estimate(route.expected_found)} of these would be found."
     )
     more = (route.bound_sentence, route.aisles.shut_sentence())
     return "\n".join([said, *(one for one in more if one)])

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.treating import TreatmentRule
 
+# ten years
+_MOST_DAYS = 3650
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
 
 
@@ -56,7 +58,7 @@ class SimulateOptions:
         ),
     ] = None
     every: Every = None
-    days: Annotated[int, typer.Option(help="Working days.")] = 25
+    days: Annotated[int, typer.Option(max=_MOST_DAYS, help="Working days.")] = 25
     seed: Annotated[int, typer.Option(help="Seed: the same seed, the same season.")] = 1
     infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
     spread: Annotated[

@@ -95,6 +95,8 @@ def _show_batches(kept: Season) -> None:
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
+    from fieldmon.compute.wording import estimate
+
     ahead = now.estimate
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected that day     {now.inspected_today:6d}, {now.found_today} found infested"
@@ -104,8 +106,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         + (f" ({now.finds} finds: some again)" if now.finds > now.found else "")
     )
     yield (
-        f"  expected still there   {ahead.expected:6.1f} ({ahead.low} to {ahead.high} with a "
-        "chance of 90 %)"
+        f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low} to {ahead.high} with "
+        "a chance of 90 %)"
     )
     yield f"  found of all           {now.detection_pct:6.1f} %, as believed"
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
@@ -122,7 +124,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
             yield f"                         {guessed} of its days are filled in: no weather known"
     spots = now.hot_spots
     yield f"  hot spots              {len(spots):6d}" + "".join(
-        f"; {spots.found[h]} finds where {spots.expected[h]:.1f} were expected"
+        f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
 

@@ -7,6 +7,7 @@ from fieldmon.cli.study_beliefs import beliefs
 from fieldmon.cli.study_calibrate import calibrate
 from fieldmon.cli.study_no_prior import no_prior
 from fieldmon.cli.study_prior import prior
+from fieldmon.cli.study_replanning import replanning
 from fieldmon.cli.study_routes import routes
 from fieldmon.cli.study_run import study_run
 from fieldmon.cli.study_samplers import samplers
@@ -23,6 +24,7 @@ app.command("calibrate")(calibrate)
 app.command("samplers")(samplers)
 app.command("beliefs")(beliefs)
 app.command("routes")(routes)
+app.command("replanning")(replanning)
 app.command("weather")(weather)
 app.command("spread")(spread)
 app.command("run")(study_run)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from fieldmon.cli.times import clock
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def tell_member(name: str, start: datetime, route: Route) -> None:
     """Say what one of a team is to do."""
     typer.echo(
         f"{name}: from {start:%H:%M}, {len(route)} plants in {route.end_s / 3600:.1f} h, "
-        f"{route.drive_m / 1000:.2f} km; about {route.expected_found:.1f} finds."
+        f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_found)} finds."
     )
 
 

@@ -13,6 +13,7 @@ from fieldmon.cli.messages import tell_not_come
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile, TheDate
 from fieldmon.cli.times import clock, day, day_on
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -135,8 +136,8 @@ def treat(options: TreatOptions) -> None:
     tell_not_come(on_day, kept.plot.field, "the day of the treatment")
     ahead = kept.status(on_day).estimate
     typer.echo(
-        f"Treatment noted as batch {done.batch}; about {ahead.expected:.1f} plants are believed "
-        f"infested now ({ahead.low} to {ahead.high})."
+        f"Treatment noted as batch {done.batch}; about {estimate(ahead.expected)} plants are "
+        f"believed infested now ({ahead.low} to {ahead.high})."
     )
     _say_what_follows(kept, done.batch, learnt=options.efficacy is None)
 

@@ -14,7 +14,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
     from typing import TypeVar
 
     import numpy as np
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _LONGEST = 40
 _MOST_L_HA = 100_000.0
 _NUMBERS = {"float", "int"}
+# beyond it, whole numbers of Python become no others
+_MOST = 10**300
 
 
 def must_be(
@@ -97,6 +99,22 @@ def must_hold_numbers(settings: Any, whose: str) -> None:  # noqa: ANN401 - any 
             continue
         if not isinstance(value, Real):
             raise SettingError(f"{whose} {field.name} must be a number, but it is {shown(value)}.")
+        if isinstance(value, int) and abs(value) > _MOST:
+            raise SettingError(
+                f"{whose} {field.name} must be a number of less than 300 digits, "
+                f"but it is {shown(value)}."
+            )
+
+
+def is_one_of(given: object, known: Collection[str]) -> bool:
+    """Return whether something is one of some names, whatever it is.
+
+    Examples
+    --------
+    >>> is_one_of("with", ("none", "with")), is_one_of(["with"], ("none", "with"))
+    (True, False)
+    """
+    return isinstance(given, str) and given in known
 
 
 def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDArray[K]:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
+# no plot has more rows or is longer
+_MOST = {"rows": 10_000, "least_on_m": 10_000.0, "least_off_m": 10_000.0, "ring": 10_000}
+
 
 @dataclass(frozen=True)
 class Sprayer:
@@ -33,7 +36,7 @@ class Sprayer:
     Raises
     ------
     SettingError
-        If a number is below 0.
+        If a number is below 0, or beyond any plot.
     """
 
     rows: int = 2
@@ -48,6 +51,15 @@ class Sprayer:
                     worded(
                         "A sprayer's {name} must be 0 or more, but it is {value:g}.",
                         name=name.replace("_", " "),
+                        value=value,
+                    )
+                )
+            if value > _MOST[name]:
+                raise SettingError(
+                    worded(
+                        "A sprayer's {name} must be {most:g} at most, but it is {value:g}.",
+                        name=name.replace("_", " "),
+                        most=_MOST[name],
                         value=value,
                     )
                 )

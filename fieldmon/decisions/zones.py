@@ -19,7 +19,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, estimate, worded
 from fieldmon.decisions.rings import best_rings, rings_bound
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.switching import strips_of, switch
@@ -91,16 +91,17 @@ class Zones:
         """Return it in words, beside treating the whole plot."""
         if not len(self):
             return worded(
-                "Treat nowhere: {outside:.1f} infested plants are expected, and nowhere would "
+                "Treat nowhere: {outside} infested plants are expected, and nowhere would "
                 "spraying save more than it costs.",
-                outside=self.outside,
+                outside=estimate(self.outside),
             )
         return worded(
-            "Treat {area:.2f} ha in {zones}, {share:.0%} of the plot: {inside:.1f} infested plants "
-            "are expected there and {outside:.1f} elsewhere. It costs {cost:.2f} and saves "
+            "Treat {area:.2f} ha in {zones}, {share:.0%} of the plot: {inside} infested plants "
+            "are expected there and {outside} elsewhere. It costs {cost:.2f} and saves "
             "{saved:.2f}.",
             area=self.m2 / 10_000, zones=counted(len(self), "zone"), share=self.m2 / self.plot_m2,
-            inside=self.inside, outside=self.outside, cost=self.cost, saved=self.saved,
+            inside=estimate(self.inside), outside=estimate(self.outside), cost=self.cost,
+            saved=self.saved,
         )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ together, which Benjamini & Hochberg's (1995) procedure allows (Benjamini & Yeku
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import NoneType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,17 +21,18 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from fieldmon.compute.arguments import array_of, must_be, must_hold_numbers
 from fieldmon.compute.jit import routine
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.plot.grid import PlantGrid
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.observations import Observations
-    from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
 
@@ -40,6 +42,8 @@ _RIM = 1.01
 _ASKED, _NEIGHBOURS = 1000, 12
 # records farther from the plot than this belong to none of its plants
 _NEARBY_M = 1000.0
+# no plot is wider, or has more plants
+_MOST_M, _MOST_FINDS = 100_000.0, 100_000_000
 
 
 @dataclass(frozen=True)
@@ -66,18 +70,21 @@ class HotSpotSettings:
     least_finds: int = 3
 
     def __post_init__(self) -> None:
-        if self.radius_m is not None and not 0.0 < self.radius_m < np.inf:
+        must_hold_numbers(self, "A hot spot's")
+        if self.radius_m is not None and not 0.0 < self.radius_m <= _MOST_M:
             raise SettingError(
-                f"The radius of a hot spot's window must be above 0 m, but it is {self.radius_m}."
+                f"The radius of a hot spot's window must be above 0 m and {_MOST_M:g} m at most, "
+                f"but it is {self.radius_m}."
             )
         if not 0.0 < self.false_share < 1.0:
             raise SettingError(
                 "The tolerated share of false hot spots must lie between 0 and 1, "
                 f"but it is {self.false_share}."
             )
-        if self.least_finds < 2:
+        if not 2 <= self.least_finds <= _MOST_FINDS:
             raise SettingError(
-                f"A hot spot must hold 2 finds or more, but least_finds is {self.least_finds}."
+                "A hot spot must hold 2 finds or more, and at most so many as a plot has plants, "
+                f"but least_finds is {self.least_finds}."
             )
 
 
@@ -214,7 +221,9 @@ def hot_spots(
     Raises
     ------
     ObservationError
-        If `state` has not one entry a plant.
+        If `state` has not one entry a plant, or one is not 1, 0 or -1.
+    SettingError
+        If something is of another kind.
 
     Examples
     --------
@@ -225,15 +234,15 @@ def hot_spots(
     >>> len(fm.hot_spots(plot.grid, state))
     1
     """
+    must_be("Plants must be a PlantGrid", grid, PlantGrid, "Give plot.grid.")
+    must_be(
+        "Settings must be HotSpotSettings", settings, (HotSpotSettings, NoneType),
+        "Leave them out, or give HotSpotSettings(radius_m=10).",
+    )  # fmt: skip
     settings = settings or HotSpotSettings()
-    if len(state) != len(grid):
-        raise ObservationError(
-            f"The states of the plants must have one entry a plant ({len(grid)}), "
-            f"but there are {len(state)}."
-        )
     vine = grid.vine
     either = np.full(len(grid), UNKNOWN, np.int8)
-    np.maximum.at(either, vine, state)
+    np.maximum.at(either, vine, _states(state, len(grid)))
     inspected_m, finds_m = grid.xy_m[either != UNKNOWN], grid.xy_m[either == PRESENT]
     radius_m = settings.radius_m or _learned_radius_m(inspected_m, grid.row_spacing_m)
     p = _window_p(inspected_m, finds_m, radius_m, settings.least_finds)
@@ -259,6 +268,23 @@ def hot_spots(
         centre_m=_centre_m(finds_m, of_find, found),
         radius_m=radius_m,
     )
+
+
+def _states(given: object, n: int) -> NDArray[np.int8]:
+    """Return the state of each of `n` plants; refuse what is none."""
+    states = array_of(np.float64, "The states of the plants", given)
+    if states.shape != (n,):
+        raise ObservationError(
+            f"The states of the plants must have one entry a plant ({n}), "
+            f"but their shape is {states.shape}."
+        )
+    odd = states[~np.isin(states, (UNKNOWN, ABSENT, PRESENT))]
+    if odd.size:
+        raise ObservationError(
+            "The state of a plant must be 1 (found infested), 0 (only found clean) or -1 (never "
+            f"inspected), but one is {odd[0]:g}."
+        )
+    return states.astype(np.int8)
 
 
 def outlines_m(grid: PlantGrid, spots: HotSpots) -> list[shapely.Polygon]:

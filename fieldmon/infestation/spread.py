@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.arguments import is_one_of, must_hold_numbers
 from fieldmon.compute.jit import loop
 from fieldmon.compute.random_streams import coin, coin_bits, coin_limit
 from fieldmon.errors import SettingError
@@ -57,7 +57,7 @@ class Spread:
                     f"The spread's {name} must be a chance in 0..1, "
                     f"but it is {getattr(self, name)}."
                 )
-        if self.to not in _TO:
+        if not is_one_of(self.to, _TO):
             raise SettingError(
                 f"Spread goes to 'each', 'one' or 'all' of the neighbours, but it is {self.to!r}."
             )

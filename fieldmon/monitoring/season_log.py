@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import estimate, worded
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import touch
@@ -61,8 +61,10 @@ class LogEntry:
 
     def sentence(self) -> str:
         """Return what happened, in words."""
-        words = _SAID[self.kind]
-        return words.format_map({**_BLANK, **self.what})
+        what = _Blank(self.what)
+        if isinstance(number := what.get("expected"), int | float):
+            what["expected"] = estimate(number)
+        return _SAID[self.kind].format_map(what)
 
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""
@@ -74,12 +76,11 @@ class _Blank(dict[str, Any]):
         return "?"
 
 
-_BLANK = _Blank()
 _SAID = {
     "begins": "the log begins: {why}",
     "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
     "batch {batch}",
-    "planned": "{date}: {stops} stops by {sampler}, about {expected} finds expected",
+    "planned": "{date}: {stops} stops by {sampler}, about {expected} of them infested",
     "advised": "{date}: {said}",
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",

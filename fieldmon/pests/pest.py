@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from types import NoneType
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
+from fieldmon.compute.arguments import is_one_of, must_be, must_hold_numbers, of_kind, shown
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.plot.robot import Viewpoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.robot import Robot, Viewpoints
+    from fieldmon.plot.robot import Robot
 
     Floats = NDArray[np.float64]
 
@@ -26,6 +29,8 @@ Cutoff = Literal["horizontal", "vertical", "intermediate"]
 # nothing that lives on plants begins to develop above, or dies of warmth below
 _THRESHOLDS_C = (-10.0, 45.0)
 _TABLE_C = (-40.0, 60.0)
+# beyond them nothing on a plot is told apart: ten years, ten thousand warm days, a hundred km
+_MOST_DAYS, _MOST_DEGREE_DAYS, _MOST_M, _MOST_PER_DAY = 3650.0, 100_000.0, 100_000.0, 1e6
 
 
 @dataclass(frozen=True)
@@ -73,12 +78,14 @@ class Stage:
     mobile: bool = True
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "A stage's")
         low, high = _THRESHOLDS_C
         _must(
             self.name, "threshold_c", self.threshold_c, f"{low:g} to {high:g} °C",
             low <= self.threshold_c <= high,
         )  # fmt: skip
         _must(self.name, "degree_days", self.degree_days, "above 0", self.degree_days > 0)
+        _at_most(self.name, "degree_days", self.degree_days, _MOST_DEGREE_DAYS)
         if self.upper_c is not None:
             above = self.threshold_c < self.upper_c <= _TABLE_C[1]
             _must(self.name, "upper_c", self.upper_c, "above threshold_c, 60 °C at most", above)
@@ -172,7 +179,8 @@ class Movement:
     least_rain_mm: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.kernel not in get_args(KernelName):
+        must_hold_numbers(self, "A movement's")
+        if not is_one_of(self.kernel, get_args(KernelName)):
             raise SettingError(
                 worded(
                     "A kernel must be one of {names}, but it is {kernel!r}.",
@@ -180,7 +188,7 @@ class Movement:
                     kernel=self.kernel,
                 )
             )
-        if self.wind not in ("none", "with"):
+        if not is_one_of(self.wind, ("none", "with")):
             raise SettingError(
                 worded("The wind must be 'none' or 'with', but it is {wind!r}.", wind=self.wind)
             )
@@ -192,13 +200,22 @@ class Movement:
         rule = "a chance in 0..1 where the kernel is adjacent" if adjacent else "0 or more"
         most = 1.0 if adjacent else math.inf
         _must("movement", "per_day", self.per_day, rule, 0 <= self.per_day <= most)
+        _at_most("movement", "per_day", self.per_day, _MOST_PER_DAY)
         if self.reach_m is not None:
             _must("movement", "reach_m", self.reach_m, "above 0", self.reach_m > 0)
+            _at_most("movement", "reach_m", self.reach_m, _MOST_M)
         share = self.share_of_long_jumps
         _must("movement", "share_of_long_jumps", share, "in 0..1", 0 <= share <= 1)
         _must("movement", "least_rain_mm", self.least_rain_mm, "0 or more", self.least_rain_mm >= 0)
         ratio = self.along_over_across
         _must("movement", "along_over_across", ratio, "0.01 to 100", 0.01 <= ratio <= 100)
+        if not isinstance(self.hours, tuple | list) or len(self.hours) != 2:
+            raise SettingError(
+                worded(
+                    "Hours of movement must be two, as 20 and 6, but they are {hours}.",
+                    hours=shown(self.hours),
+                )
+            )
         for hour in self.hours:
             _must("movement", "hours", hour, "0 to 24", 0 <= hour <= 24)
 
@@ -223,10 +240,12 @@ class Entry:
     depth_m: float = 10.0
 
     def __post_init__(self) -> None:
+        must_hold_numbers(self, "An entry's")
         for name in ("edge_per_day", "paths_per_day", "anywhere_per_day"):
             value = getattr(self, name)
             _must("entry", name, value, "a chance in 0..1", 0 <= value <= 1)
         _must("entry", "depth_m", self.depth_m, "above 0", self.depth_m > 0)
+        _at_most("entry", "depth_m", self.depth_m, _MOST_M)
 
 
 @dataclass(frozen=True)
@@ -295,9 +314,17 @@ class Pest:
     citations: tuple[Citation, ...] = ()
 
     def __post_init__(self) -> None:
+        for name, kind in _TEXTS_AND_PARTS.items():
+            must_be(
+                f"A pest's {name} must be {of_kind(kind[0])}", getattr(self, name), kind,
+                "See the reference of Pest.",
+            )  # fmt: skip
+        for one in self.stages:
+            must_be("A pest's stages must be Stages", one, Stage, "See the reference of Pest.")
         if not self.name:
             raise SettingError(worded("A pest must have a name, but it is empty."))
-        if self.cutoff not in get_args(Cutoff):
+        must_hold_numbers(self, "A pest's")
+        if not is_one_of(self.cutoff, get_args(Cutoff)):
             raise SettingError(
                 worded(
                     "A cutoff must be one of {names}, but it is {cutoff!r}.",
@@ -307,6 +334,7 @@ class Pest:
             )
         for name in ("latency_days", "hidden_days"):
             _must("pest", name, getattr(self, name), "0 or more", getattr(self, name) >= 0)
+            _at_most("pest", name, getattr(self, name), _MOST_DAYS)
         for name in ("detection", "mortality_per_day"):
             value = getattr(self, name)
             if value is not None:
@@ -339,6 +367,21 @@ class Pest:
     def source(self, part: str) -> Citation | None:
         """Return where a part comes from; None: the file does not speak of it."""
         return next((one for one in self.citations if one.part == part), None)
+
+
+_TEXTS_AND_PARTS: dict[str, tuple[type, ...]] = {
+    **dict.fromkeys(("name", "title", "species", "count_means", "not_found"), (str,)),
+    **dict.fromkeys(("stages", "citations"), (tuple,)),
+    "increase": (Increase, NoneType),
+    "movement": (Movement,),
+    "entry": (Entry,),
+    "viewpoints": (Viewpoints, NoneType),
+    "generation": (Stage, NoneType),
+}
+
+
+def _at_most(of: str, name: str, value: float, most: float) -> None:
+    _must(of, name, value, f"{most:.0f} at most", value <= most)
 
 
 def _must(of: str, name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001

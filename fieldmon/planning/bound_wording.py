@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import digits_of_estimate, figure, worded
 
 #: gaps up to this are none, but for rounding
 PROVED = 1e-6
@@ -29,36 +29,40 @@ def bound_sentence(held: float, bound: float, what: str = FINDS, routes: str = "
     Examples
     --------
     >>> bound_sentence(42.31, 42.97)
-    '42.3 finds expected; no route of these hours can expect more than 43.0 (1.6 %).'
+    '42 finds expected; no route of these hours can expect more than 43 (1.6 %).'
     >>> bound_sentence(20.0, 20.0)
-    '20.0 finds expected; no route of these hours can expect more.'
+    '20 finds expected; no route of these hours can expect more.'
     """
     said = _of_route(held, bound, what)
     return said if routes == "route" else said.replace("no route", f"no {routes}", 1)
 
 
 def _of_route(held: float, bound: float, what: str) -> str:
-    digits = _digits(bound)
-    values = {"held": held, "digits": digits, "what": what, "bound": _up(bound, digits)}
+    values = {"held": _figure(held), "what": what, "bound": _figure(bound, up=True)}
     gap = share_above(held, bound)
     if gap <= PROVED:
-        return worded(
-            "{held:.{digits}f} {what} expected; no route of these hours can expect more.", **values
-        )
+        return worded("{held} {what} expected; no route of these hours can expect more.", **values)
     if not math.isfinite(gap):
         return worded(
-            "{held:.{digits}f} {what} expected; no route of these hours can expect more than "
-            "{bound:.{digits}f}.", **values,
+            "{held} {what} expected; no route of these hours can expect more than "
+            "{bound}.", **values,
         )  # fmt: skip
     return worded(
-        "{held:.{digits}f} {what} expected; no route of these hours can expect more than "
-        "{bound:.{digits}f} ({share:.1f} %).", **values, share=_up(100.0 * gap, 1),
+        "{held} {what} expected; no route of these hours can expect more than "
+        "{bound} ({share:.1f} %).", **values, share=_up(100.0 * gap, 1),
     )  # fmt: skip
 
 
+def _figure(value: float, *, up: bool = False) -> str:
+    digits = _digits(value)
+    return figure(_up(value, digits) if up else value, f",.{digits}f")
+
+
 def _digits(value: float) -> int:
-    """Return decimals for two digits at least."""
-    return 1 if value >= 1.0 or value <= 0.0 else 1 - math.floor(math.log10(value))
+    """Return decimals as of any estimate, but below one for two digits."""
+    if 0.0 < value < 1.0:
+        return 1 - math.floor(math.log10(value))
+    return digits_of_estimate(value)
 
 
 def _up(value: float, digits: int) -> float:

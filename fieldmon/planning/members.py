@@ -13,6 +13,9 @@ from fieldmon.plot.robot import Robot
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+# our choice: no plot has so many aisles that they would not meet
+_MOST_MEMBERS = 1000
+
 
 @dataclass(frozen=True)
 class TeamMember:
@@ -98,6 +101,12 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
             worded(
                 "A team must have 1 member or more, but it has {n}.",
                 n=n,
+            )
+        )
+    if n > _MOST_MEMBERS:
+        raise SettingError(
+            worded(
+                "A team must have {most} members at most, but it has {n}.", most=_MOST_MEMBERS, n=n
             )
         )
     return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
@@ -67,10 +65,10 @@ class Planting:
                         value=getattr(self, name),
                     )
                 )
-        if self.row_bearing_deg is not None and not np.isfinite(self.row_bearing_deg):
+        if self.row_bearing_deg is not None and not abs(self.row_bearing_deg) <= 720.0:
             raise SettingError(
                 worded(
-                    "A row bearing must be a number of degrees, but it is {row_bearing_deg}.",
+                    "A row bearing must be -720 to 720 degrees, but it is {row_bearing_deg}.",
                     row_bearing_deg=self.row_bearing_deg,
                 )
             )

@@ -147,16 +147,19 @@ class Robot:
 
     def __post_init__(self) -> None:
         must_hold_numbers(self, "The robot's")
-        for name in ("speed_m_s", "look_s", "hours"):
-            _must(name, getattr(self, name), "above 0", getattr(self, name) > 0)
-        for name in ("row_change_s", "turn_180_s", "stop_s"):
-            _must(name, getattr(self, name), "0 or more", getattr(self, name) >= 0)
-        _must("hours", self.hours, "24 at most", self.hours <= 24)
-        if self.detection is not None:
-            _must("detection", self.detection, "in 0..1", 0 <= self.detection <= 1)
-        for name in ("width_m", "length_m"):
-            if (size_m := getattr(self, name)) is not None:
-                _must(name, size_m, "0.05 to 10 metres", 0.05 <= size_m <= 10)
+        must_be("The robot's viewpoints must be Viewpoints", self.viewpoints, Viewpoints,
+                "Give Viewpoints(steps, longer).")  # fmt: skip
+        for name in _LIMITS:
+            value = getattr(self, name)
+            if value is not None and (rule := broken_rule(name, value)):
+                raise SettingError(
+                    worded(
+                        "The robot's {name} must be {rule}, but it is {value}.",
+                        name=name,
+                        rule=rule,
+                        value=value,
+                    )
+                )
         if self.length_m is not None and self.width_m is None:
             raise SettingError(
                 worded("A robot whose length is known must have a width too. Give both.")
@@ -269,13 +272,46 @@ def must_be_robot(given: object) -> None:
     )  # fmt: skip
 
 
-def _must(name: str, value: float, rule: str, holds: bool) -> None:  # noqa: FBT001 - one check
-    if not (holds and math.isfinite(value)):
-        raise SettingError(
-            worded(
-                "The robot's {name} must be {rule}, but it is {value}.",
-                name=name,
-                rule=rule,
-                value=value,
-            )
-        )
+def broken_rule(name: str, value: float, units: float = 1.0) -> str:
+    """Return what a setting of `Robot` must be and is not; empty where it may be so.
+
+    Parameters
+    ----------
+    name
+        Of a setting that is a number.
+    value
+        What it is to be.
+    units
+        How many of the units of `value` make one of the setting's: 3.6 for km/h.
+
+    Examples
+    --------
+    >>> broken_rule("speed_m_s", -1.0, 3.6), broken_rule("speed_m_s", 200.0, 3.6)
+    ('above 0', '108 at most')
+    >>> broken_rule("look_s", 40.0)
+    ''
+    """
+    least, most = _LIMITS[name]
+    if name in _BOTH_SAID:
+        return "" if least <= value <= most else _BOTH_SAID[name]
+    if name in _ABOVE and not value > least:
+        return f"above {least:g}"
+    if not value >= least:
+        return f"{least:g} or more"
+    return "" if value <= most * units else f"{most * units:g} at most"
+
+
+# a day has 86 400 s; at 30 m/s (108 km/h) nobody drives along plants
+_LIMITS = {
+    "speed_m_s": (0.0, 30.0),
+    "look_s": (0.0, 86_400.0),
+    "row_change_s": (0.0, 86_400.0),
+    "turn_180_s": (0.0, 86_400.0),
+    "stop_s": (0.0, 86_400.0),
+    "hours": (0.0, 24.0),
+    "detection": (0.0, 1.0),
+    "width_m": (0.05, 10.0),
+    "length_m": (0.05, 10.0),
+}
+_ABOVE = frozenset({"speed_m_s", "look_s", "hours"})
+_BOTH_SAID = {"detection": "in 0..1", **dict.fromkeys(("width_m", "length_m"), "0.05 to 10 metres")}

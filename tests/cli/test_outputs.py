@@ -15,6 +15,7 @@ from fieldmon.cli.outputs import (
     write_chance_map,
     write_routes,
 )
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.writers.day_file import RouteNotes
@@ -60,7 +61,7 @@ def test_a_chance_map_is_written_where_it_is_asked_for(today, tmp_path, capsys):
 def test_a_day_in_words_says_its_stops_its_hours_and_what_to_expect(today):
     words = day_in_words(today.route)
     assert words.startswith(f"{len(today.route)} of {len(PLOT.grid)} plants in 0.5 h, ")
-    assert f"about {today.route.expected_finds:.1f} of them infested" in words
+    assert f"about {estimate(today.route.expected_finds)} of them infested" in words
 
 
 @pytest.mark.parametrize(

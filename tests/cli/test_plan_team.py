@@ -56,7 +56,8 @@ def test_a_table_says_who_works_from_when_and_where(run, tmp_path):
         ("name,who\n,robot\n", "every member must have a name"),
         ("name,start\na,six\n", "start must be a time as HH:MM"),
         ("name\na b\na-b\na_b\n", "must have names that differ in file names"),
-        ("name,hours\na,30\n", "hours must be 24 at most"),
+        ("name,hours\na,30\n", "line 2: hours must be 24 at most"),
+        ("name,speed_km_h\na,-1\n", "line 2: speed_km_h must be above 0, but it is -1"),
     ],
 )
 def test_a_table_that_makes_no_team_is_a_sentence(run, tmp_path, table, says):
@@ -72,6 +73,7 @@ def test_a_table_that_makes_no_team_is_a_sentence(run, tmp_path, table, says):
         (("--robots", 2, "--sampler", "naive"), "leave out --sampler"),
         (("--robots", 2, "--all"), "leave out --all"),
         (("--robots", 0), "1 member or more"),
+        (("--robots", 10**30), "1000 members at most"),
         (("--robots", "nobody.csv"), "must be a readable table"),
     ],
 )

@@ -17,6 +17,9 @@ def test_a_booms_section_covers_whole_rows():
     "made",
     [
         lambda: Sprayer(-1),
+        lambda: Sprayer(10**30),
+        lambda: Sprayer(least_on_m=1e30),
+        lambda: Sprayer.of_boom(1e30, 4, 1.5),
         lambda: TreatmentCosts(per_ha=-2.0),
         lambda: TreatmentCosts(works=0.0),
         lambda: TreatmentCosts(reserve=1.0),

@@ -1,6 +1,7 @@
 """The log of a season: a changed past is refused, and said where."""
 
 import json
+import re
 import shutil
 import sqlite3
 from contextlib import closing
@@ -133,6 +134,10 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
         ("undone", "Dan"), ("changed", "Eve"), ("changed", "Eve"),
     ]  # fmt: skip
     said = [one.sentence() for one in log]
+    stops = log[1].what["stops"]
+    assert re.fullmatch(
+        rf"2026-04-06: {stops} stops by adaptive, about \d(\.\d|\d+) of them infested", said[1]
+    )
     assert said[2] == "monday.csv: 3 found, 9 clean, 0 could not be inspected, batch 1"
     assert said[4].startswith("2026-04-06: soap on ")
     assert said[5] == "Batch 2 was undone: 1 treatment from soap."

@@ -6,19 +6,24 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fieldmon.compute.wording import estimate
 from fieldmon.planning.bound_wording import bound_sentence, share_above
 
 
 def test_it_says_what_is_expected_what_is_the_most_and_the_share():
     said = bound_sentence(42.31, 42.97)
-    assert said == "42.3 finds expected; no route of these hours can expect more than 43.0 (1.6 %)."
+    assert said == "42 finds expected; no route of these hours can expect more than 43 (1.6 %)."
 
 
 def test_where_the_bound_is_met_nothing_more_is_said():
     assert (
-        bound_sentence(20.0, 20.0)
-        == "20.0 finds expected; no route of these hours can expect more."
+        bound_sentence(20.0, 20.0) == "20 finds expected; no route of these hours can expect more."
     )
+
+
+def test_below_ten_there_is_a_tenth():
+    said = bound_sentence(9.42, 10.31)
+    assert said.startswith("9.4 finds expected; no route of these hours can expect more than 11 ")
 
 
 def test_few_finds_have_two_digits():
@@ -30,9 +35,14 @@ def test_of_nothing_no_share_is_said():
     assert bound_sentence(0.0, 0.5).endswith("more than 0.50.")
 
 
+@given(st.floats(1.0, 1e5))
+def test_finds_are_said_as_every_estimate_is(held):
+    assert bound_sentence(held, held).startswith(f"{estimate(held)} finds expected; ")
+
+
 @given(st.floats(1e-4, 1e5), st.floats(1e-5, 1.0))
 def test_the_bound_and_the_share_are_rounded_up(held, gap):
     bound = held * (1.0 + gap)
-    numbers = re.search(r"more than ([\d.]+) \(([\d.]+) %\)", bound_sentence(held, bound))
-    assert float(numbers[1]) >= bound * (1 - 1e-8)
+    numbers = re.search(r"more than ([\d.,]+) \(([\d.]+) %\)", bound_sentence(held, bound))
+    assert float(numbers[1].replace(",", "")) >= bound * (1 - 1e-8)
     assert float(numbers[2]) >= 100 * gap * (1 - 1e-6)

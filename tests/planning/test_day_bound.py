@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fieldmon.compute.wording import estimate
 from fieldmon.planning.day_bound import found_bound, with_bound
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.plot.layout import rectangle
@@ -35,7 +36,9 @@ def test_no_sampler_expects_more_than_the_bound_and_all_share_it(name):
 
 def test_the_sentence_says_the_expected_finds_and_the_bound():
     route = with_bound(planned()).route
-    assert route.bound_sentence.startswith(f"{route.expected_found:.1f} finds expected; no route ")
+    assert route.bound_sentence.startswith(
+        f"{estimate(route.expected_found)} finds expected; no route "
+    )
 
 
 def test_a_day_that_was_not_asked_says_nothing():

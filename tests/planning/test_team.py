@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning import team as team_room
 from fieldmon.planning.meetings import meetings
@@ -131,7 +132,9 @@ def test_on_an_even_plot_a_team_comes_within_a_twentieth_of_its_bound():
     for n in (2, 3):
         plan = plan_team(plot, chances(plot), team_of(n, Robot(hours=2.0)))
         assert plan.expected_found >= 0.95 * plan.bound
-    assert plan.sentence.startswith(f"{plan.expected_found:.1f} finds expected; no routes of ")
+    assert plan.sentence.startswith(
+        f"{estimate(plan.expected_found)} finds expected; no routes of "
+    )
 
 
 def test_plants_done_today_are_left_alone():
@@ -168,7 +171,9 @@ def test_the_days_of_a_team_have_a_bound_as_long_as_they_are_whole():
     plot = plot_of()
     plan = plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6)))
     said = bound_of_days(plan.days)
-    assert said.startswith(f"{plan.expected_found:.1f} finds expected; no routes of these hours ")
+    assert said.startswith(
+        f"{estimate(plan.expected_found)} finds expected; no routes of these hours "
+    )
     begun = replace(plan.days[0], scene=replace(plan.days[0].scene, seconds_left=60.0))
     assert bound_of_days([begun, plan.days[1]]) == ""
 

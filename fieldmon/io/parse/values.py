@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.observations import ABSENT, MOST_COUNTED, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.result_words import meaning
 
@@ -97,13 +97,16 @@ _RANGE = re.compile(r"^([\d.,]+)\s*(?:-|–|to|bis|a)\s*([\d.,]+)$")
 
 
 def counted(cell: str, decimal: str = ".") -> CellCount:
-    """Return what a cell for a count says; zero is absence, a missing cell is nothing known."""
+    """Return what a cell for a count says; zero is absence, a missing cell is nothing known.
+
+    Numbers that cannot have been counted say nothing.
+    """
     word = cell.strip().casefold()
     if word in MISSING:
         return CellCount(np.nan, UNKNOWN, is_rough=False)
     value = number(cell, decimal)
     if np.isfinite(value):
-        if value < 0:
+        if not 0 <= value <= MOST_COUNTED:
             return CellCount(np.nan, UNKNOWN, is_rough=True)
         return CellCount(value, PRESENT if value > 0 else ABSENT, is_rough=False)
     said = meaning(word)
@@ -116,12 +119,16 @@ def _roughly(word: str, decimal: str) -> CellCount:
     between = _RANGE.match(word)
     if between:
         low, high = (number(part, decimal) for part in between.groups())
+        if high > MOST_COUNTED:
+            return CellCount(np.nan, UNKNOWN, is_rough=True)
         return CellCount((low + high) / 2, PRESENT if high > 0 else ABSENT, is_rough=True)
     bound = _BOUND.match(word)
     if not bound:
         return CellCount(np.nan, UNKNOWN, is_rough=True)
     sign, digits, _ = bound.groups()
     value = number(digits, decimal)
+    if value > MOST_COUNTED:
+        return CellCount(np.nan, UNKNOWN, is_rough=True)
     if sign in {"<", "<=", "≤"}:
         # fewer than 5 were seen, so some were; fewer than 1 may be none
         some = value > 1 or (sign != "<" and value >= 1)

@@ -88,6 +88,8 @@ def misplaced(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) -
             plant=_label(grid, plant[here[k]]),
             far_m=far_m[k],
         )
+        if np.isfinite(far_m[k])
+        else worded("it lies far from the plot")
         for k in np.flatnonzero(far_m > reach_m).tolist()
     }
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.import_report import (
     Imported,
@@ -40,6 +41,7 @@ from fieldmon.io.readers.inspection_places import (
     from_zero,
     misplaced,
 )
+from fieldmon.io.readers.nearby import doubt_of_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -125,6 +127,7 @@ def look_up(
             doubtful,
             None if options.take_doubtful else _TAKE,
         ),
+        *_about_order(rows, grid),
         *_about_numbers(rows, grid, named.plant, taken),
         *labelled.said,
         *_about_faces(rows, grid, plant, taken),
@@ -188,6 +191,11 @@ def _listed(
             )
         )
     return messages
+
+
+def _about_order(rows: InspectionRows, grid: PlantGrid) -> list[ImportMessage]:
+    lonlat = rows.lonlat[np.isfinite(rows.lonlat).all(axis=1)]
+    return doubt_of_order(outside_m(grid, lonlat), outside_m(grid, lonlat[:, ::-1]))
 
 
 def _about_numbers(

@@ -91,8 +91,9 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
     """Return the records of one plot; ask or refuse where not one is there."""
     split = near_plot(observations, field)
     if len(split.inside):
-        messages = split.messages(field.name) + _questioned(split.outside, field)
-        return split.inside, messages
+        beyond = split.outside.lonlat
+        doubts = doubt_of_order(split.outside_m, distance_m(beyond[:, ::-1], field))
+        return split.inside, split.messages(field.name) + doubts
     nearest = _far(split.outside_m.min())
     swapped_m = distance_m(observations.lonlat[:, ::-1], field)
     if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
@@ -207,11 +208,17 @@ def distance_m(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.float64]
     return away
 
 
-def _questioned(observations: Observations, field: Field) -> list[ImportMessage]:
-    """Return a doubt where records would fit the plot better with their axes exchanged."""
-    here = distance_m(observations.lonlat, field)
-    there = distance_m(observations.lonlat[:, ::-1], field)
-    odd = (here > 10_000) & (there < 1000)
+def doubt_of_order(
+    here_m: NDArray[np.float64], exchanged_m: NDArray[np.float64]
+) -> list[ImportMessage]:
+    """Return a doubt where positions would fit the plot better with their axes exchanged.
+
+    Parameters
+    ----------
+    here_m, exchanged_m
+        ``(k,)`` how far each lies from the plot as it is, and with its axes exchanged.
+    """
+    odd = (here_m > 10_000) & (exchanged_m < 1000)
     if not odd.any():
         return []
     return [

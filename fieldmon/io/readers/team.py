@@ -7,11 +7,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
+from fieldmon.plot.robot import broken_rule
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 COLUMNS = ("name", "who", "hours", "speed_km_h", "look_s", "detection", "start", "lon", "lat")
+#: columns that are settings of `Robot`, and how many of their units make one of the setting's
+_SETTINGS = {
+    "hours": ("hours", 1.0),
+    "speed_km_h": ("speed_m_s", 3.6),
+    "look_s": ("look_s", 1.0),
+    "detection": ("detection", 1.0),
+}
 
 
 class StatedMember(NamedTuple):
@@ -113,6 +121,17 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
             )
         )
     gate = (number.pop("lon"), number.pop("lat")) if "lon" in number else None
+    for column, (setting, units) in _SETTINGS.items():
+        if column in number and (rule := broken_rule(setting, number[column], units)):
+            raise FileProblem(
+                worded(
+                    "{where}: {name} must be {rule}, but it is {value:g}.",
+                    where=where,
+                    name=column,
+                    rule=rule,
+                    value=number[column],
+                )
+            )
     if "speed_km_h" in number:
         number["speed_m_s"] = number.pop("speed_km_h") / 3.6
     return StatedMember(values["name"], who == "scout", number, values.get("start") or None, gate)

@@ -1,7 +1,7 @@
 """What a better route changes in a season: infested plant-days beside Adaptive, seed by seed.
 
 `best` plans from the gate and knows nothing of what will be found. So that planning is compared
-with planning, Adaptive takes part twice: as it is, thinking again after every find, and bound to
+with planning, Adaptive takes part twice: as it is, planning again after every find, and held to
 its plan of the morning. The best route is followed whatever is found.
 """
 
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 # how much more than itself a find is worth where all plants beside it are clean, as in Adaptive
 _SPARES = 0.5
 AS_IT_IS, MORNING, BEST = "adaptive", "adaptive, morning's plan", "best route, morning's plan"
+#: seasons of one seed
+OF_EACH_SEED = 3
 
 
 class PairedSeason(NamedTuple):
@@ -106,8 +108,8 @@ def season_sentences(made: list[PairedSeason]) -> list[str]:
         sentences.append(f"{who}: {values.mean():.1f} infested plant-days, {found:.1f} found")
         if who != AS_IT_IS:
             more = values - by[AS_IT_IS]
-            half = 1.96 * more.std(ddof=1) / np.sqrt(len(more))
-            sentences.append(f"  {more.mean():+.1f} ({-half:+.1f} to {half:+.1f} about that)")
+            mean, half = more.mean(), 1.96 * more.std(ddof=1) / np.sqrt(len(more))
+            sentences.append(f"  {mean:+.1f} ({mean - half:+.1f} to {mean + half:+.1f})")
     return sentences
 
 

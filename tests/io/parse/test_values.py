@@ -112,6 +112,9 @@ def test_words_for_nothing_known_are_missing_in_any_case(word):
         ("<1", np.nan, UNKNOWN),
         ("≤1", np.nan, PRESENT),
         ("-3", np.nan, UNKNOWN),
+        ("1e308", np.nan, UNKNOWN),
+        (f"3-{10**30}", np.nan, UNKNOWN),
+        (f">{10**30}", np.nan, UNKNOWN),
         ("some day", np.nan, UNKNOWN),
     ],
 )

@@ -75,6 +75,19 @@ def test_a_position_off_the_plants_is_doubtful_and_one_far_away_is_none():
     assert read(text, InspectionOptions(take_doubtful=True)).value.plant.tolist() == [0]
 
 
+@pytest.mark.parametrize("named", ["", "7"])
+def test_positions_that_would_lie_on_the_plot_with_their_axes_exchanged_are_offered_so(named):
+    lon, lat = GRID.lonlat(np.array([7]))[0]
+    text = f"plant,lon,lat,found\n{named},{lat:.9f},{lon:.9f},yes\n"
+    imported = read(text)
+    assert len(imported.value) == 0
+    (hint,) = [one for one in imported.messages if one.remedy and one.remedy.option == "swap_axes"]
+    assert "1 record would lie on the plot with longitude and latitude exchanged" in hint.sentence
+    assert "inf" not in " ".join(one.sentence for one in imported.messages)
+    mended = read(text, InspectionOptions().choose("swap_axes", hint.remedy.value))
+    assert mended.value.plant.tolist() == [7]
+
+
 def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
     grid = two_faced()
     twin = int(grid.twin[3])

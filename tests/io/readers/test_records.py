@@ -74,6 +74,15 @@ def test_a_count_that_is_no_plain_number_is_read_roughly_and_shown():
     assert (records.value.present[:3] == PRESENT).all()
 
 
+def test_a_number_that_nobody_counts_is_left_open_and_shown():
+    records = read(count=["3", "1e308", "0"])
+    assert "1 count says neither how many nor whether any ('1e308')" in said(
+        records, Severity.DOUBTFUL
+    )
+    assert records.value.present.tolist() == [PRESENT, UNKNOWN, ABSENT]
+    assert np.isnan(records.value.count[1])
+
+
 def test_a_comma_is_what_the_rest_of_the_table_says_it_is_and_else_a_guess():
     np.testing.assert_allclose(read(count=["1,5", "1,234"]).value.count, [1.5, 1.234])
     assert read(count=["1,234", "7"]).value.count.tolist() == [1234.0, 7.0]  # as in 35.150123

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.planning.routes.best_route import best, bounded
 from fieldmon.planning.workday import plan_work
@@ -123,7 +124,7 @@ def test_with_time_for_all_it_is_proved_that_nothing_is_better():
     route = best(aisles, np.ones(20), Robot())
     assert len(route.plant) == 20
     assert route.proved
-    assert route.sentence() == "20.0 finds expected; no route of these hours can expect more."
+    assert route.sentence() == "20 finds expected; no route of these hours can expect more."
 
 
 def test_with_time_for_nothing_it_stays_at_the_gate():
@@ -135,10 +136,10 @@ def test_with_time_for_nothing_it_stays_at_the_gate():
 def test_it_says_what_no_other_route_can_exceed():
     aisles = Aisles.of(rectangle(20, 20))
     route = best(aisles, np.random.default_rng(1).random(400), Robot(hours=1.0))
-    assert route.sentence().startswith(f"{route.reward:.1f} finds expected; no route of these ")
+    assert route.sentence().startswith(f"{estimate(route.reward)} finds expected; no ")
     # both are rounded up: what is said is no less than what was proved
-    bound, gap = (np.ceil(10 * value) / 10 for value in (route.bound, 100 * route.gap))
-    assert f"more than {bound:.1f} ({gap:.1f} %)." in route.sentence()
+    bound, gap = np.ceil(route.bound), np.ceil(1000 * route.gap) / 10
+    assert f"more than {bound:.0f} ({gap:.1f} %)." in route.sentence()
 
 
 def test_it_is_never_below_a_route_it_was_told_of():

@@ -129,7 +129,7 @@ def _of_word(cell: str, mark: str, words: ResultWords) -> _CellResult:
     word = " ".join(cell.casefold().replace("_", " ").split())
     plus = _PLUS.match(word)
     if plus:
-        return _CellResult(PRESENT, float(plus.group(1) or "nan"), is_said=True)
+        return _CellResult(PRESENT, counted(plus.group(1) or "").number, is_said=True)
     if word in NOT_INSPECTED:
         return _CellResult(UNKNOWN, np.nan, is_said=True)
     meant = words[cell]
@@ -165,7 +165,7 @@ def _of_mark(name: str, words: ResultWords) -> _CellResult:
     for sign in (name.strip(), last):
         plus = _PLUS.match(sign)
         if plus:
-            return _CellResult(PRESENT, float(plus.group(1) or "nan"), is_said=True)
+            return _CellResult(PRESENT, counted(plus.group(1) or "").number, is_said=True)
         if sign in MINUS:
             return _CellResult(ABSENT, np.nan, is_said=True)
     bare = PLANT_IN_NAME.sub(" ", name).strip()

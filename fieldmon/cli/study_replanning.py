@@ -1,0 +1,37 @@
+"""`fieldmon study replanning`: what planning again after a find brings. Heavy imports wait."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from fieldmon.cli.waiting import progress
+
+
+def replanning(
+    seeds: Annotated[
+        int, typer.Option(min=2, help="Seasons of each, with the same insects.")
+    ] = 100,
+    hours: Annotated[float, typer.Option(help="Working hours per day.")] = 4.0,
+    spread: Annotated[float, typer.Option(help="Chance per night to infest a neighbour.")] = 0.3,
+) -> None:
+    """Compare Adaptive with itself held to its plan of the morning, and with the best route.
+
+    Seasons on the thesis's plot of 28 x 28 plants: infested plant-days, and the difference from
+    Adaptive with its 95 % interval.
+
+    Example: fieldmon study replanning --seeds 20
+    """
+    from fieldmon.infestation.spread import Spread
+    from fieldmon.studies.routes.seasons import OF_EACH_SEED, season_sentences, seasons
+    from fieldmon.studies.samplers.scenarios import Scenario
+
+    scenario = Scenario("A", Spread(spread, "one"))
+    made = []
+    with progress("Seasons", OF_EACH_SEED * seeds) as bar:
+        for one in seasons(scenario, range(seeds), hours):
+            made.append(one)
+            bar.update(1)
+    for sentence in season_sentences(made):
+        typer.echo(sentence)

@@ -1,5 +1,7 @@
 """Routes with a bound: nothing exceeds the bound, and the route is what it says."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -258,6 +260,42 @@ def test_no_time_is_lost_on_prices_where_all_drives_are_in_time():
     assert found.value == pytest.approx(below.reward.max() * (1.0 + 1e-7 * left_s), rel=3e-9)
     assert found.value >= below.reward.max()
     assert len({*below.tried}) == 1
+
+
+@pytest.mark.parametrize("stop_s", [0.25, 1.0, 4.0])
+@pytest.mark.parametrize("left_s", [0.0, 0.5, -0.5])
+def test_a_drive_that_fits_by_a_hair_counts_as_in_time_and_one_that_fails_by_a_hair_does_not(
+    stop_s, left_s
+):
+    """The last drives tried are one in time and one too long, whatever a stop takes."""
+    took_s = np.array([500.0, 1000.0 - left_s, 2000.0])
+    below = Drives([700.0, 900.0, 1000.0], took_s, np.full(9000, 5.0), stop_s)
+    found = upper_bound(below, 1000.0)
+    line, *_ = below.highest_line(1000.0)
+    assert found.value == pytest.approx(line, rel=1e-8)
+    sides = [below.took_s[one] > 1000.0 for one, _ in found.met]
+    assert sorted(sides) == [False, True]
+
+
+def test_where_a_stop_takes_no_time_all_plants_may_be_visited():
+    below = Drives([50.0, 90.0], [10.0, 60.0], np.full(6, 2.0), 0.0)
+    assert upper_bound(below, 49.0).value == pytest.approx(12.0)
+
+
+def test_prices_are_tried_for_as_long_as_there_is_time_by_the_clock(monkeypatch):
+    clock = iter([])
+    monkeypatch.setattr(type(best_route.FIRST_USE), "work_clock", lambda _: next(clock))
+    for each_s, within_s, n in ((0.0, 0.0, None), (1.0, 2.5, 3), (1.0, 3.5, 4), (1.0, 1e9, None)):
+        clock = itertools.count(5000.0, each_s)
+        below = drives(4)
+        found = upper_bound(below, 1500.0, within_s)
+        if n is None:
+            assert found.value == pytest.approx(below.highest_line(1500.0)[0], rel=3e-9)
+            assert below.told[2] == 5000.0 + within_s
+        else:
+            assert len({*below.tried}) == n
+            # no time was left for drives of each kind
+            assert not hasattr(below, "told")
 
 
 @pytest.mark.parametrize(("stop_s", "most"), [(10.0, 4), (9.0, 5), (8.0, 6), (50.0, 0), (6.0, 6)])

@@ -81,7 +81,7 @@ def test_proposals_take_about_the_hours(returns):
         assert used_s(aisles, robot, stops) == pytest.approx(2500.0, rel=0.15)
 
 
-#: an aisle of ten places, on both its sides, between two that are not driven; the gate below them
+#: an aisle of ten places, on both its sides, below one of one place; both above the gate
 PLACES = 10
 UPPER = np.array([1, 0, 1, 1, 0, 0, 1, 0, 1, 0], bool)
 WORTH = np.array([5.0, 4.0, 1.0, 6.0, 7.0, 3.0, 8.0, 2.0, 9.0, 5.5])
@@ -90,12 +90,15 @@ WORTH = np.array([5.0, 4.0, 1.0, 6.0, 7.0, 3.0, 8.0, 2.0, 9.0, 5.5])
 def chosen(way, cut, price=0.02, *, hangs=False, turn_s=0.0, parts=None):
     """Return who hands out the plants of one aisle, the third element, that is driven so."""
     ladder = SimpleNamespace(
-        gate=0, start=np.array([0, 0, 0, PLACES, PLACES]), upper=UPPER,
-        plant=100 + np.arange(PLACES), hangs=np.array([0, 0, int(hangs), 0]),
+        gate=0, start=np.array([0, 0, 0, PLACES, PLACES + 1]), upper=np.append(UPPER, True),
+        plant=100 + np.arange(PLACES + 1), hangs=np.array([0, 0, int(hangs), 0]),
         across_m=np.array([0.0, 2.0, 2.0, 2.0]),
     )  # fmt: skip
     priced = SimpleNamespace(
-        ladder=ladder, reward=WORTH, costs=Costs(1.0, 100.0, 0.0, turn_s), parts=parts or {}
+        ladder=ladder,
+        reward=np.append(WORTH, 99.0),
+        costs=Costs(2.0, 100.0, 0.0, turn_s),
+        parts=parts or {},
     )
     ways, cuts = np.zeros(4, np.int64), np.zeros((4, 4), np.int64)
     ways[2], cuts[2] = way, cut
@@ -154,10 +157,10 @@ def test_through_an_aisle_plants_are_visited_as_they_come_or_side_by_side_where_
 ):
     """Six turns as they come; side by side one turn, and the aisle crossed twice."""
     as_they_come = [*range(PLACES)][:: 1 if up else -1]
-    for turn_s, by_side in ((0.0, False), (0.66, False), (0.67, True), (9.0, True)):
+    for turn_s, by_side in ((0.0, False), (1.33, False), (1.34, True), (9.0, True)):
         of = chosen(way, (PLACES, PLACES, 3, 3), 0.0, turn_s=turn_s)
         turns = np.count_nonzero(np.diff(UPPER.astype(int)))
-        assert by_side == (turns * turn_s > turn_s + 2.0 * 2.0)
+        assert by_side == (turns * turn_s > turn_s + 2.0 * 2.0 * 2.0)
         lower = [k for k in as_they_come if not UPPER[k]]
         expected = [k for k in as_they_come if UPPER[k]] + lower if by_side else as_they_come
         assert told(of.through(2, up=up)) == expected
@@ -179,6 +182,16 @@ def test_where_the_day_ends_plants_are_visited_as_they_come_from_the_end_it_came
         assert told(of.end(2)) == []
     of = chosen(FROM_LEFT, cut, 0.0, hangs=True)
     assert told(of.excursion(2, 0)) == in_and_out([0, 1, 2, 6, 7, 8, 9])
+    assert told(of.excursion(2, 1)) == []
+    of = chosen(FROM_RIGHT, cut, 0.0, hangs=True)
+    assert sorted(told(of.excursion(2, 1))) == [0, 1, 2, 6, 7, 8, 9]
+
+
+def test_the_lowest_aisle_s_plants_are_visited_as_any_other_s():
+    of = chosen(FROM_LEFT, (PLACES, PLACES, 3, 3), 0.0)
+    of.priced.ladder.gate, of.priced.ladder.start[1:] = 1, PLACES
+    of.drawn.way[0], of.drawn.cut[0] = FROM_LEFT, of.drawn.cut[2]
+    assert told(of.excursion(0, 0)) == in_and_out(range(PLACES))
 
 
 def test_a_part_that_hangs_is_visited_once_as_its_own_best_drive_has_it():

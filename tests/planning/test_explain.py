@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from fieldmon.planning.explain import explain
 from fieldmon.planning.workday import Workday, plan_work
@@ -95,3 +96,54 @@ def test_plants_of_which_records_speak_are_not_called_never_inspected():
     assert known + never == len(work)
     recorded[:] = True
     assert not [s for s in explain(scene, work, recorded=recorded) if "never" in s]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_block_says_for_how_long_and_how_many_never_by_counting_plant_by_plant(seed):
+    """Of a row or of rows; days since half were inspected; those of records apart."""
+    rng = np.random.default_rng(seed)
+    row = 4 if seed % 2 else None
+    plants = rng.permutation(np.arange(120, 150) if row else np.arange(90, 210))[:25]
+    plants = plants.astype(np.int32)
+    last = np.where(rng.random(len(GRID)) < 0.2 * seed, NEVER, rng.integers(1, 30, len(GRID)))
+    recorded = rng.random(len(GRID)) < (0.5 if seed > 2 else 0.0)
+    scene = replace(scene_on(GRID, last_inspected=last.astype(np.int32)), day=40)
+    ones = np.ones(25)
+    (said,) = explain(scene, Workday(plants, ones, ones > 2, ones, ones, 0.0), recorded=recorded)
+    since = [40 - last[p] for p in plants if last[p] != NEVER]
+    known = sum(last[p] == NEVER and recorded[p] for p in plants)
+    never = sum(last[p] == NEVER and not recorded[p] for p in plants)
+    parts = [f"not inspected for {round(np.median(since))} days"]
+    parts += [f"{known} known from records only"] if known else []
+    if never:
+        parts.append(
+            f"{never} never inspected yet" if known else f"{never} of them never inspected yet"
+        )
+    rows = plants // 30 + 1
+    where = f"in row {rows[0]}" if row else f"in rows {rows.min()} to {rows.max()}"
+    expected = f"25 plants {where}: {', '.join(parts)}."
+    assert said == expected
+
+
+@pytest.mark.parametrize("n_finds", [1, 2, 6, 7, 9])
+def test_plants_are_around_the_nearest_find_within_three_rows_and_up_to_six_finds_are_told(n_finds):
+    scene = day()
+    finds = (30 * 4 * np.arange(n_finds) + 10).astype(np.int32)
+    metres = np.hypot(*(GRID.xy_m[:, None] - GRID.xy_m[finds]).transpose(2, 0, 1))
+    reach_m = 3.0 * max(GRID.row_spacing_m, GRID.plant_spacing_m)
+    plants = np.random.default_rng(n_finds).permutation(len(GRID))[:400].astype(np.int32)
+    ones = np.ones(400)
+    said = explain(scene, Workday(plants, ones, ones > 2, ones, ones, 0.0), finds)
+    nearest = metres[plants].argmin(axis=1)
+    around = np.bincount(nearest[metres[plants].min(axis=1) < reach_m], minlength=n_finds)
+    most_first = np.argsort(-around, kind="stable")
+    told = most_first if n_finds <= 6 else most_first[:5]
+    for find, sentence in zip(told, said, strict=False):
+        plural = "s" if around[find] != 1 else ""
+        assert sentence == (
+            f"{around[find]} plant{plural} around the find in row {4 * find + 1}, plant 11."
+        )
+    if n_finds > 6:
+        left = around.sum() - around[told].sum()
+        assert said[5] == f"{left} plants around {n_finds - 5} other finds."
+    assert counts(said) == 400

@@ -90,3 +90,42 @@ def test_nothing_is_asked_of_a_map_provider(day):
     assert deck_of(day.route, day.chance).map_provider is None or deck_of(
         day.route, day.chance
     ).map_style in (None, "")
+
+
+def test_a_colour_begins_at_each_of_seven_chances_and_holds_up_to_the_next(day):
+    begins = [0.0, 0.01, 0.02, 0.05, 0.10, 0.25, 0.50]
+    chance = np.zeros(len(GRID))
+    chance[:7] = begins
+    chance[7:13] = np.nextafter(begins[1:], 0.0)
+    chance[13] = 1.0
+    told = deck_of(day.route, chance).layers
+    colours = [tuple(one["colour"]) for layer in told if layer.id == "plants" for one in layer.data]
+    assert len({*colours[:7]}) == 7
+    assert colours[7:13] == colours[:6]
+    assert colours[13] == colours[6]
+    assert {*colours[14:]} == {colours[0]}
+
+
+def test_each_stop_says_its_order_place_clock_and_chance(day):
+    arrive_s = np.linspace(29.0, 7205.0, len(day.route))
+    route = replace(day.route, arrive_s=arrive_s)
+    (stops,) = [layer.data for layer in deck_of(route, day.chance).layers if layer.id == "stops"]
+    for order, (stop, plant, at_s) in enumerate(zip(stops, route.plant, arrive_s, strict=True), 1):
+        hours, minutes = divmod(round(at_s / 60), 60)
+        assert stop["text"] == (
+            f"stop {order}: row {plant // 20 + 1}, plant {plant % 20 + 1}, after {hours} h "
+            f"{minutes:02d} min, chance {100 * day.route.chance[order - 1]:.1f} %"
+        )
+
+
+@pytest.mark.parametrize("grid", [rectangle(30, 30), rectangle(2, 60), rectangle(60, 2)])
+def test_the_view_is_filled_to_two_thirds_at_least(grid):
+    day = plan_in(scene_on(grid, hours=1.0), sampler("naive"))
+    view = deck_of(day.route, day.chance).initial_view_state
+    west, south, east, north = grid.frame.geometry_lonlat(grid.drivable_m).bounds
+    px = 512 * 2.0**view.zoom / 360
+    wide, high = (east - west) * px, (north - south) * px / np.cos(np.radians(view.latitude))
+    assert max(wide / 600, high / 450) == pytest.approx(1.0, abs=1 / 3)
+    assert (view.longitude, view.latitude) == pytest.approx(
+        ((west + east) / 2, (south + north) / 2)
+    )

@@ -87,3 +87,51 @@ def test_needs_must_make_sense(expected, most_s):
 def test_going_to_the_next_plot_cannot_take_less_than_no_time():
     with pytest.raises(SettingError, match="must take 0 s or more"):
         share_day([], [], -1.0)
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(0.1, 100), st.floats(60, 50_000)), min_size=1, max_size=6,
+        unique_by=lambda need: need[0],
+    ),
+    hours,
+    st.floats(0, 1800),
+)  # fmt: skip
+def test_plots_go_to_who_has_most_time_for_what_is_expected_and_get_it_by_one_level(
+    plots, each, move_s
+):
+    """The urgent first; the least urgent wait where somebody would get under a quarter hour."""
+    turns = share_day([PlotNeed(*one) for one in plots], crew(each), move_s)
+    own = [[] for _ in each]
+    for plot in sorted(range(len(plots)), key=lambda k: -plots[k][0]):
+        left = [(3600 * hours - move_s * len(mine)) / (sum(plots[k][0] for k in mine)
+                + plots[plot][0]) for hours, mine in zip(each, own, strict=True)]  # fmt: skip
+        own[left.index(max(left))].append(plot)
+    for who, mine in enumerate(own):
+        got = {turn.plot: turn.seconds for turn in turns if turn.who == who}
+        assert [turn.plot for turn in turns if turn.who == who] == mine[: len(got)]
+        for n in range(len(mine), 0, -1):
+            seconds = level_by_halving(
+                [plots[k] for k in mine[:n]], 3600 * each[who] - move_s * (n - 1)
+            )
+            enough = [s >= min(plots[k][1], 900.0) for k, s in zip(mine, seconds, strict=False)]
+            nearly = any(abs(s - min(plots[k][1], 900.0)) < 1e-3 and s < plots[k][1]
+                         for k, s in zip(mine, seconds, strict=False))  # fmt: skip
+            if nearly:
+                return
+            if n == 1 or all(enough):
+                break
+        expected = dict(zip(mine, seconds, strict=False)) if mine else {}
+        assert got == pytest.approx(expected, rel=1e-6, abs=1e-6)
+
+
+def level_by_halving(needs, seconds):
+    """Return what each gets: so many seconds for each plant expected, but no more than its most."""
+    low, high = 0.0, 1e9
+    for _ in range(200):
+        level = (low + high) / 2
+        if sum(min(most_s, level * expected) for expected, most_s in needs) > seconds:
+            high = level
+        else:
+            low = level
+    return [min(most_s, high * expected) for expected, most_s in needs]

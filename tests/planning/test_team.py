@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import linprog
 
 from fieldmon.compute.wording import estimate
 from fieldmon.errors import PlotError, SettingError
@@ -14,7 +15,9 @@ from fieldmon.planning import team as team_room
 from fieldmon.planning.meetings import meetings
 from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.planning.routes import bound
+from fieldmon.planning.routes.best_route import Bounded
 from fieldmon.planning.team import (
+    _by_prices,
     _day,
     _first_wait,
     _held,
@@ -336,3 +339,55 @@ def test_where_two_would_meet_the_poorer_looks_elsewhere_and_the_other_stays():
     assert not set(poor.tolist()) & set(here.tolist())
     assert len(poor) > 0
     assert meetings([day.route for day in search.turned([rich, poor])], np.zeros(2)) == []
+
+
+def days_of(k, n=10, n_days=7):
+    """Return the plants of each of a member's days, at random."""
+    rng = np.random.default_rng(k)
+    return [rng.permutation(n)[:4] for _ in range(n_days)]
+
+
+def bounded_alone(member, reward, _robot):
+    """Return what the best of a member's days holds, and which plants that visits."""
+    days = days_of(member)
+    best_day = max(days, key=lambda day: reward[day].sum())
+    visits = np.zeros(len(reward))
+    visits[best_day] = 1.0
+    return Bounded(float(reward[best_day].sum()), visits)
+
+
+def dual(values):
+    """Return the least bound of all prices of plants, by a linear program."""
+    m, n = values.shape
+    rows, least = [], []
+    # one column a plant's price, one a member's best, and one a plant and member: what it is above
+    cost = np.concatenate([np.ones(n + m), np.zeros(m * n)])
+    for k, i in np.ndindex(m, n):
+        row = np.zeros(len(cost))
+        row[i] = row[n + m + k * n + i] = -1.0
+        rows.append(row)
+        least.append(-values[k, i])
+    for k in range(m):
+        for day in days_of(k, n):
+            row = np.zeros(len(cost))
+            row[n + k], row[n + m + k * n + day] = -1.0, 1.0
+            rows.append(row)
+            least.append(0.0)
+    return float(linprog(cost, np.array(rows), np.array(least)).fun)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3, 4])
+@pytest.mark.parametrize("scale", [1e-5, 1.0])
+def test_prices_of_plants_come_near_the_least_bound_that_any_have(monkeypatch, m, scale):
+    monkeypatch.setattr(team_room, "bounded", bounded_alone)
+    values = scale * np.random.default_rng(m).uniform(0.2, 1.0, (m, 10))
+    tasks = [_Task(k, Robot(), value) for k, value in enumerate(values)]
+    least, most = dual(values), values.max(axis=0)
+    first = sum(bounded_alone(k, value, None).value for k, value in enumerate(values))
+    # most of the way from no prices to the best, the more so the better it is known what is held
+    for held, left in ((0.97 * least, 0.25), (0.8 * least, 0.25), (0.0, 0.4)):
+        found = _by_prices(tasks, most, held)
+        assert found >= least * (1.0 - 1e-9)
+        assert found - least <= left * (first - least) + 1e-9 * least
+    # where a bound is held already, nothing better is looked for
+    assert _by_prices(tasks, most, 2.0 * first) == pytest.approx(first)

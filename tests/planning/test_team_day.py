@@ -19,6 +19,7 @@ from fieldmon.planning.team_worker import Posted, StopMade
 from fieldmon.planning.workday import Workday, work_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.passing import legs_of
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
@@ -190,12 +191,16 @@ def test_before_the_next_contact_nobody_hears_of_a_find():
     assert (at_once[0].plant[:k] != never[0].plant[:k]).any()
 
 
-def test_who_passes_through_an_aisle_waits_until_it_is_free():
-    """Beyond a notch from above, parts of rows are reached through whole ones below it."""
+def notched():
+    """Return a plot notched from above: parts of rows are reached through whole ones below it."""
     m = 1.0 / 111_320.0
     corners = [(-24, -12), (24, -12), (24, 16), (8, 16), (8, 0), (-8, 0), (-8, 16), (-24, 16)]
-    notched = Field("notched", MultiPolygon([Polygon([(x * m, y * m) for x, y in corners])]))
-    day = Day(Plot.of(notched, Planting(row_bearing_deg=90.0)).aisles, 3)
+    field = Field("notched", MultiPolygon([Polygon([(x * m, y * m) for x, y in corners])]))
+    return Plot.of(field, Planting(row_bearing_deg=90.0)).aisles
+
+
+def test_who_passes_through_an_aisle_waits_until_it_is_free():
+    day = Day(notched(), 3)
     works = day.work(SECTIONS, "naive")
     day.check(works)
     assert sum(work.wait_s.sum() for work in works) > 60.0
@@ -302,3 +307,67 @@ def test_days_of_a_team_are_one_in_order_of_the_clock():
     assert sorted(whole.plant) == sorted(np.concatenate([work.plant for work in works]))
     assert whole.found.sum() == finds(works)
     assert whole.end_s == max(w.end_s + s for w, s in zip(works, day.starts_s, strict=True))
+
+
+def moments(day, work, start_s):
+    """Return when one comes to the end of an aisle, drives on, and arrives, leg by leg ``(l, 3)``.
+
+    Seconds since the team's day began.
+    """
+    scene, told = day.scene(), []
+    legs, plants = legs_of(day.aisles), [GATE, *work.plant.tolist()]
+    plants += [GATE] if day.robot.returns and len(work) else []
+    leave_s = np.append(0.0, work.arrive_s + work.stop_s) + start_s
+    for k, (here, there) in enumerate(pairwise(plants)):
+        leg = legs.leg(here, there)
+        way = np.array([here, there], np.int64)
+        way_s = float(driven_s(day.aisles.travel, scene.clock, way))
+        out_s = leave_s[k] + way_s * (leg.out_m / leg.length_m if leg.length_m else 0.0)
+        told.append((out_s, out_s + work.wait_s[k], leave_s[k] + way_s + work.wait_s[k]))
+    return np.array(told).reshape(-1, 3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("n", [2, 4])
+@pytest.mark.parametrize("name", ["naive", "adaptive"])
+def test_who_waits_drives_on_the_moment_another_leaves_what_it_waits_for(name, n, seed):
+    """At the end of an aisle, on driving on, or where one drove through it and arrives."""
+    day = Day(notched(), n, Robot(hours=0.4, detection=1.0), infested=0.1, seed=seed)
+    day.starts_s = [40.0 * k for k in range(n)]
+    works = day.work(SECTIONS if name == "naive" else AT_ONCE, name)
+    times = [moments(day, work, start_s) for work, start_s in zip(works, day.starts_s, strict=True)]
+    waited = 0
+    for k, own in enumerate(times):
+        others = np.concatenate([times[j].ravel() for j in range(n) if j != k])
+        # who waits in vain drives home when it knows: then no other need have moved
+        for out_s, on_s, _ in own[:-1]:
+            if on_s > out_s + 1e-6:
+                assert np.abs(others - on_s).min() < 1e-5
+                waited += 1
+    assert waited or n == 2 or name == "adaptive"
+
+
+def test_who_begins_at_one_gate_and_wants_one_aisle_goes_in_one_after_the_other():
+    """Of a plot of one aisle all but one are never let in; each says so at once."""
+    day = Day(Aisles.of(rectangle(1, 6)), 3, Robot(hours=1.0, detection=1.0), infested=0.0)
+    day.starts_s = [0.0, 5.0, 10.0]
+    works = day.work(SECTIONS, "naive")
+    assert sorted(len(work) for work in works) == [0, 0, 6]
+    assert sorted(np.concatenate([work.plant for work in works]).tolist()) == list(range(6))
+    for work in works:
+        if not len(work):
+            assert work.end_s == 0.0
+
+
+@pytest.mark.parametrize("name", ["naive", "adaptive"])
+def test_a_day_that_begins_later_is_the_same_day_later(name):
+    def works(later_s):
+        day = Day(notched(), 3, Robot(hours=0.4, detection=1.0), infested=0.1)
+        day.starts_s = [later_s, later_s + 30.0, later_s + 300.0]
+        return day.work(name=name)
+
+    for one, other in zip(works(0.0), works(1024.0), strict=True):
+        assert one.plant.tolist() == other.plant.tolist()
+        assert one.arrive_s == pytest.approx(other.arrive_s, abs=1e-6)
+        assert one.wait_s == pytest.approx(other.wait_s, abs=1e-6)
+        assert one.end_s == pytest.approx(other.end_s, abs=1e-6)

@@ -1,5 +1,7 @@
 """Routes with a bound: nothing exceeds the bound, and the route is what it says."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -7,7 +9,9 @@ from hypothesis import strategies as st
 
 from fieldmon.compute.wording import estimate
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.planning.routes.best_route import best, bounded
+from fieldmon.planning.routes import best_route
+from fieldmon.planning.routes.aisle_ways import Costs
+from fieldmon.planning.routes.best_route import _between, best, bound, bounded, upper_bound
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -186,3 +190,221 @@ def test_with_time_for_all_the_visits_behind_a_bound_are_all_there_is():
     assert found.value == pytest.approx(reward.sum())
     nothing = bounded(aisles, 0.0 * reward, Robot(hours=12.0))
     assert (nothing.value, nothing.visits.tolist()) == (0.0, [0.0] * 20)
+
+
+class Drives:
+    """A few drives of which each holds so much and takes so long; the shortest is none at all."""
+
+    def __init__(self, reward, seconds, of_all=None, stop_s=1.0):
+        self.reward, self.took_s = np.append(0.0, reward), np.append(0.0, seconds)
+        self.of_all = self.reward[1:] if of_all is None else of_all
+        self.costs = Costs(0.0, stop_s, 0.0, 0.0)
+        self.tried, self.by_kind = [], np.inf
+
+    def best(self, price):
+        self.tried.append(price)
+        return int(np.argmax(self.reward - price * self.took_s))
+
+    def bound(self, one, price, seconds):
+        return self.reward[one] + price * (seconds - self.took_s[one])
+
+    def seconds(self, one, price):
+        assert one == self.best(price)
+        return self.took_s[one]
+
+    def bound_by_kind(self, *told):
+        self.told = told
+        return self.by_kind
+
+    def highest_line(self, seconds):
+        """Return what no mixture of two drives exceeds, and those two, the one in time first."""
+        pairs = [(self.reward[a], a, a) for a in np.flatnonzero(self.took_s <= seconds)]
+        for a in np.flatnonzero(self.took_s <= seconds):
+            for b in np.flatnonzero(self.took_s > seconds):
+                share = (seconds - self.took_s[a]) / (self.took_s[b] - self.took_s[a])
+                pairs.append((self.reward[a] + share * (self.reward[b] - self.reward[a]), a, b))
+        return max(pairs)
+
+
+def drives(seed):
+    rng = np.random.default_rng(seed)
+    seconds = np.sort(rng.uniform(50.0, 4000.0, 30))
+    return Drives(3.0 * seconds**0.6 * rng.uniform(0.5, 1.0, 30), seconds)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_least_bound_of_all_prices_is_the_highest_line_between_two_drives(seed):
+    below = drives(seed)
+    seconds = float(np.random.default_rng(seed).uniform(100.0, 3900.0))
+    found = upper_bound(below, seconds)
+    line, a, b = below.highest_line(seconds)
+    assert found.value >= line
+    # where no longer drive holds more than one in time, a second is still charged a little
+    charged = 1e-7 * below.reward.max() * (seconds - below.took_s[a]) if a == b else 0.0
+    assert found.value == pytest.approx(line + charged, rel=3e-9)
+    n_tried = len({*below.tried})
+    # at its price the bound is that bound, and of all its drives none is above the line
+    at_price = (below.reward + found.price * (seconds - below.took_s)).max()
+    assert at_price == pytest.approx(found.value, rel=3e-9)
+    # the last drives to either side are those of the line, each with a price that it is best at
+    met = sorted(one for one, _ in found.met)
+    assert met == sorted({int(a), int(b)})
+    for one, price in found.met:
+        assert one == int(np.argmax(below.reward - price * below.took_s))
+    assert n_tried <= 16
+
+
+def test_no_time_is_lost_on_prices_where_all_drives_are_in_time():
+    below = drives(1)
+    found = upper_bound(below, 5000.0)
+    left_s = 5000.0 - below.took_s[below.reward.argmax()]
+    assert found.value == pytest.approx(below.reward.max() * (1.0 + 1e-7 * left_s), rel=3e-9)
+    assert found.value >= below.reward.max()
+    assert len({*below.tried}) == 1
+
+
+@pytest.mark.parametrize("stop_s", [0.25, 1.0, 4.0])
+@pytest.mark.parametrize("left_s", [0.0, 0.5, -0.5])
+def test_a_drive_that_fits_by_a_hair_counts_as_in_time_and_one_that_fails_by_a_hair_does_not(
+    stop_s, left_s
+):
+    """The last drives tried are one in time and one too long, whatever a stop takes."""
+    took_s = np.array([500.0, 1000.0 - left_s, 2000.0])
+    below = Drives([700.0, 900.0, 1000.0], took_s, np.full(9000, 5.0), stop_s)
+    found = upper_bound(below, 1000.0)
+    line, *_ = below.highest_line(1000.0)
+    assert found.value == pytest.approx(line, rel=1e-8)
+    sides = [below.took_s[one] > 1000.0 for one, _ in found.met]
+    assert sorted(sides) == [False, True]
+
+
+def test_where_a_stop_takes_no_time_all_plants_may_be_visited():
+    below = Drives([50.0, 90.0], [10.0, 60.0], np.full(6, 2.0), 0.0)
+    assert upper_bound(below, 49.0).value == pytest.approx(12.0)
+
+
+def test_prices_are_tried_for_as_long_as_there_is_time_by_the_clock(monkeypatch):
+    clock = iter([])
+    monkeypatch.setattr(type(best_route.FIRST_USE), "work_clock", lambda _: next(clock))
+    for each_s, within_s, n in ((0.0, 0.0, None), (1.0, 2.5, 3), (1.0, 3.5, 4), (1.0, 1e9, None)):
+        clock = itertools.count(5000.0, each_s)
+        below = drives(4)
+        found = upper_bound(below, 1500.0, within_s)
+        if n is None:
+            assert found.value == pytest.approx(below.highest_line(1500.0)[0], rel=3e-9)
+            assert below.told[2] == 5000.0 + within_s
+        else:
+            assert len({*below.tried}) == n
+            # no time was left for drives of each kind
+            assert not hasattr(below, "told")
+
+
+@pytest.mark.parametrize(("stop_s", "most"), [(10.0, 4), (9.0, 5), (8.0, 6), (50.0, 0), (6.0, 6)])
+def test_no_bound_is_above_what_the_best_plants_hold_that_there_are_stops_for(stop_s, most):
+    """Drives on the ladder promise far more in 49 s, which no route can hold."""
+    of_all = np.array([1.0, 6.0, 3.0, 5.0, 2.0, 4.0])
+    below = Drives([900.0, 1900.0], [10.0, 60.0], of_all, stop_s)
+    found = upper_bound(below, 49.0)
+    assert found.value == pytest.approx(np.sort(of_all)[::-1][:most].sum())
+
+
+def test_a_bound_by_kinds_of_drives_counts_if_it_is_less_and_there_is_time_for_it():
+    below, seconds = drives(2), 1500.0
+    line = below.highest_line(seconds)[0]
+    for by_kind, least in ((0.9 * line, 0.9 * line), (1.1 * line, line)):
+        below.by_kind = by_kind
+        assert upper_bound(below, seconds).value == pytest.approx(least, rel=3e-9)
+    below.by_kind, below.tried = 0.9 * line, []
+    # without any time one price is tried, the first
+    late = upper_bound(below, seconds, -1.0)
+    assert len({*below.tried}) == 1
+    assert late.value >= line
+
+
+def test_to_seconds_a_rounding_of_every_leg_is_added():
+    """Legs of one stop more than there can be, each a thousandth of a millimetre."""
+    for n, legs in ((5, 6), (200, 101)):
+        of_all = np.full(n, 50.0)
+        below = Drives([1.0, 500.0], [1.0, 2000.0], of_all, stop_s=10.0)
+        below.costs = Costs(2.0, 10.0, 0.0, 0.0)
+        took_s = 1000.0 + legs * 1e-6 * 2.0
+        upper_bound(below, 1000.0)
+        assert below.told[0] == pytest.approx(took_s, abs=1e-9)
+
+
+@pytest.mark.parametrize("halve", [False, True])
+def test_the_next_price_is_where_two_lines_cross_or_between_those_tried(halve):
+    """By prices one falls by its overtime, the other, in time, rises by what is left."""
+    long, short = (90.0, -300.0), (40.0, 200.0)
+    price, least = _between({True: long, False: short}, (0.01, 1.0), halve=halve)
+    crossing = 0.1
+    assert price == pytest.approx(0.1 if halve else crossing)
+    assert least == pytest.approx(60.0)
+    assert least == pytest.approx(short[0] + crossing * short[1])
+    # if they cross beyond what was tried, it is between
+    for low, high in ((0.2, 0.8), (0.0025, 0.04), (0.1, 0.4), (0.025, 0.1)):
+        price, _ = _between({True: long, False: short}, (low, high), halve=halve)
+        assert price == pytest.approx((low * high) ** 0.5)
+    price, _ = _between({True: long, False: short}, (0.09, 0.4), halve=halve)
+    assert price == pytest.approx(0.036**0.5 if halve else crossing)
+    # of lines that never cross no more is known than the one
+    same, least = _between({True: (50.0, 20.0), False: (40.0, 20.0)}, (0.1, 0.4), halve=False)
+    assert (same, least) == (pytest.approx(0.2), pytest.approx(54.0))
+
+
+@pytest.mark.parametrize(
+    ("took_s", "shares"),
+    [((3000.0, 4000.0), (0.4, 0.6)), ((4000.0, 3000.0), (0.6, 0.4)), ((3600.0,), (1.0,)),
+     ((3600.0, 4000.0), (1.0, 0.0)), ((100.0, 3000.0), (0.0, 1.0)), ((5000.0, 4000.0), (0.0, 1.0))],
+)  # fmt: skip
+def test_two_drives_are_visited_as_their_seconds_fill_the_hours(monkeypatch, took_s, shares):
+    """A plant of both as often as both together, and never more than once."""
+    below = type("Below", (), {"seconds": lambda _, *met: took_s[met[0]]})()
+    met = tuple((k, 0.1) for k in range(len(took_s)))
+    stops = ([0, 1, 2], [2, 3])
+    found = [best_route.PriceBound(value, 0.1, below, of) for value, of in ((7.0, ()), (5.0, met))]
+    monkeypatch.setattr(best_route, "_bounds", lambda _: found)
+    monkeypatch.setattr(best_route, "_stops_met", lambda *told: stops[told[1][0]])
+    of = bounded(Aisles.of(rectangle(2, 3)), np.ones(6), Robot(hours=1.0))
+    one, other = shares if len(shares) == 2 else (shares[0], 0.0)
+    assert of.value == 5.0
+    assert of.visits == pytest.approx([one, one, one + other, other, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_plant_is_in_reach_if_a_day_for_it_alone_is_just_long_enough(returns):
+    aisles, robot = Aisles.of(rectangle(3, 6)), Robot(returns=returns)
+    ways = 2 if returns else 1
+    for plant in (0, 9, 17):
+        just_s = ways * float(aisles.distance_m(GATE, np.array([plant]))[0]) / robot.speed_m_s
+        just_s += robot.visit_s
+        reward = np.zeros(18)
+        reward[plant] = 1.0
+        # a change of aisle may be charged on the way, too
+        for seconds, reached in ((just_s + 1e-6, True), (just_s - 1e-3, False)):
+            posed = best_route._posed(aisles, reward, robot, seconds)
+            assert posed.reward.any() == reached
+            assert (bound(aisles, reward, robot, seconds) > 0.0) == reached
+
+
+def test_a_plot_turned_round_mirrored_or_with_all_rewards_scaled_has_the_same_bound():
+    grid, robot = rectangle(5, 7), Robot(hours=0.25)
+    middle = float(np.median(grid.lane_y_m))
+    reward = np.random.default_rng(5).random((5, 7))
+    gates = [(grid.lane_x_m.min() - 2.0, middle), (grid.lane_x_m.max() + 2.0, middle)]
+    west, east = (Aisles.of(grid, gate_xy_m=gate) for gate in gates)
+    found = bound(west, reward.ravel(), robot)
+    assert bound(west, reward[::-1].ravel(), robot) == pytest.approx(found, rel=1e-6)
+    assert bound(east, reward[:, ::-1].ravel(), robot) == pytest.approx(found, rel=1e-6)
+    assert bound(east, reward[::-1, ::-1].ravel(), robot) == pytest.approx(found, rel=1e-6)
+    assert bound(west, 1e-6 * reward.ravel(), robot) == pytest.approx(1e-6 * found, rel=1e-6)
+    # more hours or a quicker robot never hold less, and twice as quick with stops half as long in
+    # half the hours the same
+    more = [bound(west, reward.ravel(), robot, s) for s in (100.0, 300.0, 900.0, 901.0, 1500.0)]
+    assert (np.diff(more) >= -1e-9).all()
+    quick = Robot(
+        hours=0.125, speed_m_s=2 * robot.speed_m_s, row_change_s=robot.row_change_s / 2,
+        turn_180_s=robot.turn_180_s / 2, stop_s=robot.stop_s / 2, look_s=robot.look_s / 2,
+        detection=robot.detects,
+    )  # fmt: skip
+    assert bound(west, reward.ravel(), quick) == pytest.approx(found, rel=1e-6)

@@ -264,3 +264,73 @@ def test_the_part_in_which_most_time_is_won_is_driven_for_what_the_others_leave(
         # a first change of aisle is charged to each that none pays
         assert told[2] == pytest.approx(left_s)
     assert n_asked >= 3
+
+
+def three_parts(returns, n_parts=3):
+    """Return blocks, one a part, of plots 60 m apart."""
+    boxes = [box(x, y, x + 18, y + 14) for x, y in ((0, 0), (80, 5), (20, 70), (90, 80))[:n_parts]]
+    area = Frame(35.15, 30.36).geometry_lonlat(MultiPolygon(boxes))
+    aisles = Aisles.of(lay(Field("parts", area), Planting(row_bearing_deg=90.0)))
+    ladders = Ladders(aisles)
+    (block,) = [one for one in blockings(ladders.rungs) if one.max() + 1 == n_parts]
+    reward = np.random.default_rng(4).random(len(aisles.grid)) ** 2
+    metres = _apart_m(ladders.rungs, block, _way_out(ladders.rungs, block))
+    return Blocks(ladders, block, reward, Robot(returns=returns)), metres
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("price", [0.0005, 0.002, 0.004, 0.008, 0.5])
+def test_the_best_drive_is_that_of_all_sets_of_blocks_in_all_orders(returns, price):
+    """What each block is worth alone, the last of a one-way day without a way back."""
+    below, metres = three_parts(returns)
+    n, a_metre = 3, price * below.costs.metre_s
+    closed = [each.best(price) for each in below.closed]
+    opened = [each.best(price) for each in below.open]
+    every = {(): (0.0, 0.0)}
+    for size in range(1, n + 1):
+        for order in permutations(range(n), size):
+            drawn = [closed[k] for k in order[:-1]] + [(closed if returns else opened)[order[-1]]]
+            stops = [n, *order, *([n] if returns else [])]
+            way_m = sum(metres[i, j] for i, j in pairwise(stops))
+            worth = sum(one.worth for one in drawn) - a_metre * way_m
+            every[order] = worth, sum(one.reward for one in drawn)
+    found = below.best(price)
+    best_order = max(every, key=lambda order: every[order][0])
+    assert found.worth == pytest.approx(every[best_order][0])
+    assert found.reward == pytest.approx(every[best_order][1])
+    assert {k for k, _, _ in found.drives} == {*best_order}
+    assert [ends for _, ends, _ in found.drives] == [
+        not returns and k == len(best_order) - 1 for k in range(len(best_order))
+    ]
+    # the best of a set, by the block it ends in; of kinds of drives, too
+    kinds_worth, kinds_reward = below._kinds(price)
+    for chosen, last in np.ndindex(kinds_worth.shape[:2]):
+        own = [k for k in range(n) if chosen >> k & 1]
+        orders = [order for order in every if sorted(order) == own
+                  and (returns or not order or order[-1] == last)]  # fmt: skip
+        if orders:
+            most = max(every[order][0] for order in orders)
+            assert kinds_worth[chosen, last].max() == pytest.approx(most)
+            k = int(kinds_worth[chosen, last].argmax())
+            # as much in as many seconds, or a drive that is worth the same
+            through = below._through(chosen, last, price)
+            assert through.worth == pytest.approx(most)
+            assert kinds_reward[chosen, last, k] == pytest.approx(through.reward)
+        else:
+            assert (kinds_worth[chosen, last] == -np.inf).all()
+    took_s = (found.reward - found.worth) / price - below.costs.change_s
+    assert below.seconds(found, price) == pytest.approx(took_s)
+    for seconds in (500.0, 2000.0):
+        expected = max(found.worth + price * (seconds + below.costs.change_s), 0.0)
+        assert below.bound(found, price, seconds) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_bound_by_kinds_is_no_less_than_any_drive_of_these_hours(returns):
+    below, _ = three_parts(returns, 4)
+    for price in (0.002, 0.004):
+        for found in (below.best(price), below._through(5, 0 if returns else 2, price)):
+            seconds = below.seconds(found, price)
+            least = below.bound_by_kind(seconds, price, np.inf)
+            assert found.reward <= least * (1 + 1e-9)
+            assert least <= below.bound(below.best(price), price, seconds) * (1 + 1e-9)

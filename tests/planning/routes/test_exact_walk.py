@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.planning.routes.exact_walk import best_walk, full_budget
+from fieldmon.planning.routes.exact_walk import _WalkSearch, best_walk, full_budget
 from fieldmon.studies.routes import milp
 from fieldmon.studies.routes.drive import driven
 from fieldmon.studies.routes.heuristics import HEURISTICS
@@ -158,3 +158,54 @@ def test_of_a_row_only_its_far_ends_are_walked_where_only_they_are_worth_it():
 def test_what_is_no_matrix_of_rewards_is_refused(reward):
     with pytest.raises(SettingError, match="matrix of numbers"):
         best_walk(reward, 10)
+
+
+def hull(most, half):
+    """Return what lies above every walk at so many half steps: of all pairs, the highest line."""
+    held = [(float(most[half]), half, half)]
+    for a in range(half + 1):
+        held += [(most[a] + (most[b] - most[a]) * (half - a) / (b - a), a, b)
+                 for b in range(half + 1, len(most))]  # fmt: skip
+    return max(held)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_least_bound_of_all_prices_is_the_line_over_two_walks(seed):
+    rng = np.random.default_rng(seed)
+    reward = rng.random((1 + seed % 4, int(rng.integers(2, 6)))) ** (1 + seed % 3)
+    most = every_state(reward, full_budget(*reward.shape))
+    search, n = _WalkSearch(reward), len(most) - 1
+    for half in range(1, n + 1):
+        price, bound, known, of_use = search._price(half)
+        above, a, _ = hull(most, half)
+        assert bound == pytest.approx(above, abs=1e-8)
+        # no walk of any length is above the line of that price
+        assert (most - price * (np.arange(n + 1) - half) <= bound + 1e-8).all()
+        assert known <= most[half] + 1e-12
+        assert known == pytest.approx(most[min(a, half)], abs=1e-8) or bound - known < 1e-8
+        # beyond the fewest steps that hold all, none is of use
+        assert of_use == min(half, int(np.argmax(most >= most[-1] - 1e-12)))
+
+
+@pytest.mark.parametrize("budget", [0, 1, 2, 3, 7, 12])
+def test_a_walk_holds_as_much_when_rewards_are_scaled_and_rows_beyond_hold_nothing(budget):
+    reward = np.random.default_rng(budget).random((3, 4))
+    held = best_walk(reward, budget).reward
+    assert best_walk(1e6 * reward, budget).reward == pytest.approx(1e6 * held)
+    assert best_walk(1e-9 * reward, budget).reward == pytest.approx(1e-9 * held, rel=1e-9)
+    assert best_walk(np.vstack([reward, np.zeros((2, 4))]), budget).reward == pytest.approx(held)
+    assert best_walk(reward, budget + 1).reward >= held - 1e-12
+
+
+@pytest.mark.parametrize(("rows", "plants"), [(1, 1), (1, 5), (2, 3), (3, 3), (4, 2), (5, 4)])
+def test_so_many_steps_as_suffice_for_all_are_the_fewest(rows, plants):
+    most = every_state(np.ones((rows, plants)), 4 * rows * (plants + 2))
+    assert full_budget(rows, plants) // 2 == int(np.argmax(most == rows * plants))
+    assert full_budget(rows, plants) % 2 == 0
+
+
+def test_no_steps_and_nothing_to_find_are_a_walk_that_stays():
+    for reward, budget in ((np.zeros((2, 3)), 20), (np.ones((2, 3)), 0), (np.ones((2, 3)), 1)):
+        walk = best_walk(reward, budget)
+        assert (walk.steps, walk.reward) == (0, 0.0)
+        assert set(map(tuple, walk.place.tolist())) == {(0, 0)}

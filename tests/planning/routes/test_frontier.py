@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from fieldmon.planning.routes import frontier
 from fieldmon.planning.routes.frontier import GATE_CLOSED, GATE_OPEN, WAYS, tables
 
 
@@ -107,3 +108,56 @@ def test_in_an_aisle_an_odd_number_of_passes_meets_its_ends_where_the_day_ends_t
         # what is driven through is driven by both ends, and from neither on is nothing
         assert not way.meets or min(way.left, way.right) > 0
     assert len({*WAYS}) == len(WAYS)
+
+
+def can_be_driven(drive, returns, gate):
+    """Tell whether passes between three elements are one piece that one can drive and end.
+
+    And whether nobody goes on to a place at which nothing is, only to come back.
+    """
+    for k, (way, passes) in enumerate(drive):
+        here = (GATE_CLOSED if returns else GATE_OPEN)[way] if k == gate else WAYS[way][:2]
+        below = drive[k - 1][1] if k else (0, 0)
+        if any(on and not (come + own) for on, come, own in zip(passes, below, here, strict=True)):
+            return False
+    degree, one_piece, ended = nodes_and_edges(drive, returns, gate)
+    return one_piece and int((degree % 2).sum()) + ended == (0 if returns else 1)
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize(("n", "gate"), [(1, 0), (2, 0), (2, 1), (3, 1)])
+def test_all_that_can_be_driven_is_put_together_in_one_way(returns, n, gate):
+    # of three elements the last is driven in some ways only
+    some = range(12) if n < 3 else (0, 1, 4, 6, 10)
+    elements = [range(4) if k == gate else some if k else range(12) for k in range(n)]
+    every = set()
+    for ways in product(*elements):
+        if returns and any(WAYS[w].ends for k, w in enumerate(ways) if k != gate):
+            continue
+        for passes in product(product(range(3), repeat=2), repeat=n - 1):
+            drive = tuple(zip(ways, (*passes, (0, 0)), strict=True))
+            if can_be_driven(drive, returns, gate):
+                every.add(drive)
+    made = [one for one in drawn(returns, gate, n)
+            if all(way in of for (way, _), of in zip(one, elements, strict=True))]  # fmt: skip
+    assert len(made) == len(set(made))
+    assert set(made) == every
+
+
+#: an aisle from its left end L by places a and b to its right end R; what is driven in it
+DRIVEN = {
+    "NOTHING": (), "FROM_LEFT": ("LaL",), "FROM_RIGHT": ("RbR",), "FROM_BOTH": ("LaL", "RbR"),
+    "ONCE": ("LabR",), "TWICE": ("LabR", "RbaL"), "END_LEFT": ("La",), "END_RIGHT": ("Rb",),
+    "END_LEFT_AND": ("La", "RbR"), "END_RIGHT_AND": ("Rb", "LaL"),
+    "LEFT_BACK": ("LabR", "Rb"), "RIGHT_BACK": ("RbaL", "La"),
+}  # fmt: skip
+
+
+def test_each_way_passes_an_aisle_s_ends_as_often_as_it_is_driven_in_and_out():
+    assert len(DRIVEN) == len(WAYS) == frontier.N_WAYS
+    assert sorted(int(getattr(frontier, name)) for name in DRIVEN) == list(range(len(WAYS)))
+    for name, driven in DRIVEN.items():
+        at_ends = [sum(one.count(end) for one in driven) for end in "LR"]
+        meets = any({"L", "R"} <= {*one} for one in driven)
+        ends = any(one[-1] in "ab" for one in driven)
+        assert WAYS[int(getattr(frontier, name))] == (*at_ends, meets, ends), name

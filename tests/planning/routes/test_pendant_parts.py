@@ -195,3 +195,24 @@ def test_a_part_is_a_place_to_which_no_way_is_longer_than_it_is_and_some_are_as_
     assert made.part[-1] == side + 1
     assert made.up[-1] == up[outside[at]]
     assert made.low[-1] == made.high[-1] == (low, high)[side][outside[at]]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_parts_are_taken_the_nearest_first_and_hang_on_what_they_are_nearest_to(seed):
+    rng, n = np.random.default_rng(seed), 9
+    block = np.append(rng.permutation(5), rng.integers(0, 5, n - 5))
+    apart_m = rng.uniform(1.0, 90.0, (2, 2, n + 1, n + 1))
+    apart_m[:, :, np.arange(n), np.arange(n)] = np.inf
+    apart_m[:, 1, :, -1] = apart_m[:, 0, :, -1]
+    rungs = Rungs(*np.zeros((3, n)), apart_m, np.zeros(n, np.int64))
+    order, onto = _tree(rungs, block)
+    to_gate = [min(apart_m[s, 0, k, -1] for s in range(2)) for k in range(n)]
+    assert order[0] == block[int(np.argmin(to_gate))]
+    assert sorted(order) == list(range(5))
+    for place in range(1, 5):
+        known = order[:place]
+        ways = {(min(apart_m[s, t, a, b], apart_m[s, t, b, a]), block[b], block[a])
+                for a, b, s, t in np.ndindex(n, n, 2, 2)
+                if block[a] in known and block[b] not in known}  # fmt: skip
+        nearest = min(ways)
+        assert (order[place], onto[order[place]]) == nearest[1:]

@@ -187,3 +187,170 @@ def test_the_ends_of_some_aisles_and_a_gate_of_their_own_are_as_far_apart_as_tol
         assert apart_m[side, other, a, 3] == to_gate_m[side, a]
         assert apart_m[other, side, 3, a] == to_gate_m[side, a]
     assert np.isinf(apart_m[:, :, 3, 3]).all()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_places_are_as_far_up_as_no_two_are_further_apart_than_they_truly_are(seed):
+    rng, n = np.random.default_rng(seed), 7
+    apart_m = rng.uniform(1.0, 60.0, (n, n)) + 20.0 * np.abs(np.subtract.outer(range(n), range(n)))
+    if seed == 4:  # of one place, and of the first, nothing is known
+        apart_m[3], apart_m[:, 3] = np.inf, np.inf
+        apart_m[0], apart_m[:, 0] = np.inf, np.inf
+    hull = relaxation._hull(apart_m)
+    for a, b in np.ndindex(n, n):
+        if a < b:
+            told = [apart_m[i, j] for i in range(a + 1) for j in range(b, n)]
+            assert hull[a, b] == min(told)
+    place = relaxation._places(apart_m)
+    assert place[0] == 0.0
+    assert (np.diff(place) >= 0.0).all()
+    for k in range(1, n):
+        ahead = [place[j] + hull[j, k] for j in range(k)]
+        expected = min(ahead) if np.isfinite(min(ahead)) else place[k - 1]
+        assert place[k] == pytest.approx(expected, rel=2e-9)
+        for j in range(k):
+            assert place[k] - place[j] <= apart_m[j, k]
+
+
+def crossed(left, right, cross):
+    """Return the metres from left to right nodes by the best crossing, each one tried."""
+    return np.array([[min(abs(a - left[k]) + cross[k] + abs(right[k] - b)
+                          for k in range(len(left))) for b in right] for a in left])  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_cross_links_are_no_more_and_no_shorter_than_true_ways_ask_for(seed):
+    rng, n, gate = np.random.default_rng(seed), 9, 4
+    left, right = np.sort(rng.uniform(0.0, 60.0, (2, n)))
+    across_m = rng.uniform(60.0, 120.0, n)
+    across_m[gate], across_m[7] = 1.0, np.inf
+    by_aisles = np.where(np.arange(n) == gate, np.inf, across_m)
+    assert _from_left_to_right(left, right, by_aisles) == pytest.approx(
+        crossed(left, right, by_aisles)
+    )
+    # true ways: as by the aisles, some longer, and some shorter by holes in the rows
+    apart_m = crossed(left, right, by_aisles) + rng.uniform(0.0, 9.0, (n, n))
+    assert relaxation._cross_links((left, right), apart_m, across_m, gate) == []
+    shorter = [(0, 8), (2, 6), (gate, 1), (8, gate), (5, 5)]
+    for a, b in shorter:
+        apart_m[a, b] = np.abs(np.subtract.outer(left, right)).max() + 20.0 + a
+    links = relaxation._cross_links((left, right), apart_m, across_m, gate)
+    cross = by_aisles.copy()
+    for k, metres in links:
+        assert metres < by_aisles[k]
+        cross[k] = metres
+    numbers = [k for k, _ in links]
+    assert gate not in numbers
+    assert numbers == sorted(set(numbers))
+    asked = [(a, b) for a, b in np.ndindex(n, n) if a != b and gate not in (a, b)]
+    ways = crossed(left, right, cross)
+    assert all(ways[a, b] <= apart_m[a, b] + 1e-6 for a, b in asked)
+    # each is as long as it may be for some true way by it
+    for k, metres in links:
+        by_it = np.abs(left[:, None] - left[k]) + metres + np.abs(right[k] - right)
+        assert any(by_it[a, b] == pytest.approx(apart_m[a, b]) for a, b in asked)
+    # where ends lie nearer to each other than their places differ, there is none
+    apart_m[0, 8] = 0.5 * min(abs(left[0] - left[k]) + abs(right[k] - right[8])
+                              for k in range(n) if k != gate)  # fmt: skip
+    assert (relaxation._cross_links((left, right), apart_m, across_m, gate) is None) == (
+        apart_m[0, 8] > 0.0
+    )
+
+
+def test_the_gate_is_as_far_from_its_node_as_its_nearest_way_allows():
+    place = np.array([0.0, 10.0, 25.0, 40.0])
+    for gate, to_m, expected in (
+        (1, [30.0, 5.0, 35.0, 70.0], 20.0), (1, [12.0, 5.0, 35.0, 70.0], 2.0),
+        (0, [1.0, 40.0, 26.0, 90.0], 1.0), (3, [60.0, 38.0, 22.0, 0.0], 7.0),
+        (2, [24.0, 38.0, 0.0, 90.0], 0.0), (2, [np.inf] * 4, 0.0),
+    ):  # fmt: skip
+        apart_m = np.full((4, 4), np.nan)
+        apart_m[gate] = to_m
+        stub_m = relaxation._stub(place, apart_m, gate)
+        assert stub_m == pytest.approx(expected)
+        assert stub_m <= expected
+
+
+@pytest.mark.parametrize("cross", [None, [(1, 33.0), (3, 44.0)]])
+def test_aisles_links_and_the_gate_are_put_together_in_order_with_their_plants(cross):
+    aisles = Aisles.of(rectangle(4, 6, Planting(faces=2)))
+    rungs, links = relaxation.rungs_of(aisles), cross or []
+    n = len(rungs.low)
+    # the gate is the third; one aisle is left out
+    placed = np.insert(np.arange(n - 1)[::-1], 2, -1)
+    hangs = np.arange(n) % 3
+    left, right = np.arange(n) * 4.0, np.arange(n) * 5.0
+    across_m = np.where(placed >= 0, 100.0 + placed, np.inf)
+    ladder = relaxation._assembled(
+        aisles.travel,
+        rungs,
+        (placed, hangs),
+        (left, right),
+        (links, across_m, np.array([2.0, 3.0])),
+    )
+    # a link stands right behind its aisle, in the same place
+    expected = []
+    for k in range(n):
+        expected.append((left[k], right[k], across_m[k], hangs[k], placed[k]))
+        expected += [(left[k], right[k], metres, 0, -1) for j, metres in links if j == k]
+    lefts, rights, across, hanging, rung = (np.array(c) for c in zip(*expected, strict=True))
+    assert ladder.up_m.tolist() == np.stack([np.diff(lefts), np.diff(rights)], axis=1).tolist()
+    assert ladder.across_m.tolist() == across.tolist()
+    assert ladder.hangs.tolist() == hanging.tolist()
+    assert ladder.rung.tolist() == rung.tolist()
+    assert ladder.cross_links == len(links)
+    assert ladder.gate == 2 + sum(k < 2 for k, _ in links)
+    assert ladder.stub_m.tolist() == [2.0, 3.0]
+    grid = aisles.grid
+    for k, aisle in enumerate(rung):
+        own = ladder.plant[ladder.start[k] : ladder.start[k + 1]]
+        here = np.flatnonzero(grid.corridor[grid.row] == aisle) if aisle >= 0 else []
+        assert sorted(own.tolist()) == list(here)
+    low = rungs.low[grid.corridor[grid.row]]
+    assert ladder.in_m == pytest.approx((aisles.travel.x_m - low)[ladder.plant])
+    assert (ladder.upper == (aisles.travel.side[grid.row] > 0)[ladder.plant]).all()
+    assert len(ladder.plant) == ladder.start[-1]
+
+
+def bitten():
+    """Return a plot with both faces of its rows, bitten on either side: lanes end short."""
+    ground = MultiPolygon([Polygon([
+        (-20, -15), (21, -15), (14, -9), (22, -2), (15, 6), (20, 15), (-21, 15), (-13, 5),
+        (-19, 1), (-12, -6),
+    ])])  # fmt: skip
+    field = Field("bitten", Frame(0.0, 0.0, 90.0).geometry_lonlat(ground))
+    return Aisles.of(lay(field, Planting(row_spacing_m=2.5, plant_spacing_m=2.0, headland_m=1.0,
+                                         faces=2)))  # fmt: skip
+
+
+def test_ends_of_aisles_are_as_far_apart_as_the_nearest_of_their_lanes_and_what_these_end_short():
+    travel = bitten().travel
+    n_aisles, n_rows = int(travel.corridor.max()) + 1, len(travel.end_x_m)
+    short = -np.random.default_rng(2).uniform(0.0, 3.0, (2, n_rows))
+    found = relaxation._between_aisles(travel, short)
+    rows = [np.flatnonzero(travel.corridor == k) for k in range(n_aisles)]
+    assert any(len(own) > 1 for own in rows)
+    for a, b, i, j in np.ndindex(2, 2, n_aisles + 1, n_aisles + 1):
+        ends = [[(2 * r + end, short[end, r]) for r in rows[k]] if k < n_aisles
+                else [(2 * n_rows, 0.0)] for end, k in ((a, i), (b, j))]  # fmt: skip
+        ways = [travel.between_m[p, q] + s + t for p, s in ends[0] for q, t in ends[1]]
+        expected = np.inf if i == j < n_aisles else min(ways)
+        assert found[a, b, i, j] == pytest.approx(expected)
+
+
+def test_a_rung_is_as_long_as_its_longest_lane_and_no_ends_are_nearer_than_nothing():
+    aisles = bitten()
+    travel, rungs = aisles.travel, relaxation.rungs_of(aisles)
+    assert (rungs.low <= rungs.high).all()
+    assert (rungs.apart_m >= 0.0).all()
+    assert (rungs.part == 0).all()
+    longest = 0
+    for k in range(len(rungs.low)):
+        rows = np.flatnonzero(travel.corridor == k)
+        assert rungs.up[k] == aisles.grid.lane_y_m[rows[0]]
+        first, last = travel.end_x_m[rows, 0], travel.end_x_m[rows, 1]
+        # as long as the longest, or where ends would be too near as the innermost
+        assert rungs.low[k] in (*first[[first.argmin(), first.argmax()]], rungs.high[k])
+        assert rungs.high[k] in (*last[[last.argmin(), last.argmax()]], rungs.low[k])
+        longest += rungs.low[k] == first.min() and rungs.high[k] == last.max()
+    assert longest > 0

@@ -2,6 +2,8 @@
 
 import unicodedata
 
+import pytest
+
 from app.words import language, texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import counted, figure, joined, worded
@@ -95,3 +97,13 @@ def test_a_figure_has_its_sign_as_the_sentences_around_it(speaking):
         speaking(code)
         assert language.in_words(figure(12.5, ".1f", " %")) == said
         assert language.in_words(figure(0.125, ".1%")) == said
+
+
+@pytest.mark.parametrize("code", language.LANGUAGES)
+def test_no_line_ends_between_a_number_that_is_filled_in_and_its_sign(speaking, code):
+    """The percent sign stands in the text, the number is filled in."""
+    speaking(code)
+    for text in (texts.IN_PERCENT, texts.ASSUMED_WHAT["background_chance"]):
+        said = text.format(value="12")
+        assert "12 %" not in said
+        assert "12\u00a0%" in said or "12%" in said

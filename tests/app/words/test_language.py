@@ -8,6 +8,7 @@ from app.words import language, texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.errors import SettingError
+from fieldmon.reports import words
 
 
 def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
@@ -107,3 +108,14 @@ def test_no_line_ends_between_a_number_that_is_filled_in_and_its_sign(speaking, 
         said = text.format(value="12")
         assert "12 %" not in said
         assert "12\u00a0%" in said or "12%" in said
+
+
+@pytest.mark.parametrize(("code", "counted"), [("en", "1,009"), ("he", "1,009"), ("es", "1.009")])
+def test_thousands_of_a_day_or_a_hot_spot_are_written_as_everywhere(speaking, code, counted):
+    speaking(code)
+    many = {"found": 1009, "inspected": 1009, "plants": 1009, "n": 1, "day": "x"}
+    for text in (texts.TIP_HOT, texts.STEP_FOUND, texts.CHANGED_FINDS, texts.TODAY_DONE,
+                 texts.TODAY_OVER, texts.SCOUT_DONE):  # fmt: skip
+        assert text.format(**many).count(counted) == 2
+    hot = worded(words.HOT_MEANS, rows="", expected="7", p="", **many)
+    assert language.in_words(hot).count(counted) == 3

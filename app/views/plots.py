@@ -52,7 +52,7 @@ def _open(plot: PlotState) -> None:
 
 
 def _tapped(plots: list[PlotState], layer: str, index: int) -> None:
-    plot = estate_map.plot_tapped(plots, index) if layer == estate_map.PLOTS else None
+    plot = estate_map.plot_tapped(plots, index, layer)
     if plot is not None:
         _open(plot)
 

@@ -17,7 +17,7 @@ from fieldmon.monitoring import Application
 from ..state import notices
 from ..state.widget_memory import SHORTEST
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import in_words, listed
 from . import acting
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ def _labels(choices: Choices) -> None:
     st.caption(texts.LABELS_NOTE)
     known = choices.season.labels()
     if known:
-        st.markdown(", ".join(dict.fromkeys(texts.isolated(one.product) for one in known)))
+        st.markdown(listed(dict.fromkeys(texts.isolated(one.product) for one in known)))
     brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key="labels_file")
     if brought is not None:
         pressed = st.button(texts.LABELS_BUTTON, key="take_labels")

@@ -25,7 +25,7 @@ from fieldmon.reports.language import ReportLanguage
 from .kept_sentences import KnownSentences, sentences
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from datetime import date
 
 ENGLISH = "en"
@@ -256,6 +256,22 @@ def leading_nowhere(text: str, *, turning: bool = True) -> str:
     return _LEADING.sub("\\g<0>\u2060", text)
 
 
+def listed(parts: Iterable[str]) -> str:
+    """Return words side by side, with the comma of the current language.
+
+    Examples
+    --------
+    >>> listed(["north", "south"])
+    'north, south'
+    """
+    return _marks(", ", current()).join(parts)
+
+
+def _marks(between: str, language: str) -> str:
+    """Return what stands between words with the marks of a language."""
+    return between.translate({ord(","): "،", ord(";"): "؛"}) if language == "ar" else between
+
+
 def of_error(error: BaseException) -> str:
     """Return what an error says, in the current language."""
     return in_words(error.args[0] if error.args else str(error))
@@ -278,7 +294,7 @@ def _said(sentence: object, language: str) -> str | None:
         if all(said is None for said in parts.values()):
             return None
         said = [parts[p] or marked_as_english(p) for p in sentence.parts]
-        return sentence.between.join(said)
+        return _marks(sentence.between, language).join(said)
     if sentence.one:
         form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:

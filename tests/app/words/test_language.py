@@ -119,3 +119,13 @@ def test_thousands_of_a_day_or_a_hot_spot_are_written_as_everywhere(speaking, co
         assert text.format(**many).count(counted) == 2
     hot = worded(words.HOT_MEANS, rows="", expected="7", p="", **many)
     assert language.in_words(hot).count(counted) == 3
+
+
+def test_words_side_by_side_have_the_comma_of_their_language(speaking):
+    library = joined(", ", [counted(1320, "plant"), counted(3, "plant")])
+    assert language.listed(["1", "2"]) == "1, 2"
+    speaking("ar")
+    assert language.listed(["1", "2"]) == "1، 2"
+    assert language.in_words(library).count("،") == 1
+    speaking("he")
+    assert language.listed(["1", "2"]) == "1, 2"

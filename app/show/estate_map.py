@@ -10,7 +10,7 @@ from pydeck import Layer
 
 from ..state.shared_plots import DUE_DAYS
 from ..words import texts
-from ..words.language import about
+from ..words.language import about, listed
 from .map_view import MapContent
 from .maps import legends
 
@@ -30,7 +30,7 @@ _COLOURS: dict[str, Colour] = {
     "fresh": (46, 139, 87), "due": (230, 159, 0), "late": (200, 60, 40), "new": (130, 140, 135),
 }  # fmt: skip
 _LATE = 7
-# smaller than this share of the map of all, a plot has a mark; its name then stands above it
+# smaller than this share of the map of all, a plot has a mark; its name then stands below it
 _SMALL, _MARK_PX = 0.02, 6
 # who works, told apart for the colour-blind too (Okabe and Ito); their names say it as well
 _WHO: tuple[Colour, ...] = (
@@ -86,7 +86,7 @@ def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapC
     who = {turn.number: turn.who for turn in turns}
     workers = [("line", _WHO[k % len(_WHO)], name) for k, name in sorted(who.items())]
     legend = [legends.part("", items), *([legends.part("", workers)] if workers else [])]
-    alt = texts.PLOTS_ALT.format(n=len(plots), names=", ".join(plot.name for plot in plots))
+    alt = texts.PLOTS_ALT.format(n=len(plots), names=listed(plot.name for plot in plots))
     return MapContent(
         "all plots",
         bounds,
@@ -132,7 +132,7 @@ def _middle(plot: PlotState) -> list[float]:
 def _label(plot: PlotState, turn: PlannedTurn | None, *, marked: bool) -> Label:
     lon, lat = _middle(plot)
     label: Label = {"p": [lon, lat], "t": _named(plot, turn), "k": "name"}
-    return label | {"away": [lon, lat + 1e-4], "gap": _MARK_PX + 2} if marked else label
+    return label | {"away": [lon, lat - 1e-4], "gap": 2 * _MARK_PX} if marked else label
 
 
 def _named(plot: PlotState, turn: PlannedTurn | None) -> str:

@@ -82,8 +82,8 @@ def choose(
 def _where_and_when(choices: Choices) -> str:
     """Return the plot and the day in a line: on a phone it stands for the boxes, which fold."""
     day = choices.units.said_day(choices.day, choices.today)
-    day = f"{day}, {hours(choices.robot.hours)}"
-    return day if choices.season is not None else f"**{choices.name}**, {day}"
+    said = [day, hours(choices.robot.hours)]
+    return language.listed(said if choices.season is not None else [f"**{choices.name}**", *said])
 
 
 def _chosen(head: DeltaGenerator, work: Work, wait: Wait) -> Chosen:

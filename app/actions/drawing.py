@@ -45,18 +45,20 @@ def rows(plot_key: str, *, measured: bool = False) -> None:
             widget_memory.show(st.toggle, texts.NO_ROWS, key=f"no_rows {plot_key}", default=False,
                                help=texts.NO_ROWS_HELP)  # fmt: skip
         widget_memory.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
-                        help=texts.BEARING_HELP, key=f"row_bearing {plot_key}")  # fmt: skip
+                        help=texts.BEARING_HELP, key=f"row_bearing {plot_key}",
+                        format=widget_memory.SHORTEST)  # fmt: skip
         spacings(plot_key)
         now, usual_m = units(), Planting().headland_m
         widget_memory.show(
             st.number_input, texts.HEADLAND.format(unit=texts.UNITS[now.length]),
             *now.limits(0.1, 50.0), step=0.1, key=f"headland {plot_key}",
-            default=now.shown(usual_m),
+            default=now.shown(usual_m), format=widget_memory.SHORTEST,
         )  # fmt: skip
         widget_memory.show(
             st.number_input, texts.HALF_CANOPY.format(unit=texts.UNITS[now.length]),
             *now.limits(0.0, 10.0), step=0.05, key=f"half_canopy {plot_key}",
             help=texts.HALF_CANOPY_HELP.format(usual=now.metres(USUAL_HALF_CANOPY_M, 2)),
+            format=widget_memory.SHORTEST,
         )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
 
@@ -78,7 +80,7 @@ def spacings(plot_key: str) -> None:
     for name, label in (("row_spacing", texts.ROW_SPACING), ("plant_spacing", texts.PLANT_SPACING)):
         widget_memory.show(
             st.number_input, label.format(unit=unit), *now.limits(0.1, 50.0), step=0.1,
-            help=help_, key=f"{name} {plot_key}",
+            help=help_, key=f"{name} {plot_key}", format=widget_memory.SHORTEST,
         )  # fmt: skip
 
 
@@ -102,6 +104,7 @@ def blocks(choices: Choices) -> None:
                     widget_memory.show(
                         st.number_input, label, *limits, step=0.5,
                         key=f"{name} {block.name} {choices.plot_key}",
+                        format=widget_memory.SHORTEST,
                     )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ from . import acting, treating
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fieldmon.monitoring.batches import Recorded
+    from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
 
     from ..state.choices import Choices
 
@@ -299,19 +299,24 @@ def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
 
 
 def show_batches(choices: Choices) -> None:
-    """Show what was recorded, the last one first, each with its undo."""
-    shown = choices.season.batches()[:_MOST]
+    """Show what was recorded, if anything was, the last one first, each with its undo."""
+    shown = [batch for batch in choices.season.batches()[:_MOST] if batch.rows]
+    if not shown:
+        return
     contents = choices.season.contents([batch.number for batch in shown])
-    for batch in shown:
-        if not batch.rows:
-            continue
-        said = recorded_batches.line(choices, batch, contents.get(batch.number))
-        # side by side, not in columns: a button takes what its word needs in each language
-        with st.container(horizontal=True, vertical_alignment="center"):
-            st.markdown(said, width="stretch")
-            if not batch.undone:
-                st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo, help=said,
-                          args=(choices, batch.number))  # fmt: skip
+    with st.expander(texts.BATCHES, expanded=True):
+        for batch in shown:
+            _show_batch(choices, batch, contents.get(batch.number))
+
+
+def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) -> None:
+    said = recorded_batches.line(choices, batch, contents)
+    # side by side, not in columns: a button takes what its word needs in each language
+    with st.container(horizontal=True, vertical_alignment="center"):
+        st.markdown(said, width="stretch")
+        if not batch.undone:
+            st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo, help=said,
+                      args=(choices, batch.number))  # fmt: skip
 
 
 @notices.reporting

@@ -26,7 +26,7 @@ def of_files(robot: Robot) -> Robot:
     unit = texts.UNITS[units().length]
     shown = widget_memory.show(
         st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *units().limits(0.1, 10.0),
-        step=0.05, key="robot_width", help=texts.ROBOT_WIDTH_HELP,
+        step=0.05, key="robot_width", help=texts.ROBOT_WIDTH_HELP, format=widget_memory.SHORTEST,
     )  # fmt: skip
     times = widget_memory.show(
         st.selectbox, texts.ROBOT_TIMES_LABEL, list(ROBOT_TIMES), key="robot_times",
@@ -42,7 +42,8 @@ def of_season(robot: Robot, key: str) -> Robot:
     was = None if width_m is None else min(max(now.shown(width_m), limits[0]), limits[1])
     unit = texts.UNITS[now.length]
     shown = st.number_input(texts.ROBOT_WIDTH.format(unit=unit), *limits, value=was, step=0.05,
-                            key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP)  # fmt: skip
+                            key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP,
+                            format=widget_memory.SHORTEST)  # fmt: skip
     names = [*ROBOT_TIMES, *([_OWN] if robot.times is None else [])]
     times = st.selectbox(texts.ROBOT_TIMES_LABEL, names, names.index(robot.times or _OWN),
                          key=f"robot_times {key}", filter_mode=None,

@@ -16,7 +16,7 @@ from fieldmon.io.writers.geojson import route_geojson
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots
 from ..words import texts
-from ..words.language import about, number
+from ..words.language import about, listed, number
 
 if TYPE_CHECKING:
     from ..state.estate import PlotState
@@ -70,6 +70,7 @@ def _crew() -> EstateCrew:
             chosen[name] = widget_memory.show(
                 st.number_input, texts.PLAN_ALL_CREW[name], least, most, step=step,
                 key=f"crew_{name}", default=getattr(usual, name),
+                format="%d" if isinstance(step, int) else widget_memory.SHORTEST,
             )  # fmt: skip
     return EstateCrew(
         **{name: getattr(usual, name) if v is None else v for name, v in chosen.items()}
@@ -89,12 +90,12 @@ def _say(made: SharedPlots, crew: EstateCrew) -> None:
         st.markdown(said)
     st.caption(texts.PLAN_ALL_RULE)
     if made.waiting:
-        names = ", ".join(texts.isolated(one.name) for one in made.waiting)
+        names = listed(texts.isolated(one.name) for one in made.waiting)
         st.markdown(texts.PLAN_ALL_WAITING.format(names=names))
     busy = {one.who for one in made.turns}
     free = [one.name for one in crew.members() if one.name not in busy]
     if free:
-        st.markdown(texts.PLAN_ALL_FREE.format(names=", ".join(free)))
+        st.markdown(texts.PLAN_ALL_FREE.format(names=listed(free)))
     for problem in made.problems:
         st.warning(problem)
     if made.turns:

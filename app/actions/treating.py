@@ -15,8 +15,9 @@ from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
 
 from ..state import notices
+from ..state.widget_memory import SHORTEST
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import in_words, listed
 from . import acting
 
 if TYPE_CHECKING:
@@ -61,13 +62,20 @@ def _boxes(units: UnitsInLanguage) -> None:
     """Show what a certifier asks of each treatment."""
     area = texts.UNITS[units.area]
     left, right = st.columns(2)
-    left.number_input(texts.TREAT_DOSE, 0.0, None, None, key="treat dose")
+    left.number_input(texts.TREAT_DOSE, 0.0, None, None, key="treat dose", format=SHORTEST)
     right.text_input(texts.TREAT_UNIT, key="treat unit", placeholder="l/ha")
-    left.number_input(texts.TREAT_WATER.format(area=area), 0.0, None, None, key=_water(units))
+    left.number_input(texts.TREAT_WATER.format(area=area), 0.0, None, None, key=_water(units),
+                      format=SHORTEST)  # fmt: skip
     right.text_input(texts.TREAT_GROUP, key="treat group", help=texts.TREAT_GROUP_HELP)
     left.number_input(texts.TREAT_WAIT, 0, None, None, key="treat days", help=texts.TREAT_BY_LABEL)
     right.number_input(
-        texts.TREAT_ENTRY, 0.0, None, None, key="treat hours", help=texts.TREAT_BY_LABEL
+        texts.TREAT_ENTRY,
+        0.0,
+        None,
+        None,
+        key="treat hours",
+        help=texts.TREAT_BY_LABEL,
+        format=SHORTEST,
     )
     left.time_input(texts.TREAT_BEGAN, None, key="treat began")
     right.time_input(texts.TREAT_ENDED, None, key="treat ended", help=texts.TREAT_ENDED_HELP)
@@ -153,7 +161,7 @@ def _labels(choices: Choices) -> None:
     st.caption(texts.LABELS_NOTE)
     known = choices.season.labels()
     if known:
-        st.markdown(", ".join(dict.fromkeys(texts.isolated(one.product) for one in known)))
+        st.markdown(listed(dict.fromkeys(texts.isolated(one.product) for one in known)))
     brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key="labels_file")
     if brought is not None:
         pressed = st.button(texts.LABELS_BUTTON, key="take_labels")

@@ -1,4 +1,7 @@
-"""What stands where the map would be while there is none: what is wrong, and the next step."""
+"""What stands where the map would be while there is none: that something is wrong, and what next.
+
+What is wrong stands in the panel, beside what can be changed there.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,6 @@ from ..show import field_map
 from ..state import brought_files, plot_source
 from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS
 from ..words import texts
-from ..words.language import of_error
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
@@ -28,12 +30,10 @@ def want(problem: FieldmonError | None) -> None:
 
 
 def show(problem: FieldmonError | None) -> None:
-    """Show why there is no map, and what to do about it."""
+    """Say that there is no map, and offer what to do about it."""
     case, file = _case(problem)
     with st.container(key="no_map"):
         st.markdown(f"### {texts.NO_MAP[case]}")
-        if problem is not None and case != "asked":
-            st.markdown(of_error(problem))
         if case in texts.NO_MAP_DO:
             st.caption(texts.NO_MAP_DO[case])
         if case == "file" and file:

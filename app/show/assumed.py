@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.units import in_unit
 
 from ..words import texts
-from ..words.language import in_words, number
+from ..words.language import in_words, listed, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,13 +30,13 @@ def sentence(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:
     said = [_words(one, units) for one in assumed if one.setting not in _OF_WHO_INSPECTS]
     if len(said) < len(assumed):
         said.append(texts.ASSUMED_ROBOT_TOO)
-    return texts.ASSUMED.format(what=", ".join(said))
+    return texts.ASSUMED.format(what=listed(said))
 
 
 def of_who_inspects(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:
     """Return what is assumed of who inspects; empty if nothing is."""
     said = [_words(one, units) for one in assumed if one.setting in _OF_WHO_INSPECTS]
-    return texts.ASSUMED_OF_ROBOT.format(what=", ".join(said)) if said else ""
+    return texts.ASSUMED_OF_ROBOT.format(what=listed(said)) if said else ""
 
 
 def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str:

@@ -36,8 +36,8 @@ _LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbol
 _GREY = "#7F7F7F"
 # as far beside its line the words above an axis begin
 _ASIDE_PX = 30
-# as many dates fit side by side in the narrow panel
-_FEW_LABELS = 6
+# as many letters of dates fit side by side in the narrow panel: six of "25 Nov"
+_LETTERS = 36
 
 
 def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
@@ -73,7 +73,8 @@ def _days(labels: Sequence[str], title: str) -> alt.X:
     Layers do not agree which names to leave out: so few never overlap. The days are told: of a
     table alone, those on which nothing was done came last.
     """
-    some = list(labels[:: math.ceil(len(labels) / _FEW_LABELS)])
+    few = max(_LETTERS // max(map(len, labels), default=1), 1)
+    some = list(labels[:: math.ceil(len(labels) / few)])
     days = alt.Scale(domain=list(labels))
     return alt.X("day:O", title=title, scale=days, axis=alt.Axis(labelAngle=0, values=some))
 

@@ -18,7 +18,7 @@ from fieldmon.reports import sentences
 
 from ..state import assumptions, chosen_day
 from ..words import texts
-from ..words.language import about, in_words, number, weekday
+from ..words.language import about, in_words, listed, number, weekday
 from ..words.units import hours
 from .assumed import mark
 
@@ -57,7 +57,7 @@ def headline(choices: Choices, plan: DayPlan) -> str:
 def plan_in_short(plan: DayPlan) -> str:
     """Return how many plants there are to inspect, and how long it takes."""
     plants = texts.PLANTS_COUNTED.format(n=len(plan.route))
-    return f"{plants}, {hours(plan.route.end_s / 3600)}"
+    return listed([plants, hours(plan.route.end_s / 3600)])
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
@@ -138,7 +138,7 @@ def _risen(choices: Choices, yesterday: str) -> str:
     total = [np.bincount(line, chance) for chance in chances]
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
-    return ", ".join(f"{k + 1} (+{number(rise[k], '.1%')})" for k in top)
+    return listed(f"{k + 1} (+{number(rise[k], '.1%')})" for k in top)
 
 
 def reasons(choices: Choices, plan: DayPlan) -> list[str]:

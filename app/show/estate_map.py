@@ -10,21 +10,28 @@ from pydeck import Layer
 
 from ..state.shared_plots import DUE_DAYS
 from ..words import texts
-from ..words.language import about
+from ..words.language import about, listed
 from .map_view import MapContent
 from .maps import legends
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ..state.estate import PlotState
     from ..state.shared_plots import PlannedTurn
     from .maps.colours import Colour
+    from .maps.labels import Label
 
 #: the layer in which a tapped plot is looked up
 PLOTS = "plots"
+#: the layer of plots that are too small on the map of all to be seen there
+MARKS = "plot marks"
 _COLOURS: dict[str, Colour] = {
     "fresh": (46, 139, 87), "due": (230, 159, 0), "late": (200, 60, 40), "new": (130, 140, 135),
 }  # fmt: skip
 _LATE = 7
+# smaller than this share of the map of all, a plot has a mark; its name then stands below it
+_SMALL, _MARK_PX = 0.02, 6
 # who works, told apart for the colour-blind too (Okabe and Ito); their names say it as well
 _WHO: tuple[Colour, ...] = (
     (0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (86, 180, 233), (230, 159, 0),
@@ -74,18 +81,58 @@ def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapC
     states = dict.fromkeys(map(state_of, plots))
     items = [("square", _COLOURS[name], texts.PLOTS_STATES[name]) for name in states]
     of_plot = {id(turn.plot): turn for turn in turns}
-    names = [
-        {"p": shapely.get_coordinates(plot.outline.representative_point())[0].round(7).tolist(),
-         "t": _named(plot, of_plot.get(id(plot))), "k": "name"}
-        for plot in plots
-    ]  # fmt: skip
+    marked = {id(plot) for plot in small(plots)}
+    names = [_label(plot, of_plot.get(id(plot)), marked=id(plot) in marked) for plot in plots]
     who = {turn.number: turn.who for turn in turns}
     workers = [("line", _WHO[k % len(_WHO)], name) for k, name in sorted(who.items())]
     legend = [legends.part("", items), *([legends.part("", workers)] if workers else [])]
-    alt = texts.PLOTS_ALT.format(n=len(plots), names=", ".join(plot.name for plot in plots))
+    alt = texts.PLOTS_ALT.format(n=len(plots), names=listed(plot.name for plot in plots))
     return MapContent(
-        "all plots", bounds, alt, [areas, *_routes(turns)], legend=legend, labels=names
+        "all plots",
+        bounds,
+        alt,
+        [*_marks(plots), areas, *_routes(turns)],
+        legend=legend,
+        labels=names,
     )
+
+
+def small(plots: list[PlotState]) -> list[PlotState]:
+    """Return the plots that are hardly seen where all are in view."""
+    if not plots:
+        return []
+    least = _SMALL * _side(shapely.total_bounds([plot.outline for plot in plots]))
+    return [plot for plot in plots if _side(plot.outline.bounds) < least]
+
+
+def _side(bounds: Iterable[float]) -> float:
+    west, south, east, north = bounds
+    return max(east - west, north - south)
+
+
+def _marks(plots: list[PlotState]) -> list[Layer]:
+    rows = [
+        {"p": _middle(plot), "t": said(plot), "c": [*_COLOURS[state_of(plot)], 255]}
+        for plot in small(plots)
+    ]
+    if not rows:
+        return []
+    return [
+        Layer("ScatterplotLayer", rows, id=MARKS, get_position="p", get_fill_color="c",
+              get_radius=1, radius_min_pixels=_MARK_PX, stroked=True,
+              get_line_color=[60, 70, 65], line_width_min_pixels=1.5)
+    ]  # fmt: skip
+
+
+def _middle(plot: PlotState) -> list[float]:
+    place: list[float] = shapely.get_coordinates(plot.outline.representative_point())[0].round(7)
+    return list(map(float, place))
+
+
+def _label(plot: PlotState, turn: PlannedTurn | None, *, marked: bool) -> Label:
+    lon, lat = _middle(plot)
+    label: Label = {"p": [lon, lat], "t": _named(plot, turn), "k": "name"}
+    return label | {"away": [lon, lat - 1e-4], "gap": 2 * _MARK_PX} if marked else label
 
 
 def _named(plot: PlotState, turn: PlannedTurn | None) -> str:
@@ -113,7 +160,13 @@ def _routes(turns: tuple[PlannedTurn, ...]) -> list[Layer]:
     ]  # fmt: skip
 
 
-def plot_tapped(plots: list[PlotState], index: int) -> PlotState | None:
-    """Return the plot whose part was tapped, by its number in the layer."""
-    parts = [plot for plot in plots for _ in range(shapely.get_num_geometries(plot.outline))]
+def plot_tapped(plots: list[PlotState], index: int, layer: str = PLOTS) -> PlotState | None:
+    """Return the plot whose part or mark was tapped, by its number in the layer."""
+    if layer not in (PLOTS, MARKS):
+        return None
+    parts = (
+        small(plots)
+        if layer == MARKS
+        else [plot for plot in plots for _ in range(shapely.get_num_geometries(plot.outline))]
+    )
     return parts[index] if 0 <= index < len(parts) else None

@@ -61,11 +61,12 @@ def _saved(gain: MarginalGain) -> dict[str, float]:
 
 
 def table(ranked: list[Outcome]) -> pd.DataFrame:
-    """Return what each strategy came to, the best first and marked."""
+    """Return what each strategy came to, the best first and marked; its verdict beside its name."""
     base = ranked[0].loss.mean
     return pd.DataFrame(
         {
             texts.COLUMN_STRATEGY: [name(o.strategy) for o in ranked],
+            texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
             texts.COLUMN_LOSS: [_interval(o.loss, ",.0f") for o in ranked],
             texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), ".3g", " %") for o in ranked],
             texts.COLUMN_VISITED: [
@@ -74,7 +75,6 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
             texts.COLUMN_HALF: [_day(o.half_day) for o in ranked],
             texts.COLUMN_MOST: [_day(o.most_day) for o in ranked],
             texts.COLUMN_WORKED: [number(o.worked_h, ",.0f") for o in ranked],
-            texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
         }
     )
 

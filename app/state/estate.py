@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 # the other plots do not wait for one that another program holds
 _GLANCE_S = 0.5
+#: how often is looked whether a season that was held is free
+LOOK_AGAIN_S = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +54,18 @@ class PlotState:
     expected: float | None = None
 
 
-def plots() -> tuple[list[PlotState], list[str]]:
-    """Return the plots, seasons first, and why seasons that cannot be opened are not among them."""
-    found, problems = [], []
+@dataclass(frozen=True)
+class NotAmong:
+    """A plot that cannot be shown among the others: why; the season's name if another holds it."""
+
+    said: str
+    held: str = ""
+
+
+def plots() -> tuple[list[PlotState], list[NotAmong]]:
+    """Return the plots, seasons first, and why those that cannot be opened are not among them."""
+    found: list[PlotState] = []
+    problems: list[NotAmong] = []
     for name in seasons_folder.names():
         try:
             path = seasons_folder.path_of(name)
@@ -62,7 +73,8 @@ def plots() -> tuple[list[PlotState], list[str]]:
             found.append(_of_season(name, cached.season(path)))
         except FieldmonError as error:
             said = of_error(error)
-            problems.append(said if name in said else f"{name}: {said}")
+            said = said if name in said else f"{name}: {said}"
+            problems.append(NotAmong(said, name if isinstance(error, held.SeasonHeld) else ""))
     files = plot_files.of_session()
     if files is not None and files.plot is not None:
         try:
@@ -74,13 +86,26 @@ def plots() -> tuple[list[PlotState], list[str]]:
                 for number, field in enumerate(read.value)
             ]
         except FieldmonError as error:
-            problems.append(of_error(error))
+            problems.append(NotAmong(of_error(error)))
     if not found:
         found = [
             PlotState(field.name, plot_source.SAMPLE, field.boundary, number)
             for number, field in enumerate(sample_estate.plots())
         ]
     return found, problems
+
+
+def is_one_free(names: list[str]) -> bool:
+    """Tell whether another program holds one of these seasons no more; nobody waits for that."""
+    for name in names:
+        try:
+            held.wait(seasons_folder.path_of(name), patience_s=0.0)
+        except held.SeasonHeld:
+            continue
+        except FieldmonError:
+            pass  # what is wrong with it is said when it is opened
+        return True
+    return False
 
 
 def _of_season(name: str, season: Season) -> PlotState:

@@ -18,8 +18,12 @@ if TYPE_CHECKING:
     from streamlit.delta_generator import DeltaGenerator
 
 
+class SeasonHeld(FileProblem):
+    """Another program holds a season longer than is waited for."""
+
+
 def wait(path: Path, *, to_write: bool = False, patience_s: float | None = None) -> None:
-    """Wait until a season can be read or written; raise `FileProblem` if that takes too long.
+    """Wait until a season can be read or written; raise `SeasonHeld` if that takes too long.
 
     `patience_s`: how long is too long; None: what is too long for any command.
     """
@@ -42,4 +46,4 @@ def wait(path: Path, *, to_write: bool = False, patience_s: float | None = None)
         for place in places:
             place.empty()
     if not is_free:
-        raise FileProblem(texts.HELD_STILL.format(name=texts.isolated(path.stem)))
+        raise SeasonHeld(texts.HELD_STILL.format(name=texts.isolated(path.stem)))

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 T = TypeVar("T")
+#: how a box writes a number that may have a fraction: 2, not 2.00
+SHORTEST = "%.8g"
 _VALUES, _PAGE, _BEGINS = "widget values", "page", "widget begins"
 
 

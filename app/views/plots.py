@@ -26,7 +26,10 @@ def show() -> None:
         ways_in.show()
     sharing_plots.show_button(plots)
     for problem in problems:
-        st.warning(problem)
+        st.warning(problem.said)
+    held = [problem.held for problem in problems if problem.held]
+    if held:
+        st.fragment(_watch, run_every=estate.LOOK_AGAIN_S)(held)
     turns = sharing_plots.show(plots).turns if sharing_plots.is_on() else ()
     field_map.want(estate_map.content(plots, turns), MapAnswers(tapped=partial(_tapped, plots)))
     st.caption(texts.PLOTS_PICK)
@@ -37,13 +40,19 @@ def show() -> None:
     )  # fmt: skip
 
 
+def _watch(held: list[str]) -> None:
+    """Show a season that another program held as soon as it is free."""
+    if estate.is_one_free(held):
+        st.rerun()
+
+
 def _open(plot: PlotState) -> None:
     estate.open_plot(plot)
     rooms.turn_to("today")
 
 
 def _tapped(plots: list[PlotState], layer: str, index: int) -> None:
-    plot = estate_map.plot_tapped(plots, index) if layer == estate_map.PLOTS else None
+    plot = estate_map.plot_tapped(plots, index, layer)
     if plot is not None:
         _open(plot)
 

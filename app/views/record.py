@@ -25,5 +25,4 @@ def show(choices: Choices) -> None:
         return
     recording.show_said_otherwise(choices)
     recording.show(choices)
-    with st.expander(texts.BATCHES, expanded=True):
-        recording.show_batches(choices)
+    recording.show_batches(choices)

@@ -25,7 +25,7 @@ from fieldmon.reports.language import ReportLanguage
 from .kept_sentences import KnownSentences, sentences
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from datetime import date
 
 ENGLISH = "en"
@@ -46,6 +46,7 @@ _LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", 
 
 # what stands after a number, and not on the next line
 _UNIT = re.compile(r"(?<=\d) (?=%|(?:h|m|km|ha|ft|mi|l|°C)\b)")
+_SHARE = re.compile(r"(?<=\d) (?=%)")
 
 _NUMBER = re.compile(r"[+−-]?\d[\d,]*(\.\d+)?")
 
@@ -147,8 +148,6 @@ class Late(str):  # noqa: SLOT000 - it has one attribute
 def translated(name: str, value: Any) -> Any:  # noqa: ANN401 - a text, or many in a dict or tuple
     """Return a constant of `texts` in the current language."""
     language = current()
-    if language == ENGLISH:
-        return value
     key = language, name
     if key not in _TRANSLATED:
         _TRANSLATED[key] = _in_language(language, name, value)
@@ -167,6 +166,8 @@ def _in_language(language: str, context: str, value: Any) -> Any:  # noqa: ANN40
         )  # fmt: skip
     if not isinstance(value, str) or context in SAME or context.split(".", maxsplit=1)[0] in SAME:
         return value
+    if language == ENGLISH:
+        return Text(value) if type(value) is str else value
     if isinstance(value, Plural):
         made = Plural(value.one, str(value), value.by, language)
         made.context = context
@@ -255,6 +256,22 @@ def leading_nowhere(text: str, *, turning: bool = True) -> str:
     return _LEADING.sub("\\g<0>\u2060", text)
 
 
+def listed(parts: Iterable[str]) -> str:
+    """Return words side by side, with the comma of the current language.
+
+    Examples
+    --------
+    >>> listed(["north", "south"])
+    'north, south'
+    """
+    return _marks(", ", current()).join(parts)
+
+
+def _marks(between: str, language: str) -> str:
+    """Return what stands between words with the marks of a language."""
+    return between.translate({ord(","): "،", ord(";"): "؛"}) if language == "ar" else between
+
+
 def of_error(error: BaseException) -> str:
     """Return what an error says, in the current language."""
     return in_words(error.args[0] if error.args else str(error))
@@ -277,7 +294,7 @@ def _said(sentence: object, language: str) -> str | None:
         if all(said is None for said in parts.values()):
             return None
         said = [parts[p] or marked_as_english(p) for p in sentence.parts]
-        return sentence.between.join(said)
+        return _marks(sentence.between, language).join(said)
     if sentence.one:
         form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:
@@ -384,8 +401,10 @@ class _BlanksInLanguage(Formatter):
 
 def _filled(words: str, language: str, args: Any, values: Any) -> str:  # noqa: ANN401
     if language == ENGLISH and "%}" not in words and "|" not in words:
-        return str.format(words, *args, **values)
-    return _BlanksInLanguage(language).vformat(str(words), args, values)
+        filled = str.format(words, *args, **values)
+    else:
+        filled = _BlanksInLanguage(language).vformat(str(words), args, values)
+    return _SHARE.sub("\u00a0", filled)
 
 
 def number(value: float, form: str = "") -> str:

@@ -392,7 +392,9 @@ STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Beg
                 "next_day": "Plan the next day"}  # fmt: skip
 STEP_NOTHING = "nothing recorded"
 STEP_FOUND = Plural(
-    "{found} found on {inspected} plant", "{found} found on {inspected} plants", by="inspected"
+    "{found:,} found on {inspected:,} plant",
+    "{found:,} found on {inspected:,} plants",
+    by="inspected",
 )
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"
@@ -407,23 +409,23 @@ WHY, WHY_TODAY = "Why there", "today"
 CHANGED = "Since yesterday"
 CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
 CHANGED_FINDS = Plural(
-    "{found} found on {inspected} plant inspected on {day}.",
-    "{found} found on {inspected} plants inspected on {day}.", by="inspected",
+    "{found:,} found on {inspected:,} plant inspected on {day}.",
+    "{found:,} found on {inspected:,} plants inspected on {day}.", by="inspected",
 )  # fmt: skip
 CHANGED_NONE = "Nothing was recorded on {day}."
 CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
 _OVER = (
-    "inspected today, {found} found: the working day is over. Choose the next day above for "
+    "inspected today, {found:,} found: the working day is over. Choose the next day above for "
     "its route, or give more hours."
 )
 TODAY_OVER = Plural(
-    "{inspected} plant " + _OVER, "{inspected} plants " + _OVER, by="inspected"
+    "{inspected:,} plant " + _OVER, "{inspected:,} plants " + _OVER, by="inspected"
 )  # fmt: skip
 TODAY_DONE = Plural(
-    "{inspected} plant inspected today so far, {found} found. The route shows the rest.",
-    "{inspected} plants inspected today so far, {found} found. The route shows the rest.",
+    "{inspected:,} plant inspected today so far, {found:,} found. The route shows the rest.",
+    "{inspected:,} plants inspected today so far, {found:,} found. The route shows the rest.",
     by="inspected",
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
@@ -449,7 +451,7 @@ TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
 TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
 TIP_LOOKS = Plural(", inspected {n} time", ", inspected {n} times")
 TIP_FINDS = Plural(", found {n} time", ", found {n} times")
-TIP_HOT = "hot spot {n}: {found} found of {inspected} inspected"
+TIP_HOT = "hot spot {n}: {found:,} found of {inspected:,} inspected"
 TIP_TREATED, TIP_TREATED_WITH = "treated on {day}", "treated on {day}: {product}"
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
 TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
@@ -807,8 +809,8 @@ CLEAN_BUTTON, FOUND_BUTTON = "Clean", "Found"
 SKIP_BUTTON, UNDO_BUTTON = "Could not inspect", "Undo"
 COUNT_LABEL = "Pests counted (if found)"
 SCOUT_DONE = Plural(
-    "### Done for today\n{inspected} plant inspected, {found} found.",
-    "### Done for today\n{inspected} plants inspected, {found} found.", by="inspected",
+    "### Done for today\n{inspected:,} plant inspected, {found:,} found.",
+    "### Done for today\n{inspected:,} plants inspected, {found:,} found.", by="inspected",
 )  # fmt: skip
 SCOUT_START = "Work starts at {start} by the settings of this season; it is {now}."
 SCOUT_NOW = "Begin now"

@@ -21,7 +21,7 @@ UNPRINTED = (
 FEW_FINDS = "{n:.1f} finds"
 HEADLINE = "Inspect {plants} in {rows} on {day}, {hours} h: about {finds} expected."
 HEADLINE_NONE = "Nothing to inspect on {day}."
-WORKED = "Worked on {day}: {inspected} plants inspected, {found} found infested."
+WORKED = "Worked on {day}: {inspected:,} plants inspected, {found:,} found infested."
 ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
 NO_ROWS = "no rows"
 LEGEND_CHANCE = "Chance that a plant is infested"
@@ -81,7 +81,7 @@ DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "found of a
 DAYS_REST = "... and {n} earlier days; the season's file holds all of them."
 HOT_LIST = "Hot spots"
 HOT_MEANS = (
-    "{rows}: {found} found among {inspected} inspected of its {plants} plants, where "
+    "{rows}: {found:,} found among {inspected:,} inspected of its {plants:,} plants, where "
     "{expected} would be if finds were strewn evenly. So many by chance alone: {p}."
 )
 HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"

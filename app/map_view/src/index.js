@@ -141,7 +141,25 @@ class MapPage {
   padding() {
     const { left, right, bottom } = covered(), tools = [30, 64];
     if (this.data.direction === "rtl") tools.reverse();
-    return { left: left + tools[0], right: right + tools[1], top: 24, bottom: bottom + 56 };
+    // below the plot, the gate's name has room above the day's bar
+    return { left: left + tools[0], right: right + tools[1], top: this.top(), bottom: bottom + 76 };
+  }
+
+  // Return from where the map is free: on a phone the legend lies above the plot.
+  top() {
+    const legend = this.legend.getBoundingClientRect(), map = this.root.getBoundingClientRect();
+    return legend.height && !this.legendBox() ? Math.max(24, legend.bottom - map.top + MARGIN_PX) : 24;
+  }
+
+  // Return the boxes of what lies over the map, and from where to where it is seen beside the panel; asked
+  // anew whenever that may have changed.
+  around() {
+    if (this.boxes) return this.boxes;
+    const map = this.root.getBoundingClientRect(), { left, right } = covered();
+    const over = [...this.foot.children, this.legend].map((one) => one.getBoundingClientRect()).filter((box) => box.width)
+      .map((box) => [box.left - map.left, box.top - map.top, box.right - map.left, box.bottom - map.top]);
+    this.boxes = [over, [left, map.width - right]];
+    return this.boxes;
   }
 
   // Return where the legend lies on the map; null where it lies above the plot, as on a phone.
@@ -197,6 +215,7 @@ class MapPage {
 
   // a window that changes its size before anybody moved the map shows the whole plot again
   resized() {
+    this.boxes = null;
     if (this.deck && !this.moved) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });
   }
 
@@ -204,6 +223,7 @@ class MapPage {
 
   drawLayers() {
     if (!this.deck) return;
+    this.boxes = null;
     const accent = this.data.dark || this.data.ground?.picture ? [255, 220, 90] : [0, 110, 70];
     const followed = this.viewport() && this.drive.view(this.viewport(), this.middle());
     if (followed) this.deck.setProps({ initialViewState: { ...followed, maxZoom: 24 } });
@@ -221,7 +241,7 @@ class MapPage {
     const viewport = this.viewport();
     if (!viewport) return;
     this.scale.draw(viewport, { lengths: this.data.lengths, alt: this.data.words.scale });
-    this.labels.draw(withHot(this.data.labels ?? NONE, this.frames.of(this.jsons)), viewport, new Set(this.off()));
+    this.labels.draw(withHot(this.data.labels ?? NONE, this.frames.of(this.jsons)), viewport, new Set(this.off()), ...this.around());
     if (!this.cross.hidden) this.pointAtMiddle();
     const { longitude, latitude, zoom, width, height } = viewport;
     this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, width, height });

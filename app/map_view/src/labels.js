@@ -29,6 +29,11 @@ function beyond(viewport, p, away, half, tall, gap) {
   return [dx * step, dy * step];
 }
 
+// Return a middle from which a word reaches over neither edge, if it is not out of view.
+function inside(x, half, [left, right]) {
+  return x < left || x > right || right - left < 2 * half ? x : Math.min(Math.max(x, left + half), right - half);
+}
+
 // `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row, at, away, gap}, the most important
 // first; `at` are the places to be tried where it may stand at several. One with `away` [lon, lat] stands
 // beyond its place in that direction, `gap` pixels from it.
@@ -39,14 +44,17 @@ export class Labels {
     this.placed = [];
   }
 
-  draw(labels, viewport, hidden) {
-    const boxes = [];
+  // `over` are the boxes [left, top, right, bottom] of what lies over the map: no word stands below it.
+  // `free` is from where to where the map is seen: a name beside its edge is moved into it.
+  draw(labels, viewport, hidden, over = [], free = [0, viewport.width]) {
+    const boxes = [...over];
     this.placed = [];
     for (const { p, t, k, from, to, row, at, away, gap } of labels) {
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99)) continue;
       const lines = t.split("\n"), half = 4 * Math.max(...lines.map((one) => one.length)) + 7, tall = 10 * lines.length;
       const [outX, outY] = away ? beyond(viewport, p, away, half, tall, gap ?? 3) : [0, 0];
-      const place = (at ?? [p]).map((one) => viewport.project(one)).map(([x, y]) => [x + outX, y + outY]).find(([x, y]) => {
+      const place = (at ?? [p]).map((one) => viewport.project(one)).map(([x, y]) => [x + outX, y + outY])
+        .map(([x, y]) => [k === "name" ? inside(x, half + 4, free) : x, y]).find(([x, y]) => {
         if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) return false;
         return !boxes.some((b) => x - half < b[2] && x + half > b[0] && y - tall < b[3] && y + tall > b[1]);
       });

@@ -9,10 +9,10 @@ import { flatView, random } from "./plots.mjs";
 // stands for the page: what is shown, and where
 globalThis.document = { createElement: () => ({ style: {}, dataset: {}, textContent: "", hidden: true }) };
 
-function shown(labels, view, hidden = new Set()) {
+function shown(labels, view, hidden = new Set(), ...more) {
   const place = { made: [], appendChild(one) { this.made.push(one); return one; } };
   const drawn = new Labels(place);
-  drawn.draw(labels, view, hidden);
+  drawn.draw(labels, view, hidden, ...more);
   return place.made.filter((one) => !one.hidden).map((one) => {
     const [, x, y] = one.style.transform.match(/^translate\((-?[\d.]+)px, (-?[\d.]+)px\)/);
     return { t: one.textContent, k: one.className.split(" ")[1], x: Number(x), y: Number(y) };
@@ -93,4 +93,21 @@ test("a word beyond its place stands clear of it, whatever the direction and the
   }
   const [still] = shown([{ p: [0.4, -0.4], away: [0.4, -0.4], t: "3", k: "row" }], view);
   assert.deepEqual([still.x, still.y], [400, 400]);
+});
+
+test("no word stands below what lies over the map", () => {
+  const labels = [{ p: [0.1, -0.1], t: "gate", k: "place" }, { p: [0.4, -0.4], t: "3", k: "row" }];
+  const of = (over) => shown(labels, view, new Set(), over).map((one) => one.t);
+  assert.deepEqual(of([[80, 80, 300, 120]]), ["3"]);
+  assert.deepEqual(of([[80, 120, 300, 160]]), ["gate", "3"]);
+});
+
+test("a name beside the edge is moved to where it is read in full, and no other word is", () => {
+  const at = (k, x, t) => shown([{ p: [x, -0.3], t, k }], view, new Set(), [], [100, 700])[0]?.x;
+  const half = 4 * "Small vineyard".length + 7 + 4;
+  assert.equal(at("name", 0.11, "Small vineyard"), 100 + half);
+  assert.equal(at("name", 0.69, "Small vineyard"), 700 - half);
+  assert.equal(at("name", 0.4, "Small vineyard"), 400);
+  assert.equal(at("name", 0.05, "Small vineyard"), 50, "what the panel covers stays there");
+  assert.equal(at("row", 0.11, "Small vineyard"), 110);
 });

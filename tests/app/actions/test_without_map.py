@@ -19,7 +19,7 @@ def test_a_file_that_cannot_be_read_is_said_there_and_taken_out_there(app, tmp_p
     upload(app, plot=("plot.zip", b"no zip"))
     assert card(app) == [texts.NO_MAP["file"]]
     said = app.error[0].value
-    assert sum(one.value == said for one in app.markdown) == 1, "what is wrong"
+    assert texts_of(app).count(said) == 1, "what is wrong, once"
     assert "plot.zip" in app.button(key="no_map_take_out").label
     app.button(key="no_map_take_out").click().run()
     assert card(app) == [texts.NO_MAP["bring"]]

@@ -134,3 +134,12 @@ def test_days_of_two_years_stay_in_their_order_and_are_named_as_told():
     assert [row["day"] for row in rows(chart)] == ["31.12", "01.01"]
     scale = spec(chart)["layer"][0]["encoding"]["x"]["scale"]
     assert scale["domain"] == ["31.12", "01.01"]
+
+
+@pytest.mark.parametrize(("name", "most"), [("{} Nov", 6), ("{} בנוב׳", 4), ("{} نوفمبر", 4)])
+def test_dates_of_a_long_season_stand_apart_in_any_language(name, most):
+    labels = [name.format(k) for k in range(1, 26)]
+    shown = charts._days(labels, "day").to_dict()["axis"]["values"]
+    assert len(shown) <= most
+    assert shown[0] == labels[0]
+    assert charts._days(labels[:3], "day").to_dict()["axis"]["values"] == labels[:3]

@@ -42,6 +42,20 @@ def test_every_part_of_a_plot_is_drawn_where_it_is_and_leads_to_it():
     assert estate_map.plot_tapped(PLOTS, -1) is None
 
 
+def test_a_plot_too_small_to_be_seen_among_all_has_a_mark_that_leads_to_it():
+    tiny = PlotState("tiny", "tiny", shapely.MultiPolygon([shapely.box(55.0, 30.0, 55.01, 30.01)]))
+    plots = [PLOTS[0], tiny, PLOTS[2]]
+    content = estate_map.content(plots)
+    (marks,) = (one for one in content.layers if one.id == estate_map.MARKS)
+    (row,) = marks.data
+    assert tiny.outline.contains(shapely.Point(row["p"]))
+    assert tuple(row["c"][:3]) == tuple(content.layers[-1].data[1]["c"][:3]), "as its area"
+    assert estate_map.plot_tapped(plots, 0, estate_map.MARKS) is tiny
+    assert estate_map.plot_tapped(plots, 0, "route") is None
+    assert ["away" in label for label in content.labels] == [False, True, False]
+    assert len(estate_map.content(PLOTS).layers) == 1
+
+
 def test_all_plots_are_in_view_with_their_names():
     content = estate_map.content(PLOTS)
     assert content.bounds == [35.0, 30.0, 50.5, 30.5]

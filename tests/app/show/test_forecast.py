@@ -34,7 +34,7 @@ def test_the_last_morning_is_said_with_its_interval_and_drawn_by_date(shown):
     chart, said, _ = shown(None)
     assert said == (
         "About 40 plants are infested after 14 nights without inspections (20 to 120 with a "
-        "chance of 90 %); now it is about 10."
+        "chance of 90\u00a0%); now it is about 10."
     )
     (rows,) = chart["datasets"].values()
     assert (rows[0]["day"], rows[-1]["day"]) == ("25 Dec", "8 Jan")

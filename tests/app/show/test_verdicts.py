@@ -7,6 +7,7 @@ from app.show import verdicts
 from app.state.comparison import Outcome, Strategy
 from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.simulation.team_worth import marginal_gains
+from tests.app.driving import apart
 
 BEST, SECOND = Strategy("dynamic", 12.0, 40.0), Strategy("naive", 12.0, 40.0)
 
@@ -24,7 +25,7 @@ def ranked(behind):
 
 
 def test_a_clear_winner_is_said_with_its_interval():
-    said = verdicts.sentence(ranked([40.0, 41.0, 42.0]))
+    said = apart(verdicts.sentence(ranked([40.0, 41.0, 42.0])))
     assert said.startswith("**Dynamic · 12 h · 40 s** is best: 110 infested plant-days, 27 % less")
     assert "Naive · 12 h · 40 s" in said
     low, high = summary_statistics(np.array([40.0, 41.0, 42.0])).low, 43.48
@@ -37,6 +38,10 @@ def test_where_the_interval_holds_nothing_nobody_is_called_better():
     assert verdicts.table(ranked([-5.0, 1.0, 10.0]))["verdict"].tolist() == [
         "★ best", "no clear difference"
     ]  # fmt: skip
+
+
+def test_a_verdict_stands_beside_its_strategy_where_a_narrow_panel_shows_it():
+    assert list(verdicts.table(ranked([1.0, 2.0, 3.0])))[:2] == ["strategy", "verdict"]
 
 
 def test_one_strategy_alone_is_not_called_best_of_others():
@@ -61,8 +66,8 @@ def test_of_one_season_no_interval_is_said():
 def test_the_table_says_by_how_much_in_percent_of_the_best():
     row = verdicts.table(ranked([40.0, 41.0, 42.0])).iloc[1]
     assert row["strategy"] == "Naive · 12 h · 40 s"
-    assert row["verdict"].startswith("+37 % loss (+35 to +40)")
-    assert row["inspected a day"] == "12.3 %"
+    assert row["verdict"].startswith("+37\u00a0% loss (+35 to +40)")
+    assert row["inspected a day"] == "12.3\u00a0%"
     assert row["half found on day"] == "7"
 
 

@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 import streamlit as st
 
-from app.state import held, seasons_folder
+from app.state import estate, held, seasons_folder
+from app.views import plots as plots_view
 from app.words import texts
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import transactions
-from tests.app.driving import go, press, texts_of
+from tests.app.driving import broken, go, press, texts_of
 from tests.pages import Page
 
 
@@ -110,3 +111,18 @@ def test_all_plots_are_shown_but_the_one_that_another_program_holds(season_app, 
         (said,) = season_app.warning
         assert said.value.startswith("Another program holds the season")
         assert "Free" in season_app.dataframe[0].value["plot"].tolist()
+
+
+@pytest.mark.usefixtures("impatient", "season_app")
+def test_a_season_is_looked_at_again_until_another_program_holds_it_no_more(season, monkeypatch):
+    there, name = season().path, "Gate 2026"
+    broken(there.with_name("Broken.gpkg"))
+    runs = []
+    monkeypatch.setattr(st, "rerun", lambda: runs.append(1))
+    with another_program(there):
+        _, problems = estate.plots()
+        assert [one.held for one in problems] == ["", name]
+        plots_view._watch([name])
+        assert not runs
+    plots_view._watch([name])
+    assert runs == [1]

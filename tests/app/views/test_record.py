@@ -15,6 +15,7 @@ def test_what_was_recorded_shows_at_once_with_its_undo(season_app, season):
     go(season_app, "record")
     assert map_of(season_app)["shades"][0]["key"] == "state"
     assert not [one for one in season_app.button if one.label == "Undo"]
+    assert not [one for one in season_app.expander if one.label == texts.BATCHES], "an empty box"
     season_app.number_input(key="one_row").set_value(3)
     season_app.number_input(key="one_plant").set_value(4)
     season_app.segmented_control(key="one_result").set_value(1)
@@ -23,4 +24,5 @@ def test_what_was_recorded_shows_at_once_with_its_undo(season_app, season):
     assert len(season().history.inspections) == 1
     press(season_app, "Undo")
     assert len(season().history.inspections) == 0
+    assert [one for one in season_app.expander if one.label == texts.BATCHES]
     assert texts.UNDONE in texts_of(season_app)

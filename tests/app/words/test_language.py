@@ -2,10 +2,13 @@
 
 import unicodedata
 
+import pytest
+
 from app.words import language, texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.errors import SettingError
+from fieldmon.reports import words
 
 
 def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
@@ -95,3 +98,34 @@ def test_a_figure_has_its_sign_as_the_sentences_around_it(speaking):
         speaking(code)
         assert language.in_words(figure(12.5, ".1f", " %")) == said
         assert language.in_words(figure(0.125, ".1%")) == said
+
+
+@pytest.mark.parametrize("code", language.LANGUAGES)
+def test_no_line_ends_between_a_number_that_is_filled_in_and_its_sign(speaking, code):
+    """The percent sign stands in the text, the number is filled in."""
+    speaking(code)
+    for text in (texts.IN_PERCENT, texts.ASSUMED_WHAT["background_chance"]):
+        said = text.format(value="12")
+        assert "12 %" not in said
+        assert "12\u00a0%" in said or "12%" in said
+
+
+@pytest.mark.parametrize(("code", "counted"), [("en", "1,009"), ("he", "1,009"), ("es", "1.009")])
+def test_thousands_of_a_day_or_a_hot_spot_are_written_as_everywhere(speaking, code, counted):
+    speaking(code)
+    many = {"found": 1009, "inspected": 1009, "plants": 1009, "n": 1, "day": "x"}
+    for text in (texts.TIP_HOT, texts.STEP_FOUND, texts.CHANGED_FINDS, texts.TODAY_DONE,
+                 texts.TODAY_OVER, texts.SCOUT_DONE):  # fmt: skip
+        assert text.format(**many).count(counted) == 2
+    hot = worded(words.HOT_MEANS, rows="", expected="7", p="", **many)
+    assert language.in_words(hot).count(counted) == 3
+
+
+def test_words_side_by_side_have_the_comma_of_their_language(speaking):
+    library = joined(", ", [counted(1320, "plant"), counted(3, "plant")])
+    assert language.listed(["1", "2"]) == "1, 2"
+    speaking("ar")
+    assert language.listed(["1", "2"]) == "1، 2"
+    assert language.in_words(library).count("،") == 1
+    speaking("he")
+    assert language.listed(["1", "2"]) == "1, 2"

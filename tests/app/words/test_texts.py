@@ -6,6 +6,7 @@ import string
 import pytest
 
 from app.words import texts
+from app.words.language import LANGUAGES
 from tests.paths import ROOT
 
 NAMES = [name for name in vars(texts) if name.isupper()]
@@ -51,3 +52,11 @@ def test_words_that_mean_something_else_elsewhere_are_not_used(word):
 
 def test_a_name_of_any_script_keeps_to_itself():
     assert texts.isolated("מטע") == "\u2068מטע\u2069"
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_the_tabs_of_recording_fit_into_the_panel(speaking, code):
+    """As many letters as stand side by side in 360 pixels: what does not fit is cut."""
+    speaking(code)
+    tabs = texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT
+    assert sum(map(len, tabs)) <= 50

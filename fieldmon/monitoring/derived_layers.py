@@ -146,17 +146,33 @@ def _write_states(
     name = {day: str(history.date_of(day)) for day in np.unique(history.days).tolist()}
     rows = zip(
         range(1, len(history.grid) + 1),
-        np.round(history.evening(morning, day).chance, 6).tolist(),
         [STATES[state] for state in history.known(day).tolist()],
         [name.get(last) for last in history.last_inspected(day).tolist()],
         [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],
         strict=True,
     )
     # a tap changes what is known of a few plants: only these are written
-    columns = "fid, chance, state, last_inspected, hot_spot"
-    before = db.execute(f"SELECT {columns} FROM plant_state ORDER BY fid").fetchall()  # noqa: S608 - ours
-    changed = [row for row, old in zip_longest(rows, before) if row != old]
-    marks = ", ".join("?" * 5)
-    db.executemany(f"REPLACE INTO plant_state ({columns}) VALUES ({marks})", changed)  # noqa: S608
+    before = db.execute(
+        "SELECT fid, state, last_inspected, hot_spot FROM plant_state ORDER BY fid"
+    ).fetchall()
+    changed = [row for row, old in zip_longest(rows, before) if row != old and row is not None]
+    db.executemany(
+        "INSERT INTO plant_state (fid, state, last_inspected, hot_spot) VALUES (?, ?, ?, ?) "
+        "ON CONFLICT (fid) DO UPDATE SET state = excluded.state, "
+        "last_inspected = excluded.last_inspected, hot_spot = excluded.hot_spot",
+        changed,
+    )
+    _write_chances(db, np.round(history.evening(morning, day).chance, 6).tolist())
     for table in (schema.PLANT_STATE, schema.CHANCE, schema.DAYS):
         touch(db, table.name)
+
+
+def _write_chances(db: sqlite3.Connection, chances: list[float]) -> None:
+    """Let plants have these chances, in one statement: a night changes those of all of them."""
+    db.create_function("chance_of", 1, [None, *chances].__getitem__)
+    db.execute(
+        "UPDATE plant_state SET chance = chance_of(fid) "
+        "WHERE fid BETWEEN 1 AND ? AND chance IS NOT chance_of(fid)",
+        (len(chances),),
+    )
+    db.create_function("chance_of", 1, None)

@@ -35,6 +35,13 @@ TAKEN = (
     *(schema.BATCHES, schema.INSPECTIONS, schema.TREATMENTS, schema.SETTINGS),
     *(schema.ROUTES, schema.STOPS, schema.IMPORTS, schema.OUTSIDE_CHANGES, schema.LABELS),
 )
+_SAID = "SELECT digest, undone, who, notes FROM inspections WHERE batch = ? ORDER BY fid"
+# the same in one row: whichever way SQLite finds those of a batch, it is in the order of their fid
+_TOGETHER = (
+    "SELECT count(digest), count(undone), count(who), count(notes), group_concat(digest), "
+    "group_concat(undone), group_concat(who), group_concat(notes) "
+    "FROM inspections WHERE batch = ?"
+)
 #: what stays ours and is told of the other's, see `fieldmon.monitoring.season_log`
 LOGGED = (schema.LOG,)
 
@@ -185,7 +192,6 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
     """
     ours, theirs = numbers
     here, there = (_spans(one) for one in both)
-    said = "SELECT digest, undone, who, notes FROM inspections WHERE batch = ? ORDER BY fid"
     n, batch = 0, 0
     for number in sorted(ours):
         if number not in here and number not in there:
@@ -193,10 +199,7 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
         first, last, count = span = here.get(number, (0, 0, 0))
         if (ours[number], theirs.get(number)) != (number, number) or span != there.get(number):
             break
-        rows, other = (one.execute(said, (number,)).fetchall() for one in both)
-        if (first, last) != (n + 1, n + count) or rows != other or any(None in r for r in rows):
-            break
-        if len({digest for digest, *_ in rows}) < count:  # taken back and recorded again
+        if (first, last) != (n + 1, n + count) or not _same(both, number, count):
             break
         n, batch = last, number
     rest = (
@@ -210,6 +213,22 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
     before = "SELECT count(*) FROM inspections WHERE fid <= ? AND batch < ?"
     (stay,) = both[0].execute(before, (n, min(later, default=batch + 1))).fetchone()
     return int(stay)
+
+
+def _same(both: tuple[sqlite3.Connection, sqlite3.Connection], number: int, count: int) -> bool:
+    """Tell whether so many inspections of a batch say the same in both, each something else."""
+    one, other = (db.execute(_TOGETHER, (number,)).fetchone() for db in both)
+    there, said = {*one[:4]}, one[4:]
+    # where something holds a comma, or nothing, is looked at row by row
+    if there == {count} and one == other and {one.count(",") for one in said} == {count - 1}:
+        return len({*said[0].split(",")}) == count
+    rows, others = (db.execute(_SAID, (number,)).fetchall() for db in both)
+    # what was taken back and recorded again stands there twice
+    return (
+        rows == others
+        and not any(None in row for row in rows)
+        and len({digest for digest, *_ in rows}) == count
+    )
 
 
 def _spans(db: sqlite3.Connection) -> dict[int, tuple[int, int, int]]:

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 50_000_000
 _MOST_BYTES = 2**34
+# what the damaged file is called beside the new one
+_OLD = "damaged"
+_IS_ATTACHED = f"SELECT 1 FROM pragma_database_list WHERE name = '{_OLD}'"  # noqa: S608 - ours
+_TEXTS = {"TEXT", "DATE"}
 #: what need not be worked out again as far as it follows from what was saved
 _WORKED_OUT = (schema.DAYS, schema.MORNINGS)
 
@@ -66,6 +70,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
         copy = _padded_copy(source, Path(folder))
         with closing(sqlite3.connect(copy)) as db, Store.new(to) as new:
             new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
+            _attach(db, new, copy)
             with _written_at_once(new):
                 for table in schema.CAUSES:
                     if table is not schema.META:
@@ -158,6 +163,9 @@ def _taken(
 ) -> tuple[int, bool]:
     """Copy the rows of a table that can be read; return how many, and whether those are all."""
     names = _columns(db, table)
+    whole = _taken_whole(db, new, table, names)
+    if whole is not None:
+        return whole, True
     found, complete = _rows(db, table, names)
     marks = ", ".join("?" * len(names))
     new.executemany(
@@ -165,6 +173,51 @@ def _taken(
         found,
     )
     return len(found), complete
+
+
+def _attach(db: sqlite3.Connection, new: sqlite3.Connection, copy: Path) -> None:
+    """Let SQLite read a damaged file beside the new one, if it knows its tables at all."""
+    with suppress(sqlite3.Error):
+        db.execute("SELECT count(*) FROM sqlite_master").fetchone()
+        new.execute(f"ATTACH ? AS {_OLD}", (str(copy),))
+
+
+def _taken_whole(
+    db: sqlite3.Connection, new: sqlite3.Connection, table: GeoPackageTable, names: tuple[str, ...]
+) -> int | None:
+    """Copy a table of which every row can be read, within SQLite; return how many rows it has.
+
+    None, and nothing is copied, where some cannot: those that can are looked for one by one then.
+    """
+    old, columns = f"{_OLD}.{table.name}", ", ".join(names)
+    try:  # not by the new file's connection: what it cannot read would undo what it has written
+        n, elsewhere, *_ = db.execute(_all_read(table, names)).fetchone()
+    except sqlite3.Error:
+        return None
+    if elsewhere or n > _MOST_ROWS or not new.execute(_IS_ATTACHED).fetchone():
+        return None
+    new.execute(
+        f"INSERT OR IGNORE INTO main.{table.name} ({columns}) "  # noqa: S608 - names of ours
+        f"SELECT {columns} FROM {old} ORDER BY {table.key}"
+    )
+    return int(n)
+
+
+def _all_read(table: GeoPackageTable, names: tuple[str, ...]) -> str:
+    """Return a query that reads all of a table: how many rows, texts where none belong, the rest.
+
+    SQLite itself would hand on what is no text; of those together Python says so.
+    """
+    kinds = {kind[0]: kind[1] for kind in map(str.split, table.columns)}
+    texts = [name for name in names if kinds.get(name) in _TEXTS]
+    others = [name for name in names if name not in texts]
+    elsewhere = " + ".join(f"(typeof({name}) = 'text')" for name in others)
+    each = (
+        *("count(*)", f"sum({elsewhere})"),
+        *(f"group_concat({name})" for name in texts),
+        *(f"max({name})" for name in others),
+    )
+    return f"SELECT {', '.join(each)} FROM {table.name} NOT INDEXED"  # noqa: S608 - names of ours
 
 
 def _rows(

@@ -195,13 +195,30 @@ def _plot_state(db: sqlite3.Connection) -> str:
 def _batch_state(db: sqlite3.Connection, number: int) -> str:
     """Return the digest of a batch: what was recorded, by whom, and what of it was undone."""
     own = db.execute("SELECT at, kind, source, who FROM batches WHERE fid = ?", (number,))
-    rows = db.execute(
-        "SELECT digest || '|' || undone || '|' || coalesce(who, '') FROM inspections "
-        "WHERE batch = ? UNION ALL SELECT digest || '|' || undone FROM treatments WHERE batch = ? "
-        "ORDER BY 1",
-        (number, number),
-    )
-    return _digest([*own, tuple(row for (row,) in rows)])
+    return _digest([*own, tuple(_rows_of_batch(db, number))])
+
+
+_ONE_BY_ONE = (
+    "SELECT digest || '|' || undone || '|' || coalesce(who, '') FROM inspections WHERE batch = ?1 "
+    "UNION ALL SELECT digest || '|' || undone FROM treatments WHERE batch = ?1 ORDER BY 1"
+)
+# the same but for the order: all marks with one ending in one text
+_TOGETHER = (
+    "SELECT '|' || undone || '|' || coalesce(who, ''), count(*), count(digest), "
+    "group_concat(digest) FROM inspections WHERE batch = ?1 GROUP BY undone, who "
+    "UNION ALL SELECT '|' || undone, 1, count(digest), digest FROM treatments "
+    "WHERE batch = ?1 GROUP BY fid"
+)
+
+
+def _rows_of_batch(db: sqlite3.Connection, number: int) -> Sequence[str | None]:
+    """Return what each row of a batch says of itself, in order."""
+    rows: list[str] = []
+    for ending, n, marked, marks in db.execute(_TOGETHER, (number,)):
+        if ending is None or marked < n or marks.count(",") != n - 1:  # a draft, or no mark of ours
+            return [row for (row,) in db.execute(_ONE_BY_ONE, (number,))]
+        rows += [mark + ending for mark in marks.split(",")]
+    return sorted(rows)
 
 
 def _digest(rows: Iterable[tuple[object, ...]]) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -354,9 +355,10 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
     """Yield which plants were inspected, day by day and by whom, page by page."""
     done = one.done
     rows: list[tuple[str, ...]] = []
-    for day in np.unique(done.date).tolist():
-        of = done.take(done.date == np.datetime64(day, "D"))
-        who = sorted({str(name) for name in of.who} - {""})
+    days, first = np.unique(done.date, return_index=True)  # they are in order
+    for day, (a, b) in zip(days.tolist(), pairwise([*first.tolist(), len(done)]), strict=True):
+        of = done.take(slice(a, b))
+        who = sorted({*map(str, {*of.who.tolist()})} - {""})
         found = int(np.count_nonzero(of.result == FOUND))
         rows.append((one.units.day(day), figure(len(of)), figure(found), ", ".join(who)))
     title = worded(words.CERT_OF_PLOT, plot=one.name)

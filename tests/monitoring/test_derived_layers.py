@@ -1,5 +1,7 @@
 """Layers that follow from the causes say what the season says."""
 
+from datetime import date
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -106,23 +108,59 @@ def test_a_gap_in_a_row_is_no_ground_of_a_hot_spot(season):
     )
 
 
-def test_a_tap_writes_only_the_plants_of_which_something_else_is_known(season, monkeypatch):
-    cluster(season)
-    written = []
-    refresh = derived_layers.refresh
+@pytest.fixture
+def written(monkeypatch):
+    """Return the plants whose rows are written."""
+    plants, refresh = [], derived_layers.refresh
 
     def watched(db, *given):
-        db.set_trace_callback(lambda sql: written.append(sql) if "REPLACE INTO plant" in sql else 0)
+        db.create_function("written", 1, plants.append)
+        for event in ("INSERT", "UPDATE"):
+            db.execute(
+                f"CREATE TEMP TRIGGER told_{event} AFTER {event} ON main.plant_state "
+                "BEGIN SELECT written(new.fid); END"
+            )
+        return refresh(db, *given)
+
+    monkeypatch.setattr(derived_layers, "refresh", watched)
+    return plants
+
+
+@pytest.fixture
+def statements(monkeypatch):
+    """Return the statements that write what is known of plants."""
+    said, refresh = [], derived_layers.refresh
+
+    def watched(db, *given):
+        db.set_trace_callback(said.append)
         newest = refresh(db, *given)
         db.set_trace_callback(None)
+        said[:] = [sql for sql in said if "plant_state" in sql and not sql.startswith("SELECT")]
         return newest
 
     monkeypatch.setattr(derived_layers, "refresh", watched)
+    return said
+
+
+def test_a_tap_writes_only_the_plants_of_which_something_else_is_known(season, written):
+    cluster(season)
+    written.clear()
     plant = np.flatnonzero(season.history.states(0) < 0)[:1]
     season.record(Inspections.of(plant, np.array([SKIPPED]), BEGINS), "nothing was learnt")
     assert written == []
     season.record(Inspections.of(plant, np.array([CLEAN]), BEGINS), "a tap")
-    assert 1 <= len(written) < len(a_plot().grid)
+    assert plant[0] + 1 in written
+    assert 1 <= len({*written}) < len(a_plot().grid)
+
+
+def test_a_night_that_changes_all_chances_is_written_by_few_statements(season, statements):
+    sql, night = "SELECT chance FROM plant_state ORDER BY fid", date(2026, 4, 8)
+    before = rows(season, sql)
+    season.plan(night)
+    after = rows(season, sql)
+    assert [chance for (chance,) in after] == np.round(season.evening(night), 6).tolist()
+    assert sum(one != other for one, other in zip(before, after, strict=True)) > 200
+    assert 1 <= len(statements) < 9
 
 
 def test_a_rebuilt_file_says_the_same(season):

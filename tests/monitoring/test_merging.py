@@ -156,6 +156,39 @@ def test_rows_that_come_out_otherwise_do_not_stay(monkeypatch, change, where):
         db.close()
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_a_batch_is_the_same_in_both_copies_where_each_of_its_rows_is(seed):
+    rng, said = random.Random(seed), (None, "", "a", ",", "a,", ",a", "a,a")
+    both = [sqlite3.connect(":memory:", isolation_level=None) for _ in range(2)]
+    for db in both:
+        schema.lay_out(db)
+    answers = []
+    for batch in range(1, 60):
+        n = rng.randrange(1, 4)
+        rows = [[rng.choice(said[-6:]) + str(k), 1, *rng.choices(said, k=2)] for k in range(n)]
+        others = [[*row] for row in rows]
+        if rng.random() < 0.6:
+            rng.choice(others)[rng.randrange(4)] = rng.choice(said)
+        for db, written in zip(both, (rows, others), strict=True):
+            into = "INSERT INTO inspections (batch, digest, undone, who, notes)"
+            db.executemany(f"{into} VALUES ({batch}, ?, ?, ?, ?)", written)
+        alike = rows == others and not any(None in row for row in rows)
+        answers.append(alike)
+        assert merging._same(both, batch, n) == alike
+    assert {*answers} == {True, False}
+    for db in both:
+        db.close()
+
+
+def test_a_batch_in_which_something_stands_twice_is_no_batch_that_stays():
+    db = sqlite3.connect(":memory:", isolation_level=None)
+    schema.lay_out(db)
+    into = "INSERT INTO inspections (batch, digest, undone, who, notes)"
+    db.executemany(f"{into} VALUES (1, ?, ?, 'Ann', '')", [("a", 1), ("a", 0)])
+    assert not merging._same((db, db), 1, 2)
+    db.close()
+
+
 def test_every_table_of_a_season_is_merged_or_must_be_the_same_or_follows_from_them():
     follows = {schema.META, schema.DAYS, schema.PLANT_STATE, schema.HOT_SPOTS, schema.LEARNT}
     follows |= {schema.MORNINGS, schema.INSPECTION_LOTS}

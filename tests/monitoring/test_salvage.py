@@ -12,6 +12,7 @@ import pytest
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season, schema
+from fieldmon.monitoring import salvage as saving
 from fieldmon.monitoring.history import History
 from fieldmon.monitoring.salvage import salvage
 from tests.monitoring.seasons import BEGINS, state
@@ -74,6 +75,47 @@ def test_rows_behind_the_damage_are_saved_as_well_as_those_before_it(path, tmp_p
     kept = Season(tmp_path / "rescued.gpkg").history.inspections.notes.tolist()
     assert {notes[50], notes[900], notes[1100], notes[-1]} <= set(kept)
     assert n - 100 < saved.rows["inspections"] < n + 12
+
+
+@pytest.fixture
+def row_by_row(monkeypatch):
+    """Let rows be read into Python and written out of it; return the tables of which they were."""
+    read, rows = [], saving._rows
+    monkeypatch.setattr(saving, "_rows", lambda *of: read.append(of[1].name) or rows(*of))
+    return read
+
+
+def test_rows_that_can_all_be_read_never_leave_sqlite(path, tmp_path, row_by_row):
+    saved = salvage(path, tmp_path / "rescued.gpkg")
+    assert (saved.lost, saved.rows["inspections"], row_by_row) == ((), 12, [])
+
+
+@pytest.mark.parametrize("name", ["notes", "plant"])
+def test_what_is_no_text_is_lost_and_the_rest_saved(path, tmp_path, row_by_row, name):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute(f"UPDATE inspections SET {name} = CAST(x'ff2d' AS TEXT) WHERE fid = 5")  # noqa: S608
+        db.commit()
+    saved = salvage(path, tmp_path / "rescued.gpkg")
+    assert (saved.lost, saved.rows["inspections"]) == (("inspections",), 11)
+    assert row_by_row == ["inspections"]
+
+
+def test_what_sqlite_copies_is_what_is_copied_row_by_row(weeks, tmp_path, monkeypatch):
+    salvage(weeks, tmp_path / "one.gpkg")
+    monkeypatch.setattr(saving, "_taken_whole", lambda *_: None)
+    salvage(weeks, tmp_path / "other.gpkg")
+    one, other = (rows_of(tmp_path / f"{name}.gpkg") for name in ("one", "other"))
+    assert one == other
+
+
+def rows_of(file):
+    """Return the rows of each table that is saved, but for when its log was gone on with."""
+    with closing(sqlite3.connect(file)) as db:
+        return {
+            table.name: db.execute(f"SELECT * FROM {table.name} ORDER BY 1").fetchall()  # noqa: S608
+            for table in schema.CAUSES
+            if table not in (schema.META, schema.LOG)
+        }
 
 
 def test_a_whole_file_is_salvaged_whole(path, tmp_path):

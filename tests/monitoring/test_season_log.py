@@ -7,6 +7,7 @@ import sqlite3
 from contextlib import closing
 from dataclasses import replace
 from datetime import timedelta
+from hashlib import sha256
 
 import pytest
 from hypothesis import given
@@ -254,3 +255,30 @@ def test_a_log_is_told_line_by_line_and_how_many_entries_it_has(path):
     (_, alone) = season_log.lines(said[:1])
     assert alone.startswith("1 entry, the chain")
     assert list(season_log.lines(())) == []
+
+
+SAYS = st.tuples(
+    st.sampled_from([None, "", "a", "b", ",", "a,b", "é"]),
+    st.sampled_from([0, 1, None]),
+    st.sampled_from([None, "", "Ann", "Ben|", ","]),
+)
+
+
+@given(st.lists(SAYS, max_size=6), st.lists(SAYS, max_size=2))
+def test_the_digest_of_a_batch_is_of_all_that_its_rows_say_in_order(inspected, treated):
+    said = [None if None in row[:2] else "|".join(map(str, row[:2])) for row in inspected]
+    said = [one and f"{one}|{row[2] or ''}" for one, row in zip(said, inspected, strict=True)]
+    said += [None if None in row[:2] else f"{row[0]}|{row[1]}" for row in treated]
+    in_order = sorted(said, key=lambda one: (one is not None, one or ""))
+    with closing(sqlite3.connect(":memory:", isolation_level=None)) as db:
+        db.execute("CREATE TABLE batches (fid, at, kind, source, who)")
+        db.execute("INSERT INTO batches VALUES (1, '2026', 'findings', 'x.csv', 'Ann')")
+        for name, rows in (("inspections", inspected), ("treatments", treated)):
+            columns = "fid INTEGER PRIMARY KEY, digest TEXT, undone INTEGER, who TEXT, batch"
+            db.execute(f"CREATE TABLE {name} ({columns})")
+            into = f"INSERT INTO {name} (digest, undone, who, batch) VALUES (?, ?, ?, 1)"  # noqa: S608
+            db.executemany(into, rows)
+        state = season_log.states(db, [1])["batch 1"]
+    own = ("2026", "findings", "x.csv", "Ann")
+    content = repr(own) + repr(tuple(in_order))
+    assert state == sha256(content.encode()).hexdigest()[:32]

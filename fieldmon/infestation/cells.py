@@ -43,7 +43,8 @@ class Cells(NamedTuple):
     def of(cls, grid: PlantGrid) -> Cells:
         """Return the cells of a plot."""
         yx_m = grid.xy_m[:, ::-1]
-        size_m, low_m = np.array([grid.row_spacing_m, grid.plant_spacing_m]), yx_m.min(axis=0)
+        size_m = np.array([grid.row_spacing_m, grid.plant_spacing_m], np.float64)
+        low_m = yx_m.min(axis=0)
         room = (np.ptp(yx_m, axis=0) / size_m + 1.0).prod() / (_MOST_A_PLANT * len(grid))
         size_m *= max(1.0, float(np.sqrt(room)))
         place = np.rint((yx_m - low_m) / size_m).astype(np.int64)

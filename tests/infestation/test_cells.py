@@ -5,6 +5,7 @@ from hypothesis import given
 
 from fieldmon.infestation.cells import Cells
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
 from tests.crooked import crooked_grids
 
 
@@ -24,3 +25,12 @@ def test_where_rows_are_even_a_cell_is_a_plant():
     cells = Cells.of(rectangle(5, 7))
     assert cells.of_plant.tolist() == list(range(35))
     assert cells.summed(np.arange(35.0)).tolist() == np.arange(35.0).reshape(5, 7).tolist()
+
+
+def test_distances_given_as_whole_numbers_make_the_same_cells_as_others():
+    whole, same = (
+        Cells.of(rectangle(5, 7, Planting(row_spacing_m=row_m, plant_spacing_m=plant_m)))
+        for row_m, plant_m in ((6, 2), (6.0, 2.0))
+    )
+    assert whole.of_plant.tolist() == same.of_plant.tolist()
+    assert whole.size_m.tolist() == same.size_m.tolist()

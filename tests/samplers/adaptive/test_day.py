@@ -35,6 +35,7 @@ from fieldmon.samplers.adaptive.day import (
     trust_in_differences,
 )
 from fieldmon.samplers.adaptive.replan import first_price, plan_on
+from fieldmon.samplers.base import NEVER
 from fieldmon.samplers.sweeps import Naive
 from tests.samplers.adaptive.working import times_of, workspace
 from tests.scenes import scene_on
@@ -163,6 +164,24 @@ def test_where_few_are_infested_differences_count_and_where_many_are_they_must_h
     assert trust(0.1, proved) > trust(0.1, nothing)
     told = no_inspections(np.where(np.arange(N) < 20, 0.6, 0.1))
     assert trust(0.6, told) > 0.4
+
+
+@pytest.mark.parametrize(("at", "share"), [(GATE, 0.5), (37, 0.4), (44, 0.8)])
+def test_where_differences_have_come_to_nothing_the_day_is_the_sweep_plant_for_plant(at, share):
+    # up two rows and into the third, or through it, a sweep has come so far
+    swept = np.where(np.arange(N) <= at, 0, NEVER).astype(np.int32)
+    scene = traced_scene(share, 2.0, at=at, last_inspected=swept)
+    # 400 inspections, of which those said to be likelier were infested no more often
+    nothing = np.array([400.0, -400.0, 400.0 * share, 1200.0, -400.0 * share, 0.0])
+    scene = replace(
+        scene,
+        robot=replace(scene.robot, returns=False),
+        traces=scene.traces._replace(slope_sums=nothing),
+    )
+    infested = np.random.default_rng(5).random(N) < share
+    adaptive, naive = (work_day(scene, each, infested) for each in (Adaptive(), Naive()))
+    assert adaptive.plant.tolist() == naive.plant.tolist()
+    assert len(naive) > 90
 
 
 def test_odds_are_multiplied_and_chances_stay_chances():

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
-from fieldmon.decisions.sequential import LEAVE, TREAT, IwaoPlan, Verdict, after, least_more
+from fieldmon.decisions.sequential import LEAVE, TREAT, IwaoPlan, Verdict
+from fieldmon.decisions.stopping import after, least_more
 from fieldmon.decisions.taylor import TaylorLaw, mean_band
 from fieldmon.errors import SettingError
 

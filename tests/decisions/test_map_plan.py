@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fieldmon.decisions.map_plan import MapPlan, overstep
-from fieldmon.decisions.sequential import WaldPlan, decided
+from fieldmon.decisions.sequential import WaldPlan
+from fieldmon.decisions.stopping import decided
 from fieldmon.errors import SettingError
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting

@@ -12,7 +12,8 @@ from scipy.special import ndtri
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.decisions.map_plan import MapPlan
 from fieldmon.decisions.map_verdict import map_verdict
-from fieldmon.decisions.sequential import IwaoPlan, Verdict, WaldPlan, decided
+from fieldmon.decisions.sequential import IwaoPlan, Verdict, WaldPlan
+from fieldmon.decisions.stopping import decided
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.traced_pairs import TracedPairs

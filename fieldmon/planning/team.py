@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.planning.bound_wording import PROVED, bound_sentence
+from fieldmon.planning.bound_wording import bound_sentence
 from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
 from fieldmon.planning.members import must_differ
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
-from fieldmon.planning.routes import best, bound
-from fieldmon.planning.routes.best_route import bounded
+from fieldmon.planning.routes import best
 from fieldmon.planning.sections import sections_of
+from fieldmon.planning.team_bound import MemberTask, team_bound
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.base import NEVER, Scene
@@ -31,8 +30,6 @@ if TYPE_CHECKING:
 
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
-    from fieldmon.plot.robot import Robot
-    from fieldmon.plot.travel import Aisles
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
@@ -43,9 +40,6 @@ _PAUSE_S = 1.0
 _LATER_S = 20.0
 # each route is looked for again so often in what the others leave, and so often where they meet
 _ROUNDS, _TRIES = 2, 3
-# so many prices of plants are tried for a bound, for so long; a step that gained nothing so often
-# is halved; directions are remembered so far
-_PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 60, 20.0, 5, 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,15 +92,6 @@ class TeamPlan:
     def head_on(self) -> list[HeadOn]:
         """Return where two meet head-on in a headland too narrow to pass: nowhere, likewise."""
         return head_on([day.route for day in self.days], self.starts_s, self.passing_m)
-
-
-class _Task(NamedTuple):
-    """What one member's route is looked for in."""
-
-    aisles: Aisles
-    robot: Robot
-    value: Float
-    starts_s: float = 0.0
 
 
 def plan_team(
@@ -163,7 +148,7 @@ def plan_team(
         )
     left = np.ones(len(chance)) if done is None else np.where(done, 0.0, 1.0)
     tasks = [
-        _Task(
+        MemberTask(
             plot.aisles if one.gate is None else plot.with_gate(one.gate).aisles,
             one.robot,
             chance * one.robot.detects * left,
@@ -213,76 +198,16 @@ def bound_of_days(days: Sequence[DayPlan]) -> str:
     return bound_sentence(held, max(team_bound(tasks, held), held), routes="routes")
 
 
-def _task_of(scene: Scene) -> _Task:
+def _task_of(scene: Scene) -> MemberTask:
     open_ = np.where(scene.last_inspected == scene.day, 0.0, scene.chance)
-    return _Task(scene.aisles, scene.robot, open_ * scene.robot.detects)
-
-
-def team_bound(tasks: Sequence[_Task], held: float = 0.0) -> float:
-    """Return what no routes of a team can hold together: the least of some bounds.
-
-    Whatever is paid once for each plant, no more than all that and what each member could hold
-    alone of the rest (a price of plants, as Lagrange's). And where all start at one gate and come
-    back to it, what one robot could hold with the hours of all, as fast and sharp-eyed as the best
-    of them in everything: it drives the routes of all one after the other. Between two it changes
-    aisles once more than they do.
-
-    `held` is what routes are known to hold: the better it is known, the sooner prices are found.
-    """
-    values = np.array([task.value for task in tasks])
-    most = values.max(axis=0)
-    least = _by_prices(tasks, most, held)
-    robots = [task.robot for task in tasks]
-    one_gate = all(task.aisles is tasks[0].aisles for task in tasks)
-    if not one_gate or not all(robot.returns for robot in robots):
-        return least
-    quickest = replace(
-        robots[0],
-        speed_m_s=max(robot.speed_m_s for robot in robots),
-        row_change_s=min(robot.row_change_s for robot in robots),
-        turn_180_s=min(robot.turn_180_s for robot in robots),
-        stop_s=0.0,
-        look_s=min(robot.visit_s for robot in robots),
-    )
-    seconds = sum(robot.day_s for robot in robots) + (len(robots) - 1) * quickest.row_change_s
-    return min(least, bound(tasks[0].aisles, most, quickest, seconds))
-
-
-def _by_prices(tasks: Sequence[_Task], most: Float, held: float) -> float:
-    """Return the least bound of many prices of plants.
-
-    A plant that is visited by more than one gets dearer, one that is visited by none cheaper, by
-    steps as Polyak's, in a direction that remembers the last ones. Any price gives a bound.
-    """
-    until = FIRST_USE.work_clock() + _WITHIN_S
-    price = direction = np.zeros(len(most))
-    least, kept, step, in_vain = np.inf, price, 1.0, 0
-    for _ in range(_PRICES):
-        alone = [
-            bounded(task.aisles, np.maximum(task.value - price, 0.0), task.robot) for task in tasks
-        ]
-        value = float(price.sum()) + sum(each.value for each in alone)
-        if value < least:
-            least, kept, in_vain = value, price, 0
-        else:
-            in_vain += 1
-        if in_vain >= _PATIENCE:
-            price, step, in_vain = kept, step / 2, 0
-        slope = 1.0 - sum(each.visits for each in alone)
-        direction = slope + _MEMORY * direction
-        direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
-        norm = float((direction**2).sum())
-        if norm == 0.0 or value <= held * (1.0 + PROVED) or FIRST_USE.work_clock() > until:
-            break
-        price = np.clip(price - step * (value - held) / norm * direction, 0.0, most)
-    return least
+    return MemberTask(scene.aisles, scene.robot, open_ * scene.robot.detects)
 
 
 class _StopSearch:
     """Looks for the stops of each of a team's tasks, given those of the others."""
 
     def __init__(
-        self, plot: Plot, tasks: Sequence[_Task], progress: Callable[[int, int], None]
+        self, plot: Plot, tasks: Sequence[MemberTask], progress: Callable[[int, int], None]
     ) -> None:
         self.plot, self.tasks, self.progress = plot, tasks, progress
         self.aisle = plot.grid.corridor[plot.grid.row]
@@ -378,16 +303,16 @@ def _met_s(days: Sequence[DayPlan], starts_s: Float) -> float:
     return sum(each.until_s - each.since_s for each in met)
 
 
-def _of(task: _Task, stops: Int, there: NDArray[np.bool_]) -> float:
+def _of(task: MemberTask, stops: Int, there: NDArray[np.bool_]) -> float:
     """Return what a task's stops hold in an aisle."""
     return float(task.value[stops[there[stops]]].sum())
 
 
-def _held(tasks: Sequence[_Task], stops: Sequence[Int]) -> float:
+def _held(tasks: Sequence[MemberTask], stops: Sequence[Int]) -> float:
     return float(sum(task.value[own].sum() for task, own in zip(tasks, stops, strict=True)))
 
 
-def _sections(plot: Plot, tasks: Sequence[_Task], known: Sequence[Int]) -> Int:
+def _sections(plot: Plot, tasks: Sequence[MemberTask], known: Sequence[Int]) -> Int:
     """Return for each plant whose section it is in: aisles in order, with like work in each."""
     corridor = plot.grid.corridor[plot.grid.row]
     work = np.full(len(corridor), 1e-9)
@@ -397,7 +322,7 @@ def _sections(plot: Plot, tasks: Sequence[_Task], known: Sequence[Int]) -> Int:
     return sections_of(plot.grid, np.bincount(corridor, work).astype(np.float64), shares)[corridor]
 
 
-def _day(task: _Task, stops: Int) -> DayPlan:
+def _day(task: MemberTask, stops: Int) -> DayPlan:
     """Return a member's day: its work and route, in a scene whose chances are its own values."""
     robot, n = task.robot, len(task.value)
     believed = task.value / max(robot.detects, 1e-9)
@@ -437,7 +362,9 @@ class _DaysInTurn(NamedTuple):
     late_s: Float
 
 
-def _kept_apart(tasks: Sequence[_Task], days: Sequence[DayPlan], passing_m: float) -> _DaysInTurn:
+def _kept_apart(
+    tasks: Sequence[MemberTask], days: Sequence[DayPlan], passing_m: float
+) -> _DaysInTurn:
     """Let whoever would still meet another begin later, with fewer stops if need be."""
     kept, late_s = [*days], np.zeros(len(days))
     own_s = np.array([task.starts_s for task in tasks])
@@ -463,7 +390,7 @@ def _first_wait(
     return None
 
 
-def _shortened(task: _Task, day: DayPlan, seconds: float) -> DayPlan:
+def _shortened(task: MemberTask, day: DayPlan, seconds: float) -> DayPlan:
     """Return a day without its poorest stops until it fits."""
     while len(day.work) and day.work.end_s > seconds:
         stops = day.work.plant.astype(np.int64)

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import worded
-from fieldmon.errors import FileProblem, SettingError
+from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import require_folder
 from fieldmon.monitoring import journals, season_log
+from fieldmon.monitoring.file_problems import damaged, no_file, sentences
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.migrations import MIGRATIONS
 from fieldmon.monitoring.schema import (
@@ -76,7 +77,7 @@ class Store:
         must_be("A season must be given by its path", path, (str, Path), 'Give "season.gpkg".')
         self.path = Path(path).absolute()
         if not self.path.is_file():
-            raise _no_file(path)
+            raise no_file(path)
         has_more = journals.refuse_foreign_wal(self.path)
         journals.refuse_foreign_journal(self.path)
         with self.reading() as db:
@@ -132,7 +133,7 @@ class Store:
         _refuse_old(target, path)
         with _draft_folder(target) as folder:
             draft = Path(folder) / "season.gpkg"
-            with _sentences(target), closing(_connect(draft)) as db:
+            with sentences(target, _PATIENCE_S), closing(_connect(draft)) as db:
                 db.execute("BEGIN")
                 lay_out(db)
                 set_meta(db, "kind", KIND)
@@ -146,7 +147,7 @@ class Store:
     def reading(self, into: Path | None = None) -> Iterator[sqlite3.Connection]:
         """Give a consistent view of the file; what is read goes `into` another, if it is told."""
         still = _still().get(self.path)
-        with _sentences(self.path, into):
+        with sentences(self.path, _PATIENCE_S, into):
             if still is not None:
                 yield still
                 return
@@ -180,7 +181,7 @@ class Store:
         """
         if self.path in _still():  # it would wait for itself
             raise RuntimeError("What is read as of one moment must not be written within it.")
-        with _sentences(self.path), closing(_connect(self.path, patience_s)) as db:
+        with sentences(self.path, _PATIENCE_S), closing(_connect(self.path, patience_s)) as db:
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")
             _into_one_file(db)
@@ -198,7 +199,7 @@ class Store:
         with self.reading() as db:
             said = [row[0] for row in db.execute("PRAGMA quick_check(5)")]
         if said != ["ok"]:
-            raise _damaged(self.path, said[0])
+            raise damaged(self.path, said[0])
 
 
 @contextmanager
@@ -236,7 +237,11 @@ def wait_until_free(
     if path in _still() or not path.is_file():
         return True
     began = time.monotonic()
-    with _sentences(path), _opened(path) as db, _patience(db, min(_ASK_AGAIN_S, patience_s)):
+    with (
+        sentences(path, _PATIENCE_S),
+        _opened(path) as db,
+        _patience(db, min(_ASK_AGAIN_S, patience_s)),
+    ):
         while not _is_free(db, to_write=to_write):
             waited_s = time.monotonic() - began
             if waited_s >= patience_s:
@@ -309,14 +314,18 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
     `named`: what the copy will be called, for sentences.
     """
     if not path.is_file():
-        raise _no_file(path)
+        raise no_file(path)
     written = named or to
-    with _sentences(path, written), closing(_connect(path)) as db, closing(_connect(to)) as copy:
+    with (
+        sentences(path, _PATIENCE_S, written),
+        closing(_connect(path)) as db,
+        closing(_connect(to)) as copy,
+    ):
         db.backup(copy)
         copy.execute("PRAGMA journal_mode = DELETE")
         said = copy.execute("PRAGMA quick_check(1)").fetchone()[0]
         if said != "ok":
-            raise _damaged(path, said)
+            raise damaged(path, said)
 
 
 def _put(draft: Path, target: Path) -> None:
@@ -418,81 +427,3 @@ def _refuse_old(target: Path, path: str | Path) -> None:
             )
         )
     require_folder(target)
-
-
-@contextmanager
-def _sentences(path: Path, into: Path | None = None) -> Iterator[None]:
-    """Say what is wrong with a file; where one is read `into` another, it is that one's disk."""
-    try:
-        yield
-    except OverflowError as error:
-        raise SettingError(
-            worded(
-                "A number must be small enough for {path}, but one is too "
-                "large ({error}). Nothing was changed: give a smaller one.",
-                path=path,
-                error=error,
-            )
-        ) from error
-    except sqlite3.Error as error:
-        text = str(error)
-        if "not a database" in text:
-            raise FileProblem(
-                worded(
-                    "{path} must be the file of a season (a GeoPackage), but "
-                    "it does not begin as one. Check the name; if it was a "
-                    "season, go back to a copy of it.",
-                    path=path,
-                )
-            ) from error
-        if "locked" in text:
-            raise FileProblem(
-                worded(
-                    "{path} must be free to be written, but another program "
-                    "has held it for {patience_s:.0f} seconds. Close that "
-                    "program (QGIS, a backup?) and try again; nothing was "
-                    "changed.",
-                    path=path,
-                    patience_s=_PATIENCE_S,
-                )
-            ) from error
-        if "full" in text:
-            raise FileProblem(
-                worded(
-                    "There must be room on the disk for {path}, but it is "
-                    "full. Nothing was changed: make room and try again.",
-                    path=into or path,
-                )
-            ) from error
-        if "readonly" in text or "unable to open" in text:
-            raise FileProblem(
-                worded(
-                    "{path} must be a file that can be written, but it cannot "
-                    "({text}). Check its permissions and those of its folder; "
-                    "nothing was changed.",
-                    path=path,
-                    text=text,
-                )
-            ) from error
-        raise _damaged(path, text) from error
-
-
-def _no_file(path: str | Path) -> FileProblem:
-    return FileProblem(
-        worded(
-            "{path} must be the file of a season, but there is none. "
-            "Check the name, or begin one with: fieldmon init",
-            path=path,
-        )
-    )
-
-
-def _damaged(path: Path, why: str) -> FileProblem:
-    return FileProblem(
-        worded(
-            "{path} is damaged ({why}). Save what can be saved into a new "
-            'file with: fieldmon salvage "{path}" --output rescued.gpkg',
-            path=path,
-            why=" ".join(why.split()),
-        )
-    )

@@ -1,0 +1,97 @@
+"""What can be wrong with a season's file, a sentence each: not there, held, full, damaged."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import FileProblem, SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+
+@contextmanager
+def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterator[None]:
+    """Say what is wrong with a file that was waited for so long.
+
+    Where one is read `into` another, it is that one's disk that is full.
+    """
+    try:
+        yield
+    except OverflowError as error:
+        raise SettingError(
+            worded(
+                "A number must be small enough for {path}, but one is too "
+                "large ({error}). Nothing was changed: give a smaller one.",
+                path=path,
+                error=error,
+            )
+        ) from error
+    except sqlite3.Error as error:
+        text = str(error)
+        if "not a database" in text:
+            raise FileProblem(
+                worded(
+                    "{path} must be the file of a season (a GeoPackage), but "
+                    "it does not begin as one. Check the name; if it was a "
+                    "season, go back to a copy of it.",
+                    path=path,
+                )
+            ) from error
+        if "locked" in text:
+            raise FileProblem(
+                worded(
+                    "{path} must be free to be written, but another program "
+                    "has held it for {patience_s:.0f} seconds. Close that "
+                    "program (QGIS, a backup?) and try again; nothing was "
+                    "changed.",
+                    path=path,
+                    patience_s=patience_s,
+                )
+            ) from error
+        if "full" in text:
+            raise FileProblem(
+                worded(
+                    "There must be room on the disk for {path}, but it is "
+                    "full. Nothing was changed: make room and try again.",
+                    path=into or path,
+                )
+            ) from error
+        if "readonly" in text or "unable to open" in text:
+            raise FileProblem(
+                worded(
+                    "{path} must be a file that can be written, but it cannot "
+                    "({text}). Check its permissions and those of its folder; "
+                    "nothing was changed.",
+                    path=path,
+                    text=text,
+                )
+            ) from error
+        raise damaged(path, text) from error
+
+
+def no_file(path: str | Path) -> FileProblem:
+    """Return that there is no such file."""
+    return FileProblem(
+        worded(
+            "{path} must be the file of a season, but there is none. "
+            "Check the name, or begin one with: fieldmon init",
+            path=path,
+        )
+    )
+
+
+def damaged(path: Path, why: str) -> FileProblem:
+    """Return that a file is damaged, and how what is left is saved."""
+    return FileProblem(
+        worded(
+            "{path} is damaged ({why}). Save what can be saved into a new "
+            'file with: fieldmon salvage "{path}" --output rescued.gpkg',
+            path=path,
+            why=" ".join(why.split()),
+        )
+    )

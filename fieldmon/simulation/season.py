@@ -15,6 +15,7 @@ from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 from fieldmon.simulation.insects import NightInsects, PestInsects
+from fieldmon.simulation.mornings import MorningBeliefs
 from fieldmon.simulation.treating import Sprayed
 
 if TYPE_CHECKING:
@@ -214,52 +215,6 @@ class SimulatedDay:
     def ever_visited_pct(self) -> float:
         """Return the plants inspected so far in percent of all plants."""
         return 100.0 * float(np.mean(self.last_inspected >= 0))
-
-
-class MorningBeliefs:
-    """What is believed on every morning of a season, worked out when somebody asks.
-
-    Most of a season's time goes into it, and half of the samplers do not read it.
-    """
-
-    def __init__(
-        self,
-        first: Callable[[], Belief],
-        learning: Callable[[Workday], Learning],
-        spread: Callable[[int], Spread],
-    ) -> None:
-        self._first, self.learning, self._spread = first, learning, spread
-        self._works: list[Workday] = []
-        self._left: dict[int, NDArray[np.float64]] = {}
-        self._last: tuple[int, Belief] | None = None
-
-    @property
-    def known(self) -> int:
-        """Return the number of the first day whose work it has not heard of."""
-        return len(self._works)
-
-    def add(self, work: Workday, left: NDArray[np.float64] | None = None) -> None:
-        """Hear of the next day's work, and which share of each chance outlived its treatment."""
-        if left is not None:
-            self._left[self.known] = left
-        self._works.append(work)
-
-    def evening(self, number: int, work: Workday) -> Belief:
-        """Return what is believed after a day's work, before any treatment."""
-        return self.on(number).learn(work.plant, work.found, self.learning(work))
-
-    def on(self, number: int) -> Belief:
-        """Return the belief of a morning, from the last one asked for if that was before."""
-        day, belief = self._last or (0, self._first())
-        if day > number:
-            day, belief = 0, self._first()
-        for passed, work in enumerate(self._works[day:number], day):
-            evening = belief.learn(work.plant, work.found, self.learning(work))
-            if passed in self._left:
-                evening = evening.treated(self._left[passed])
-            belief = evening.overnight(self._spread(passed))
-        self._last = number, belief
-        return belief
 
 
 def simulated_days(

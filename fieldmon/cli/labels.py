@@ -29,6 +29,7 @@ def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
 
     Example: fieldmon labels season.gpkg labels.csv
     """
+    from fieldmon.compute.wording import written
     from fieldmon.decisions.label_file import read_labels
     from fieldmon.monitoring import Season
 
@@ -37,7 +38,8 @@ def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
         read = read_labels(table)
         for message in read.messages:
             typer.echo(f"{table.name}: {message}", err=True)
-        typer.echo(f"{table.name}: {kept.keep_labels(read.value, table.name, who)} labels kept")
+        n = kept.keep_labels(read.value, table.name, who)
+        typer.echo(f"{table.name}: {n} {written(n, 'label|labels')} kept")
     for one in kept.labels():
         typer.echo(f"  {_line(one)}")
 

@@ -18,3 +18,8 @@ def test_a_table_is_kept_and_listed_and_a_wrong_one_changes_nothing(run, season,
     assert [one.product for one in Season(season).labels()] == ["Acarol", "soap"]
     last = Season(season).log()[-1]
     assert (last.kind, last.who) == ("labels", "Ann")
+
+
+def test_one_label_is_said_to_be_one(run, season, tmp_path):
+    (tmp_path / "labels.csv").write_text("product\nsoap\n")
+    assert "labels.csv: 1 label kept" in run("labels", season, "labels.csv")[1]

@@ -7,8 +7,10 @@ import sqlite3
 import time
 from contextlib import closing, contextmanager
 from functools import partial
+from itertools import count
 from multiprocessing import get_context
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pyogrio
@@ -309,6 +311,10 @@ def held(path, how):
 def test_who_waits_for_a_held_season_hears_for_how_long(path, monkeypatch, how, read, written):
     monkeypatch.setattr(transactions, "_ASK_AGAIN_S", 0.01)
     monkeypatch.setattr(transactions, "_MOMENT_S", 0.0)
+    # each look at the clock takes 20 ms, however busy the machine is
+    looks = count()
+    clock = SimpleNamespace(monotonic=lambda: 0.02 * next(looks))
+    monkeypatch.setattr(transactions, "time", clock)
     with held(path, how):
         for to_write, free in ((False, read), (True, written)):
             told = []

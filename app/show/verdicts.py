@@ -67,7 +67,7 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
         {
             texts.COLUMN_STRATEGY: [name(o.strategy) for o in ranked],
             texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
-            texts.COLUMN_LOSS: [_interval(o.loss, ",.0f") for o in ranked],
+            texts.COLUMN_LOSS: [_interval(_none_less(o.loss), ",.0f") for o in ranked],
             texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), ".3g", " %") for o in ranked],
             texts.COLUMN_VISITED: [
                 texts.IN_PERCENT.format(value=number(o.visited_pct, ".1f")) for o in ranked
@@ -81,6 +81,11 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
 
 def _day(day: float | None) -> str:
     return "-" if day is None else number(day, "g")
+
+
+def _none_less(e: SummaryStatistics) -> SummaryStatistics:
+    """Return an estimate of what is at least 0, which Student's t does not know of."""
+    return replace(e, low=max(e.low, 0.0))
 
 
 def _share(e: SummaryStatistics) -> SummaryStatistics:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _MOST = 12
 # how often is looked for results
 _EVERY_S = 1.0
+# a verdict with its interval in the longest of the languages
+_VERDICT_PX = 230
 
 
 def show(choices: Choices) -> None:
@@ -65,7 +67,9 @@ def _results(choices: Choices, running: Comparison) -> None:
     curves = {verdicts.name(one): curve(walked) for one, walked in seasons.items()}
     st.altair_chart(charts.bands(curves, (texts.DAY_AXIS, texts.DETECTION_AXIS)),
                     alt=texts.DETECTION_AXIS)  # fmt: skip
-    st.dataframe(verdicts.table(ranked), hide_index=True)
+    # columns keep the width of what stood in them first, and verdicts grow
+    verdict = {texts.COLUMN_VERDICT: st.column_config.TextColumn(width=_VERDICT_PX)}
+    st.dataframe(verdicts.table(ranked), hide_index=True, column_config=verdict)
     alone = [o.strategy for o in ranked if o.strategy.robots == 1]
     if not alone:
         return

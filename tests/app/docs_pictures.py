@@ -1,14 +1,16 @@
 """The pictures of README and docs/app: ``python -m tests.app.docs_pictures [names]``.
 
 A season of a week is begun on a plot of the sample estate, with made-up insects that are found and
-treated; today is planned. Pictures go to `docs/images`. Those of questions about a file, of maps
-below the plot, of drives and of before and after are made by hand.
+treated; today is planned. On two more plots a season has just begun. Pictures go to `docs/images`.
+Those of questions about records, of a scout's code and page, of maps below the plot, of drives and
+of before and after are made by hand.
 """
 
 import math
 import os
 import sys
 import tempfile
+import zipfile
 from datetime import timedelta
 from io import BytesIO
 from pathlib import Path
@@ -18,12 +20,15 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import fieldmon as fm
+from app.words import texts
 from fieldmon.plot.local_clock import local_clock
 from tests.app import pictures
 from tests.paths import ROOT
 
 IMAGES = ROOT / "docs" / "images"
 DAYS, NAME = 7, "Gate"
+#: plots of the estate on which a season has just begun
+OTHERS = ("Pond", "Wadi")
 #: where insects begin, as shares of the rows and of a row, and how far they reach in metres
 SPOTS = ((0.30, 0.10, 9.0), (0.25, 0.75, 12.0), (0.45, 0.60, 7.0))
 #: by name: part, window, scheme, language, and how wide the picture is
@@ -35,6 +40,9 @@ SHOTS = {
     "phone": ("today", "phone", "light", "en", 390),
     "phone_he_dark": ("today", "phone", "dark", "he", 390),
     "scout": ("scout", "phone", "light", "en", 390),
+    "plots": ("plots", "laptop", "light", "en", 1080),
+    "compare": ("compare", "laptop", "light", "en", 1200),
+    "answers": ("plot", "laptop", "light", "en", 1080),
 }
 
 
@@ -61,13 +69,54 @@ def begun(folder):
         season.record(fm.Inspections.of(plants, found.astype(np.int8), on))
         left[plants[found]] = False
     season.plan(today)
+    for other in OTHERS:
+        plot = fm.read_plot(estate / "paran_estate.zip", feature=other)
+        records = fm.read_records(estate / "mite_records.csv", near=plot)
+        fm.Season.create(folder / f"{other}.gpkg", plot, records, begins=today)
 
 
-def taken(page, url, part, language):
+def compared(page):
+    """Compare the strategies that are chosen, and turn to what it came to."""
+    page.locator(".st-key-run button").click()
+    page.locator("[data-testid=stDataFrame]").wait_for(timeout=600_000)
+    page.locator(".st-key-run_stop button:disabled").wait_for(timeout=600_000)
+    page.wait_for_selector(pictures.STILL)
+    page.locator(".st-key-use_this button").scroll_into_view_if_needed()
+
+
+def asked(page):
+    """Bring a plot whose file names no coordinate system."""
+    page.locator(".st-key-season input").click()
+    page.get_by_role("option", name=str(texts.UPLOAD)).click()
+    page.wait_for_selector(pictures.STILL)
+    with tempfile.TemporaryDirectory() as folder:
+        to = Path(folder) / "paran_estate.zip"
+        with (
+            zipfile.ZipFile(ROOT / "sample_data" / "paran_estate.zip") as whole,
+            zipfile.ZipFile(to, "w") as made,
+        ):
+            for name in whole.namelist():
+                if not name.endswith(".prj"):
+                    made.writestr(name, whole.read(name))
+        page.locator(".st-key-plot_file input[type=file]").set_input_files(to)
+        page.wait_for_timeout(3000)
+        page.wait_for_selector(pictures.STILL, timeout=90_000)
+        page.wait_for_selector(".map[data-shown]", timeout=90_000)
+
+
+#: by the picture's name: what is done before it is taken
+ACTS = {"compare": compared, "answers": asked}
+
+
+def taken(page, url, name, part, language):
     """Return the picture of a part as bytes."""
     with tempfile.TemporaryDirectory() as folder:
         to = Path(folder) / f"{part}.png"
         pictures.take(page, url, language, part, to, f"&season={NAME}")
+        if name in ACTS:
+            ACTS[name](page)
+            page.wait_for_timeout(2000)
+            page.screenshot(path=to)
         return to.read_bytes()
 
 
@@ -80,7 +129,7 @@ def main():
         for name in wanted:
             part, size, scheme, language, wide = SHOTS[name]
             for page, _, _ in pictures.windows(browser, [size], [scheme], [language]):
-                shot = taken(page, url, part, language)
+                shot = taken(page, url, name, part, language)
             image = Image.open(BytesIO(shot)).convert("RGB")
             high = round(image.height * wide / image.width)
             image = image.resize((wide, high), Image.Resampling.LANCZOS)

@@ -156,7 +156,7 @@ class MapPage {
   around() {
     if (this.boxes) return this.boxes;
     const map = this.root.getBoundingClientRect(), { left, right } = covered();
-    const over = [...this.foot.children, this.legend].map((one) => one.getBoundingClientRect()).filter((box) => box.width)
+    const over = [...this.foot.children, this.legend, this.tools].map((one) => one.getBoundingClientRect()).filter((box) => box.width)
       .map((box) => [box.left - map.left, box.top - map.top, box.right - map.left, box.bottom - map.top]);
     this.boxes = [over, [left, map.width - right]];
     return this.boxes;

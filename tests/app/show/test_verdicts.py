@@ -44,6 +44,13 @@ def test_a_verdict_stands_beside_its_strategy_where_a_narrow_panel_shows_it():
     assert list(verdicts.table(ranked([1.0, 2.0, 3.0])))[:2] == ["strategy", "verdict"]
 
 
+def test_nobody_loses_less_than_nothing():
+    table = verdicts.table([outcome(BEST, [1.0, 300.0, 2.0]), outcome(SECOND, [5.0], [30.0])])
+    said = table["infested plant-days"].tolist()
+    assert said[0].startswith("101 (0 to ")
+    assert said[1] == "5", "one season has no interval"
+
+
 def test_one_strategy_alone_is_not_called_best_of_others():
     assert verdicts.sentence(ranked([1.0, 2.0, 3.0])[:1]) == ""
 

@@ -1,5 +1,7 @@
 """Strategies are compared while the page waits for nothing."""
 
+import json
+
 from app.state import chosen_pest
 from app.state.comparison import Comparison
 from tests.app.driving import go, press, texts_of
@@ -39,6 +41,9 @@ def test_what_a_second_robot_would_save_on_this_plot_is_said(app):
     assert not app.exception
     assert "A second robot would save " in texts_of(app)
     assert any(name.startswith("2 × Naive") for name in app.dataframe[0].value["strategy"])
+    # a column keeps the width of its first words, and a verdict's are longer later
+    widths = json.loads(app.dataframe[0].proto.columns)
+    assert widths["verdict"]["width"] >= 7 * len("+101 % de pérdida (+79 a +124)")
     # a team cannot be put to use here: one robot's way can
     box = next(b for b in app.selectbox if b.label == "Strategy")
     assert [option for option in box.options if "×" in option] == []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.waiting import counting
 from fieldmon.errors import FileProblem
 
 
@@ -13,6 +14,9 @@ def log(season: SeasonFile) -> None:
 
     A changed past is refused, with the entry that was changed. Give the last digest to somebody
     else: then nobody can rewrite the whole log unnoticed.
+
+    The entries come first. Then every morning is worked out again, which takes a long season half
+    a minute, and held to its digest.
 
     Example: fieldmon log season.gpkg
     """
@@ -27,5 +31,7 @@ def log(season: SeasonFile) -> None:
             f"The file must say what its log says, but it does not: {' '.join(wrong)} Go back to a "
             "copy from before."
         )
-    for sentence in kept.other_maps():
+    with counting("Mornings worked out again") as count:
+        said = kept.other_maps(tell=count)
+    for sentence in said:
         typer.echo(f"doubtful: {sentence}", err=True)

@@ -196,10 +196,11 @@ def _taken_whole(
         return None
     if elsewhere or n > _MOST_ROWS or not new.execute(_IS_ATTACHED).fetchone():
         return None
-    new.execute(
-        f"INSERT OR IGNORE INTO main.{table.name} ({columns}) "  # noqa: S608 - names of ours
-        f"SELECT {columns} FROM {old} ORDER BY {table.key}"
-    )
+    if n:
+        new.execute(
+            f"INSERT OR IGNORE INTO main.{table.name} ({columns}) "  # noqa: S608 - names of ours
+            f"SELECT {columns} FROM {old} ORDER BY {table.key}"
+        )
     return int(n)
 
 

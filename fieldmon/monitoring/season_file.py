@@ -40,7 +40,7 @@ from fieldmon.plot.plot import must_be_plot
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from datetime import date
 
     from numpy.typing import NDArray
@@ -304,25 +304,26 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         held = self.held_to_log() if whole else ()
         return (*doubt, *held, *self.other_maps(whole=whole))
 
-    def other_maps(self, *, whole: bool = True) -> tuple[str, ...]:
+    def other_maps(
+        self, *, whole: bool = True, tell: Callable[[int, int], object] | None = None
+    ) -> tuple[str, ...]:
         """Return a sentence for each day whose chance map is not the one that was used then.
 
-        `whole` as in `verify`.
+        `whole` as in `verify`; `tell` hears how many days are done, and of how many.
         """
         with self._lock:
             with self.store.reading() as db:  # both at one moment: others may write between
                 contents = self._read(db)
                 kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
             since = 0 if whole else contents.mornings.last_until(kept[-1][0])
-            return tuple(
-                worded(
-                    "The chance map of {on} comes out differently from the one used then: it was "
-                    "made by another version of fieldmon, or the file was changed by other hands.",
-                    on=on,
-                )
-                for day, on, then in kept
-                if day >= since and derived_layers.map_digest(contents.morning(day).chance) != then
-            )
+            days = [row for row in kept if row[0] >= since]
+            said = []
+            for done, (day, on, then) in enumerate(days, 1):
+                if derived_layers.map_digest(contents.morning(day).chance) != then:
+                    said.append(_otherwise(on))
+                if tell is not None:
+                    tell(done, len(days))
+            return tuple(said)
 
     def work_on(self) -> None:
         """Write the layers anew from the last morning on that still follows from all before it."""
@@ -333,6 +334,14 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         """Write all layers that follow from the causes anew."""
         with self._lock, self.store.writing() as db:
             self._refresh(db, 0)
+
+
+def _otherwise(on: str) -> str:
+    return worded(
+        "The chance map of {on} comes out differently from the one used then: it was "
+        "made by another version of fieldmon, or the file was changed by other hands.",
+        on=on,
+    )
 
 
 def _advised(db: sqlite3.Connection, on: date) -> list[str]:

@@ -1,5 +1,6 @@
 """`fieldmon log`: what happened, and that it still holds."""
 
+from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS
 from tests.monitoring.test_season_log import by_hand
@@ -20,6 +21,17 @@ def test_the_log_is_shown_and_a_changed_past_is_refused(run, season):
     code, out, err, _ = run("log", season)
     assert (code, out) == (2, "")
     assert "entry 2 is not what was written" in err
+
+
+def test_entries_are_shown_before_any_morning_is_worked_out_again(run, season, monkeypatch):
+    def fails(*_, **__):
+        raise FileProblem("no morning was worked out")
+
+    monkeypatch.setattr(Season, "other_maps", fails)
+    code, out, err, _ = run("log", season)
+    assert code == 2
+    assert "1 entry, the chain holds" in out
+    assert "no morning was worked out" in err
 
 
 def test_what_was_advised_is_in_the_log_once(run, season):

@@ -137,6 +137,16 @@ def test_a_map_made_otherwise_is_noticed(season):
     assert len(season.verify()) == 1
 
 
+def test_who_holds_mornings_to_their_digests_says_how_many_are_done(recorded):
+    season, told = Season(recorded), []
+    season.plan(BEGINS + timedelta(days=2))
+    season.other_maps(tell=lambda *done: told.append(done))
+    with season.store.reading() as db:
+        (n,) = db.execute("SELECT count(*) FROM days").fetchone()
+    assert told == [(day, n) for day in range(1, n + 1)]
+    assert n > 1
+
+
 @pytest.mark.parametrize(
     "asked",
     [

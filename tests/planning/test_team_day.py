@@ -418,9 +418,10 @@ def test_who_comes_late_to_an_aisle_makes_the_stops_after_which_it_is_home_in_ti
     leave_s = arrive_s + plan.stop_s
     until(team, leave_s[2] + worker.seconds(38, GATE) - 150.0)
     team._visit(worker, float(arrive_s[0]), 7.0)
-    homes_s = [worker.seconds(int(plant), GATE) for plant in plan.plant[:4]]
-    in_time = [int(plant) for plant, left_s, home_s in zip(plan.plant, leave_s, homes_s, strict=False)
-               if not late_s or left_s + home_s <= worker.until_s]  # fmt: skip
+    in_time = []
+    for plant, left_s in zip(plan.plant[:4].tolist(), leave_s, strict=False):
+        if not late_s or left_s + worker.seconds(plant, GATE) <= worker.until_s:
+            in_time.append(plant)
     stops = worker.done[1:]
     assert [stop.plant for stop in stops] == in_time
     assert [stop.arrive_s for stop in stops] == pytest.approx(arrive_s[: len(stops)].tolist())

@@ -75,7 +75,7 @@ HELD = (
     ("planning/routes/frontier", ("tables", "_onward", "_fits", "_after"), "test_"),
     ("planning/routes/best_route", ("upper_bound", "_between"),
      ("test_the_least_bound", "test_no_time_is", "test_no_bound", "test_a_bound_by", "test_to_sec",
-      "test_the_next_price")),
+      "test_the_next_price", "test_a_drive_that", "test_where_a_stop")),
     ("planning/routes/exact_walk", ("_price", "_walk_at", "full_budget"),
      ("test_the_least", "test_so_many", "test_no_steps")),
     ("planning/routes/stops",

@@ -81,6 +81,7 @@ HELD = (
     ("planning/routes/stops",
      ("_plants", "excursion", "_of_part", "through", "end", "_in_line", "_passes"),
      ("test_in_and", "test_a_plant", "test_through", "test_where", "test_a_part", "test_no_plants",
+      "test_the_lowest",
       "test_passes")),
     ("planning/routes/walk_sweep",
      ("at", "fill_tables", "depths", "_fill_worth", "_price_row", "_fill_onward", "_fill_up_to",

@@ -504,3 +504,13 @@ def test_a_find_is_heard_of_at_the_next_contact_and_each_contact_is_one_event(
     alone = _TeamDay(posts, sampler("naive"), Teamwork(contact_s=every_s), day.learn, None)
     alone._tell(alone.workers[0], found_s)
     assert alone.events == []
+
+
+@pytest.mark.parametrize(("plan", "asked"), [([], True), ([0], False), ([1, 0], False)])
+def test_aisles_are_given_out_anew_for_who_has_nowhere_to_go(monkeypatch, plan, asked):
+    """The very first plant is somewhere, too."""
+    team, worker = standing(Day(Aisles.of(rectangle(4, 8))), 9, plan)
+    asks = []
+    monkeypatch.setattr(team, "_shared_anew", lambda now_s: asks.append(now_s) or False)
+    team._ready(worker, 100.0)
+    assert asks == ([100.0] if asked else [])

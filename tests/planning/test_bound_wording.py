@@ -30,6 +30,11 @@ def test_few_finds_have_two_digits():
     assert bound_sentence(0.0123, 0.0131).startswith("0.012 finds expected; ")
 
 
+def test_where_nothing_can_be_found_that_is_the_bound():
+    said = bound_sentence(0.0, 0.0)
+    assert said == "0.0 finds expected; no route of these hours can expect more."
+
+
 def test_of_nothing_no_share_is_said():
     assert share_above(0.0, 0.5) == math.inf
     assert bound_sentence(0.0, 0.5).endswith("more than 0.50.")

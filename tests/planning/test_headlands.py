@@ -1,5 +1,7 @@
 """Head-on in a headland: seen on the lines, and avoided where it is too narrow."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -172,3 +174,42 @@ def test_a_headland_is_as_wide_as_from_the_nearest_row_to_the_edge_of_the_plot()
     needs_m = first_m - left_m
     assert len(headlands.meet(*steps, needs_m + 0.01)) == 1
     assert len(headlands.meet(*steps, needs_m - 0.01)) == 0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_steps_in_headlands_are_what_of_each_step_lies_outside_the_aisle_it_is_driven_in(seed):
+    """Into aisles, out of them, through them and back, with pauses; piece by piece."""
+    rng, grid = np.random.default_rng(seed), rectangle(5, 8)
+    line, lane = [[0.0, 0.0]], 0
+    for _ in range(14):
+        (low, high), y = grid.lane_x_m[lane], grid.lane_y_m[lane]
+        x = float(rng.choice([low - 3.0, low - 1.0, low + 2.0, high - 3.0, high + 1.5, high + 4.0]))
+        line.append([x, y])
+        # from one lane to the next in a headland only
+        if not low < x < high:
+            lane = int(rng.integers(5))
+            line.append([x, grid.lane_y_m[lane]])
+    line_m = np.array(line[1:])
+    took_s = rng.uniform(1.0, 9.0, len(line_m))
+    pause_s = rng.uniform(0.0, 5.0, len(line_m)) * (rng.random(len(line_m)) < 0.5)
+    arrive_s = np.cumsum(took_s) + np.append(0.0, np.cumsum(pause_s)[:-1])
+    leave_s = arrive_s + pause_s
+    expected = []
+    for k, (here, there) in enumerate(itertools.pairwise(line_m)):
+        (way,) = np.flatnonzero(np.abs(here - there) > 1e-9)[:1] if (here != there).any() else (0,)
+        since_s, until_s = leave_s[k], arrive_s[k + 1]
+        shares = [0.0, 1.0]
+        inside = np.zeros(2)
+        if way == 0 and here[0] != there[0]:
+            inside = grid.lane_x_m[np.abs(grid.lane_y_m - here[1]).argmin()]
+            ends = (inside - here[0]) / (there[0] - here[0])
+            shares = sorted([*shares, *ends[(ends > 1e-9) & (ends < 1 - 1e-9)]])
+        for a, b in itertools.pairwise(shares):
+            middle = here + (a + b) / 2 * (there - here)
+            if (here != there).any() and not (way == 0 and inside[0] < middle[0] < inside[1]):
+                expected.append([*(here + a * (there - here)), *(here + b * (there - here)),
+                                 since_s + a * (until_s - since_s),
+                                 since_s + b * (until_s - since_s)])  # fmt: skip
+    found = headlands_of(grid).steps(line_m, (arrive_s, leave_s))
+    told = np.column_stack([found.from_m, found.to_m, found.since_s, found.until_s])
+    assert told.tolist() == pytest.approx(np.array(expected), abs=1e-6)

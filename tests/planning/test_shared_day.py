@@ -135,3 +135,10 @@ def level_by_halving(needs, seconds):
         else:
             low = level
     return [min(most_s, high * expected) for expected, most_s in needs]
+
+
+def test_to_a_second_who_has_most_time_for_a_plot_gets_it():
+    """The first is as long at the second of two like plots as the other: half an hour."""
+    for other_s, second in ((1799.7, 0), (1800.3, 1)):
+        turns = share_day([PlotNeed(10, 1e6), PlotNeed(10, 1e6)], crew([1.0, other_s / 3600]), 0.0)
+        assert [turn.who for turn in turns if turn.plot == 1] == [second]

@@ -1,6 +1,7 @@
 """A day of several as it goes: the clock, the aisles, and what finds change."""
 
 from dataclasses import replace
+from heapq import heappop
 from itertools import pairwise
 
 import numpy as np
@@ -371,3 +372,145 @@ def test_a_day_that_begins_later_is_the_same_day_later(name):
         assert one.arrive_s == pytest.approx(other.arrive_s, abs=1e-6)
         assert one.wait_s == pytest.approx(other.wait_s, abs=1e-6)
         assert one.end_s == pytest.approx(other.end_s, abs=1e-6)
+
+
+def until(team, seconds):
+    """Let the first's hours end so many seconds after its day began."""
+    worker = team.workers[0]
+    scene = replace(worker.scene, seconds_left=seconds)
+    worker.post = worker.post._replace(scene=scene)
+    return worker
+
+
+@pytest.mark.parametrize("target", [5, 22, 63])
+@pytest.mark.parametrize(("more_s", "makes_it"), [(1.0, True), (1e-9, True), (-1e-3, False)])
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_stop_is_made_if_there_is_just_time_for_it_and_the_way_home(
+    target, more_s, makes_it, returns
+):
+    robot = Robot(hours=1.0, detection=1.0, returns=returns)
+    day = Day(Aisles.of(rectangle(8, 8)), robot=robot)
+    team, worker = standing(day, 1, [target])
+    arrives_s = 100.0 + worker.seconds(1, target)
+    home_s = worker.seconds(target, GATE) if returns else 0.0
+    until(team, arrives_s + 40.0 + home_s + more_s)
+    team.workers[1].over = True
+    team._at(100.0, worker, team._ready)
+    while team.events:
+        now_s, _, version, _, event = heappop(team.events)
+        if version in (worker.version, -1):
+            event(worker, now_s)
+    assert [stop.plant for stop in worker.done] == ([1, target] if makes_it else [1])
+    assert worker.over
+    last_s = arrives_s + 40.0 if makes_it else 100.0
+    last = target if makes_it else 1
+    assert worker.end_s == pytest.approx(last_s + (worker.seconds(last, GATE) if returns else 0.0))
+    assert worker.wait_home_s == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("late_s", [0.0, 5.0, 200.0, 700.0])
+def test_who_comes_late_to_an_aisle_makes_the_stops_after_which_it_is_home_in_time(late_s):
+    """In time it makes all; those planned beyond the hours are the sampler's own affair."""
+    day = Day(Aisles.of(rectangle(4, 16)))
+    team, worker = standing(day, 1, [33, 35, 38, 40, 2])
+    plan = worker.plan
+    arrive_s = 100.0 + plan.arrive_s + late_s
+    leave_s = arrive_s + plan.stop_s
+    until(team, leave_s[2] + worker.seconds(38, GATE) - 150.0)
+    team._visit(worker, float(arrive_s[0]), 7.0)
+    in_time = []
+    for plant, left_s in zip(plan.plant[:4].tolist(), leave_s, strict=False):
+        if not late_s or left_s + worker.seconds(plant, GATE) <= worker.until_s:
+            in_time.append(plant)
+    stops = worker.done[1:]
+    assert [stop.plant for stop in stops] == in_time
+    assert [stop.arrive_s for stop in stops] == pytest.approx(arrive_s[: len(stops)].tolist())
+    assert [stop.leave_s for stop in stops] == pytest.approx(leave_s[: len(stops)].tolist())
+    assert [stop.wait_s for stop in stops] == [7.0, 0.0, 0.0, 0.0][: len(stops)]
+    assert worker.visit == 1
+    assert worker.target() == (2 if not late_s else GATE)
+    assert worker.at == ([1, *in_time])[-1]
+    ((ready_s, *_, event),) = team.events
+    assert event == team._ready
+    assert ready_s == pytest.approx(leave_s[len(stops) - 1] if stops else arrive_s[0])
+
+
+def test_who_plans_anew_makes_one_stop_and_thinks_again():
+    team, worker = standing(Day(Aisles.of(rectangle(4, 16))), 1, [33, 35, 38])
+    worker.anew = True
+    team._visit(worker, 100.0 + float(worker.plan.arrive_s[0]), 0.0)
+    assert [stop.plant for stop in worker.done] == [1, 33]
+    assert worker.next == 1
+
+
+def test_aisles_in_which_somebody_stays_for_the_night_are_left_out():
+    team, worker = standing(Day(Aisles.of(rectangle(8, 8))), 1, [17, 19, 33, 50])
+    other = team.workers[1]
+    team.holder[team.corridor[17]] = team.holder[team.corridor[50]] = 1
+    for over, target in ((False, 17), (True, 33)):
+        other.over, worker.next = over, 0
+        team._pass_by(worker)
+        assert worker.target() == target
+    worker.next = 3
+    team._pass_by(worker)
+    assert worker.target() == GATE
+    # its own aisle it may always enter
+    team.holder[team.corridor[33]], worker.next, worker.over = 0, 2, True
+    team._pass_by(worker)
+    assert worker.target() == 33
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_those_wait_for_each_other_who_stand_in_a_ring_of_whom_all_wait(n):
+    day = Day(Aisles.of(rectangle(8, 8)), n)
+    posts = [Posted(day.scene(), 0.0, day.would_find) for _ in range(n)]
+    team = _TeamDay(posts, sampler("naive"), AT_ONCE, None, None)
+    for k, worker in enumerate(team.workers):
+        worker.at, worker.holds = 8 * k + 1, int(team.corridor[8 * k + 1])
+        team.holder[worker.holds] = k
+        # everyone wants the aisle of the next
+        target = 8 * ((k + 1) % n) + 2
+        worker.plan = stopping(team, [target])
+        worker.claims = int(team.corridor[target])
+        worker.leg = worker.legs.leg(worker.at, target)._replace(through=())
+    team.waiting = [*team.workers]
+    assert all(team._wait_for_each_other(worker) for worker in team.workers)
+    # if one of the others is at work the ring is none
+    team.waiting = [*team.workers[:-1]]
+    assert not team._wait_for_each_other(team.workers[0])
+    # nor is a line, nor one that waits for itself
+    team.waiting = [*team.workers]
+    team.workers[-1].claims = team.workers[-1].holds
+    assert not any(team._wait_for_each_other(worker) for worker in team.workers)
+    team.holder[team.workers[-1].holds] = -1
+    assert not any(team._wait_for_each_other(worker) for worker in team.workers)
+
+
+@pytest.mark.parametrize(
+    ("every_s", "found_s", "heard_s"),
+    [(0.0, 130.5, [130.5]), (600.0, 130.5, [600.0]), (600.0, 600.0, [600.0]),
+     (600.0, 600.5, [1200.0]), (50.0, 130.5, [150.0])],
+)  # fmt: skip
+def test_a_find_is_heard_of_at_the_next_contact_and_each_contact_is_one_event(
+    every_s, found_s, heard_s
+):
+    day = Day(Aisles.of(rectangle(4, 8)))
+    posts = [Posted(day.scene(), 0.0, day.would_find) for _ in range(2)]
+    team = _TeamDay(posts, sampler("adaptive"), Teamwork(contact_s=every_s), day.learn, None)
+    team._tell(team.workers[0], found_s)
+    team._tell(team.workers[1], found_s)
+    assert [event[0] for event in team.events] == heard_s
+    assert team.events[0][-1] == team._hear
+    alone = _TeamDay(posts, sampler("naive"), Teamwork(contact_s=every_s), day.learn, None)
+    alone._tell(alone.workers[0], found_s)
+    assert alone.events == []
+
+
+@pytest.mark.parametrize(("plan", "asked"), [([], True), ([0], False), ([1, 0], False)])
+def test_aisles_are_given_out_anew_for_who_has_nowhere_to_go(monkeypatch, plan, asked):
+    """The very first plant is somewhere, too."""
+    team, worker = standing(Day(Aisles.of(rectangle(4, 8))), 9, plan)
+    asks = []
+    monkeypatch.setattr(team, "_shared_anew", lambda now_s: asks.append(now_s) or False)
+    team._ready(worker, 100.0)
+    assert asks == ([100.0] if asked else [])

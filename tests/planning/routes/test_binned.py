@@ -158,3 +158,38 @@ def test_the_sweep_finds_the_most_of_all_offers_at_every_number_of_steps(seed):
             after = before
         assert (after, held) == (0, pytest.approx(ends[b]))
         assert left >= 0
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("gate_row", [0, 5])
+def test_a_proposal_goes_on_from_aisle_to_aisle_and_fills_its_steps_just(returns, gate_row):
+    """Each way is charged as offered at its price; headlands as places rounded, not as steps."""
+    robot, seconds, price = Robot(returns=returns), 1300.0, 0.006
+    gate = (-2.0, float(np.sort(AISLES.grid.lane_y_m)[gate_row]))
+    priced = priced_by(robot, Aisles.of(rectangle(10, 9), gate_xy_m=gate))
+    ladder, tables = priced.ladder, priced.tables
+    passes_of = [tuple(each) for each in tables.passes.tolist()]
+    step_s = 1.02 * seconds / 2500
+    place_s = np.vstack([np.zeros(2), np.cumsum(ladder.up_m, axis=0)]) * priced.costs.metre_s
+    offers = {price * share: priced.ways(price * share) for share in (0.6, 0.8, 1.0, 1.25, 1.6)}
+    for (drawn, prices), share in zip(proposals(priced, price, seconds), (1.02, 1.0, 0.98),
+                                      strict=True):  # fmt: skip
+        states, used, held = {0}, 0, 0.0
+        for k, way in enumerate(drawn.way.tolist()):
+            ways = tables.gate if k == ladder.gate else tables.aisle
+            states = {after for before, one, after in ways.tolist() if before in states
+                      and one == way and passes_of[after] == tuple(drawn.passes[k])}  # fmt: skip
+            assert states
+            offered = offers[prices[k]]
+            taken_s = (offered.reward[k, way] - offered.worth[k, way]) / prices[k]
+            used += round(taken_s / step_s)
+            held += offered.reward[k, way]
+            assert drawn.cut[k].tolist() == offered.cut[k, way].tolist()
+            for side in range(2) if k + 1 < len(drawn.way) else ():
+                up = drawn.passes[k, side] * place_s[k : k + 2, side] / step_s
+                used += round(up[1]) - round(up[0])
+        assert 1 in states
+        assert (drawn.passes[-1] == 0).all()
+        assert drawn.reward == pytest.approx(held)
+        # no further than so many steps, and near it, as more time always pays here
+        assert 0.97 * 2500 * share / 1.02 <= used <= 2500 * share / 1.02

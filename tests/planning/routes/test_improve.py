@@ -1,6 +1,6 @@
 """Mending stops: they fit, none is made twice, and nothing that fits is left out."""
 
-from itertools import combinations, pairwise
+from itertools import combinations, combinations_with_replacement, pairwise
 
 import numpy as np
 import pytest
@@ -200,3 +200,84 @@ def test_what_is_put_in_is_always_the_plant_that_holds_most_for_the_seconds_it_a
     assert tour.stops.tolist() in [*ends_of(aisles, robot, stops, reward, seconds)]
     assert np.flatnonzero(tour.visited).tolist() == sorted(tour.stops.tolist())
     assert tour.used[0] == pytest.approx(used_s(aisles, robot, tour.stops))
+
+
+_shorten = improve._shorten
+
+
+@loop
+def shortened(travel, clock, tour):
+    _shorten(travel, clock, tour)
+
+
+def turned_one_by_one(aisles, robot, stops):
+    """Turn stretches between changes of aisle round, each that is shorter so, until none is."""
+    stops, n = [*stops], len(stops)
+    aisle = aisles.grid.corridor[aisles.grid.row]
+    for _ in range(20):
+        turned = False
+        for a, b in combinations_with_replacement(range(n), 2):
+            if (a > 0 and aisle[stops[a - 1]] == aisle[stops[a]]) or (
+                b + 1 < n and aisle[stops[b]] == aisle[stops[b + 1]]
+            ):
+                continue
+            other = [*stops[:a], *stops[a : b + 1][::-1], *stops[b + 1 :]]
+            ends_s = used_s(aisles, robot, np.array(other)) - used_s(aisles, robot, np.array(stops))
+            if ends_s < -improve._NOTICEABLE_S:
+                stops, turned = other, True
+        if not turned:
+            break
+    return stops
+
+
+def moved_one_by_one(aisles, robot, stops):
+    """Move each aisle's stops in turn to where the whole drive is shortest, turned round or not."""
+    stops, n, a = [*stops], len(stops), 0
+    aisle = aisles.grid.corridor[aisles.grid.row]
+    while a < n:
+        b = a
+        while b + 1 < n and aisle[stops[b + 1]] == aisle[stops[b]]:
+            b += 1
+        run, found = stops[a : b + 1], []
+        for k in range(n + 1):
+            if a <= k <= b + 1 or (0 < k < n and aisle[stops[k - 1]] == aisle[stops[k]]):
+                continue
+            for way in (run, run[::-1]):
+                others = [*stops[:a], *stops[b + 1 :]]
+                at = k if k < a else k - len(run)
+                other = [*others[:at], *way, *others[at:]]
+                more_s = used_s(aisles, robot, np.array(other))
+                found.append((round(more_s - used_s(aisles, robot, np.array(stops)), 6), other))
+        least_s, best = min(found, key=lambda each: each[0], default=(0.0, stops))
+        if least_s < -improve._NOTICEABLE_S:
+            stops = best
+        a = b + 1
+    return stops
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("seed", range(8))
+def test_stretches_are_turned_and_aisles_moved_as_whole_drives_driven_one_by_one_have_it(
+    returns, seed
+):
+    grid = rectangle(6, 7, Planting(faces=1 + seed % 2))
+    # a gate beside no axis of the plot, so that hardly any two drives are as long
+    aisles = Aisles.of(grid, gate_xy_m=(grid.lane_x_m.min() - 2.5, grid.lane_y_m.min() + 3.7))
+    robot, rng = Robot(returns=returns, speed_m_s=0.37), np.random.default_rng(seed)
+    clock, n = robot_clock(robot, 1e6), len(grid)
+    stops = rng.permutation(n)[:9]
+    if seed > 3:  # as in a drive, stops of an aisle one after the other
+        aisle = grid.corridor[grid.row]
+        stops = stops[np.lexsort((rng.permutation(9), rng.permutation(n)[aisle[stops]]))]
+    tour = Tour.of(stops, n)
+    shortened(aisles.travel, clock, tour)
+    assert tour.stops.tolist() == turned_one_by_one(aisles, robot, stops)
+    for _ in range(2):
+        before = tour.stops
+        did = moved(aisles.travel, clock, tour)
+        expected = moved_one_by_one(aisles, robot, before)
+        assert used_s(aisles, robot, tour.stops) == pytest.approx(
+            used_s(aisles, robot, np.array(expected))
+        )
+        assert sorted(tour.stops.tolist()) == sorted(before.tolist())
+        assert did == (used_s(aisles, robot, tour.stops) < used_s(aisles, robot, before) - 1e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.planning.routes.priced import Priced
+from fieldmon.planning.routes.priced import Priced, least_by_kind
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
@@ -139,3 +139,30 @@ def test_it_says_how_many_cross_links_and_hanging_aisles_its_ladder_has():
     for sentence, (links, each) in said.items():
         ladder = plain._replace(cross_links=links, hangs=each)
         assert sentence in Priced(ladder, reward, Robot()).how
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_each_kind_of_drives_is_bound_by_the_highest_line_between_two_of_its_own(seed):
+    """The kind with the most is told within a hundredth of its best price, the others above it."""
+    rng, seconds = np.random.default_rng(seed), 900.0
+    took_s = np.sort(rng.uniform(20.0, 2500.0, (4, 12)), axis=1)
+    held = took_s**0.7 * rng.uniform(0.7, 1.0, (4, 12))
+    took_s[0], held[0] = took_s[0] / 3.0, held[0] / 2.0  # none is too long
+
+    def kinds(price):
+        at = np.argmax(held - price * took_s, axis=1)[:, None]
+        of, by_s = (np.take_along_axis(each, at, axis=1)[:, 0] for each in (held, took_s))
+        return of - price * by_s, of
+
+    line = []
+    for of, by_s in zip(held, took_s, strict=True):
+        in_time, long = by_s <= seconds, by_s > seconds
+        share = (seconds - by_s[in_time, None]) / (by_s[long] - by_s[in_time, None])
+        mixed = of[in_time, None] + share * (of[long] - of[in_time, None])
+        line.append(max(of[in_time].max(), mixed.max(initial=0.0)))
+    least = least_by_kind(kinds, seconds, 0.05, np.inf)
+    assert (least >= np.array(line) * (1 - 1e-12)).all()
+    assert least.max() <= 1.01 * max(line)
+    # without time there is one price, and all are bound by it
+    worth, _ = kinds(0.05)
+    assert least_by_kind(kinds, seconds, 0.05, -np.inf) == pytest.approx(worth + 0.05 * seconds)

@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from fieldmon.compute.jit import loop
 from fieldmon.planning.routes.walk_sweep import (
     APART,
     CLOSING,
@@ -218,6 +219,16 @@ def test_of_walks_that_hold_enough_the_sweep_keeps_the_most_at_every_length(half
     assert n_reached > 0
 
 
+@loop
+def spread(source, target, at, room):
+    _spread(source, target, at, room)
+
+
+@loop
+def worth_it(table, limits, room):
+    return _worth_it(table, limits, room)
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_half_steps_in_a_row_are_added_to_those_before_it_in_blocks_as_one_by_one(seed):
     rng = np.random.default_rng(seed)
@@ -236,7 +247,7 @@ def test_half_steps_in_a_row_are_added_to_those_before_it_in_blocks_as_one_by_on
         np.empty((5, 1)), np.full(len(target) + 17, np.nan), np.append(deep, [0] * 3),
         np.append(value, [9.0] * 3),
     )  # fmt: skip
-    _spread(source, target, (by, n), room)
+    spread(source, target, (by, n), room)
     np.testing.assert_allclose(target, expected, rtol=0, atol=1e-12)
 
 
@@ -245,5 +256,5 @@ def test_of_a_row_half_steps_are_listed_that_bring_more_than_fewer_and_enough():
     room = SweepRoom(np.empty((5, 1)), np.empty(1), np.zeros(6, np.int64), np.zeros(6))
     listed = [(0, 0.5), (2, 0.9), (4, 1.0)]
     for least, those in ((0.4, listed), (0.55, listed[1:]), (0.65, listed[1:2]), (0.75, [])):
-        n = _worth_it(table, (price, least), room)
+        n = worth_it(table, (price, least), room)
         assert list(zip(room.deep[:n].tolist(), room.value[:n].tolist(), strict=True)) == those

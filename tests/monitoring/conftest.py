@@ -17,7 +17,9 @@ def recorded(tmp_path_factory):
     season = a_season(path)
     season.plan(BEGINS)
     season.record(some_results(season, n=12, found=[2, 3, 4]), "monday.csv", "Ann")
-    return path
+    made = path.read_bytes()
+    yield path
+    assert path.read_bytes() == made, "a test wrote to the season of which others take copies"
 
 
 @pytest.fixture

@@ -137,8 +137,8 @@ def test_a_map_made_otherwise_is_noticed(season):
     assert len(season.verify()) == 1
 
 
-def test_who_holds_mornings_to_their_digests_says_how_many_are_done(recorded):
-    season, told = Season(recorded), []
+def test_who_holds_mornings_to_their_digests_says_how_many_are_done(path):
+    season, told = Season(path), []
     season.plan(BEGINS + timedelta(days=2))
     season.other_maps(tell=lambda *done: told.append(done))
     with season.store.reading() as db:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -257,9 +256,9 @@ class WorkerOptions:
             value = getattr(self, option)
             if value is None:
                 continue
-            if rule := broken_rule(name, value, units):
+            if rule := broken_rule(name, value, units, unit):
                 flag = f"--{option.replace('_', '-')}"
-                raise SettingError(f"{flag} must be {_with_unit(rule, unit)}, but it is {value:g}.")
+                raise SettingError(f"{flag} must be {rule}, but it is {value:g}.")
             given[name] = value / units
         return given
 
@@ -278,11 +277,6 @@ class WorkerOptions:
 
         charged = robot if self.robot_times is None else robot.with_times(self.robot_times)
         return replace(charged, **self.given())  # type: ignore[arg-type]
-
-
-def _with_unit(rule: str, unit: str) -> str:
-    """Return a rule with the unit behind its number: "108 km/h at most"."""
-    return re.sub(r"\d+(\.\d+)?", lambda number: number[0] + unit, rule, count=1)
 
 
 @dataclass(frozen=True)

@@ -272,7 +272,7 @@ def must_be_robot(given: object) -> None:
     )  # fmt: skip
 
 
-def broken_rule(name: str, value: float, units: float = 1.0) -> str:
+def broken_rule(name: str, value: float, units: float = 1.0, unit: str = "") -> str:
     """Return what a setting that a person gives must be and is not; empty where it may be so.
 
     Parameters
@@ -283,27 +283,29 @@ def broken_rule(name: str, value: float, units: float = 1.0) -> str:
         What it is to be.
     units
         How many of the units of `value` make one of the setting's: 3.6 for km/h.
+    unit
+        What stands behind a limit that says no unit itself.
 
     Examples
     --------
-    >>> broken_rule("speed_m_s", -1.0, 3.6), broken_rule("speed_m_s", 200.0, 3.6)
-    ('above 0', '108 at most')
+    >>> broken_rule("speed_m_s", -1.0, 3.6), broken_rule("speed_m_s", 200.0, 3.6, " km/h")
+    ('above 0', '108 km/h at most')
     >>> broken_rule("look_s", 40.0)
     ''
     """
     least, most = _LIMITS[name]
-    return _broken(name, value, (least, _DRIVEN_MOST.get(name, most)), units)
+    return _broken(name, value, (least, _DRIVEN_MOST.get(name, most) * units), unit)
 
 
-def _broken(name: str, value: float, limits: tuple[float, float], units: float = 1.0) -> str:
+def _broken(name: str, value: float, limits: tuple[float, float], unit: str = "") -> str:
     least, most = limits
     if name in _BOTH_SAID:
         return "" if least <= value <= most else _BOTH_SAID[name]
     if name in _ABOVE and not value > least:
-        return f"above {least:g}"
+        return f"above {least:g}{unit}"
     if not value >= least:
-        return f"{least:g} or more"
-    return "" if value <= most * units else f"{most * units:g} at most"
+        return f"{least:g}{unit} or more"
+    return "" if value <= most else f"{most:g}{unit} at most"
 
 
 # a day has 86 400 s; a study of what driving costs has a robot that is everywhere at once

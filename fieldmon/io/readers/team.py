@@ -122,18 +122,20 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
         )
     gate = (number.pop("lon"), number.pop("lat")) if "lon" in number else None
     for column, (setting, units) in _SETTINGS.items():
-        if column in number and (rule := broken_rule(setting, number[column], units)):
+        if column not in number:
+            continue
+        value = number.pop(column)
+        if rule := broken_rule(setting, value, units):
             raise FileProblem(
                 worded(
                     "{where}: {name} must be {rule}, but it is {value:g}.",
                     where=where,
                     name=column,
                     rule=rule,
-                    value=number[column],
+                    value=value,
                 )
             )
-    if "speed_km_h" in number:
-        number["speed_m_s"] = number.pop("speed_km_h") / 3.6
+        number[setting] = value / units
     return StatedMember(values["name"], who == "scout", number, values.get("start") or None, gate)
 
 

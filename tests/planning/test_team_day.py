@@ -580,14 +580,14 @@ def test_steps_in_headlands_are_where_one_is_outside_aisles_and_at_the_moments_i
 @pytest.mark.parametrize("passing_m", [0.0, 20.0])
 @pytest.mark.parametrize(("plot", "leg"), EVERY_WAY[::2])
 def test_one_drives_on_if_all_aisles_that_it_needs_are_free_and_nobody_comes_head_on(
-    monkeypatch, plot, leg, passing_m, meets, soon_s
+    plot, leg, passing_m, meets, soon_s
 ):
     """Whoever has each of them: nobody, itself or another; and nothing else changes hands."""
     day, (at, target) = Day(plot), leg
     through = legs_of(plot).leg(at, target).through
     for holders in product((-1, 0, 2), repeat=min(len(through), 2) + (target >= 0)):
         team, worker = leaving(day, at, target, Teamwork(passing_m=passing_m))
-        monkeypatch.setattr(team, "_meets_head_on", lambda *_: meets)
+        team._meets_head_on = lambda *_: meets
         needed = [*through[-2:], *([int(team.corridor[target])] if target >= 0 else [])]
         team.holder[needed], worker.free_s = holders, 400.0 + soon_s
         now_s, left, was = 400.0, worker.holds, team.holder.copy()
@@ -709,16 +709,13 @@ def test_one_comes_out_of_its_aisle_after_the_metres_to_its_end(at, target):
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("shared", [False, True])
-def test_who_hears_of_a_find_beside_its_own_aisles_plans_anew_and_nobody_else(
-    monkeypatch, seed, shared
-):
+def test_who_hears_of_a_find_beside_its_own_aisles_plans_anew_and_nobody_else(seed, shared):
     rng, day = np.random.default_rng(seed), Day(Aisles.of(rectangle(6, 8)), 3)
     posts = [Posted(day.scene(), 0.0, day.would_find) for _ in range(3)]
     team = _TeamDay(posts, sampler("adaptive"), AT_ONCE, day.learn, None)
     team.sections.owner = owner = rng.integers(0, 3, len(team.holder))
-    monkeypatch.setattr(team, "_shared_anew", lambda _: shared)
-    anew = []
-    monkeypatch.setattr(team, "_interrupt", lambda one, at_s: anew.append((one.k, at_s)))
+    team._shared_anew, anew = lambda _: shared, []
+    team._interrupt = lambda one, at_s: anew.append((one.k, at_s))
     plants = rng.permutation(48)[:6].reshape(3, 2).tolist()
     for worker, own in zip(team.workers, plants, strict=True):
         # the second of each is left after all hear

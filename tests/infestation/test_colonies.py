@@ -121,3 +121,20 @@ def test_destroyed_colonies_are_gone_and_the_others_stay():
     start = Colonies.grown(GRID, Pest("mite"), at(3, 4))
     assert np.flatnonzero(start.without(np.array([3])).infested).tolist() == [4]
     assert start.infested.sum() == 2
+
+
+def test_a_new_colony_begins_at_the_beginning_also_where_an_older_one_died():
+    mite = Pest("mite", stages=(EGG, YOUNG), movement=Movement("adjacent", 0.5))
+    old = landed_on(Colonies.grown(GRID, mite, at(3)), 40, 41).older(warm(by=4.0))
+    left = old.treated(np.where(at(40), 1.0, 0.0), key(1))
+    assert left.infested.sum() == 2
+    new = left.entered(at(3, 40, 60))
+    for plant in (40, 60):
+        told = new.infested[plant], new.stage[plant], new.progress[plant], new.age_days[plant]
+        assert told == (True, 0, 0.0, 0.0)
+    # those that were there go on
+    for plant in (3, 41):
+        assert new.stage[plant] == old.stage[plant]
+        assert new.progress[plant] == old.progress[plant]
+        assert new.age_days[plant] == old.age_days[plant]
+    assert new.progress[41] == 4.0

@@ -76,3 +76,11 @@ def test_the_estimate_counts_the_fields():
     counts = belief.fields.sum(axis=1)
     assert ahead.expected == pytest.approx(counts.mean())
     assert np.mean((counts >= ahead.low) & (counts <= ahead.high)) >= 0.9
+
+
+def test_the_plot_is_clean_in_as_many_of_the_fields_as_hold_no_infested_plant():
+    belief = Ensemble.of(GRID, np.full(64, 0.02))
+    fields = [[*field] for field in belief.fields.tolist()]
+    clean = sum(not any(field) for field in fields) / len(fields)
+    assert 0.1 < clean < 0.9
+    assert belief.estimate().chance_clean == pytest.approx(clean)

@@ -5,7 +5,7 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.colonies import Colonies
-from fieldmon.infestation.forecast import Forecast, forecast
+from fieldmon.infestation.forecast import Forecast, _tonight, forecast
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.plot_estimate import draw_fields
 from fieldmon.infestation.spread import Spread
@@ -89,3 +89,19 @@ def test_it_says_what_weather_it_is_made_from(weather, basis):
         "40 plants infested after 14 nights without inspections (20 to 80 with a chance of 90 %), "
         f"now 10; {basis}"
     )
+
+
+@pytest.mark.parametrize("inside", [5.0, 40.0])
+@pytest.mark.parametrize("arrived", [0.0, 10.0])
+@pytest.mark.parametrize("doubt", [0.5, 1.2])
+def test_what_is_on_the_plot_is_doubted_by_its_part_of_the_number(inside, arrived, doubt):
+    """The variance of whole numbers drawn of it, by the law of total variance."""
+    drawn = _tonight(inside, arrived, doubt, np.random.default_rng(1))
+    number = inside + arrived
+    wanted = (doubt * number) ** 2 * inside / number
+    assert drawn.mean() == pytest.approx(inside, rel=0.1)
+    assert drawn.var() + drawn.mean() == pytest.approx(wanted, rel=0.25)
+
+
+def test_where_whole_numbers_vary_more_than_is_doubted_nothing_more_is_drawn():
+    assert set(_tonight(4.0, 0.0, 0.4, np.random.default_rng(1)).tolist()) == {4.0}

@@ -1,13 +1,16 @@
 """What inspections tell, in words."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from fieldmon.infestation.learnt import learnt_from
+from fieldmon.infestation.learnt import _length, learnt_from
 from fieldmon.infestation.origins import ANYWHERE, AT_START, AT_START_ELSEWHERE, BY_EDGE, JUMPED
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
 from tests.infestation.test_traced_pairs import mid_season
 
@@ -75,3 +78,13 @@ def test_jumps_are_as_long_as_their_kernels_and_as_doubtful_as_each_share_of_the
     assert length.value == pytest.approx(mean_of(belief.beyond))
     assert length.high - length.value == pytest.approx(off, rel=1e-3)
     assert length.low == pytest.approx(max(length.value - off, 1.0), rel=1e-3)
+
+
+@pytest.mark.parametrize("k", range(6))
+def test_jumps_that_are_all_of_one_kernel_are_as_long_as_it_without_a_doubt(k):
+    mite = Pest("mite", movement=Movement("exponential", 0.4, reach_m=0.5))
+    belief = TracedPairs.of(GRID, FLAT).of_pest(mite)
+    alone = SimpleNamespace(beyond=np.eye(6)[k], reach=belief.reach, counts=belief.counts)
+    mean = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)[k]
+    length = _length(alone)
+    assert (length.value, length.low, length.high) == pytest.approx((mean, mean, mean))

@@ -229,3 +229,15 @@ def test_the_share_of_an_hour_is_what_of_it_lies_in_the_hours_of_movement(hours)
     moving = ((moments - first) % 24 < length).reshape(24, 1000).sum(axis=1)
     share = hours_of_movement(replace(MITE.movement, hours=hours))
     assert share == pytest.approx(moving / moving.sum(), abs=1e-9)
+
+
+@pytest.mark.parametrize("by_hour", [True, False])
+@pytest.mark.parametrize(("least_mm", "moves"), [(0.0, True), (2.4, True), (2.5, False)])
+def test_so_much_rain_as_is_needed_is_enough_and_who_needs_none_moves_when_it_is_dry(
+    by_hour, least_mm, moves
+):
+    rain_mm = 0.0 if least_mm == 0.0 else 2.4 if by_hour else 0.1
+    movement = replace(MITE.movement, least_rain_mm=least_mm, by_hour=by_hour)
+    weather = hourly(1, temperature_c=30.0, rain_mm=rain_mm)
+    sends = PestInWeather(replace(MITE, movement=movement), weather, BEGINS).night(0, FRAME).sends
+    assert sends == pytest.approx(0.5 * moves)

@@ -265,7 +265,12 @@ def test_who_waits_in_vain_drives_home_from_the_end_of_the_aisle_where_it_stood(
     worker.out_s = worker.free_s = 100.0 + worker.share_out() * worker.seconds(at, target)
     team.waiting = [worker]
     team._give_up(worker, 2000.0)
+    # it may be free by then
+    assert team.waiting == [worker]
+    ((when_s, _, version, _, event),) = team.events
+    assert (when_s, version, event) == (worker.free_s, -1, team._passed)
     team._go_at_last(worker)
+    assert team.waiting == []
     from_end_m = abs(
         grid.along_m[at] - grid.lane_x_m[grid.row[at], worker.legs.leg(at, target).end % 2]
     )
@@ -287,6 +292,7 @@ def test_within_its_aisle_one_drives_straight_to_the_next_stop(aisle):
     team._ready(worker, 100.0)
     assert [stop.plant for stop in worker.done] == [one, other]
     assert worker.done[-1].arrive_s == pytest.approx(100.0 + worker.seconds(one, other))
+    assert worker.done[-1].wait_s == 0.0
 
 
 def test_who_has_done_its_share_goes_on_with_what_the_slow_would_not_come_to():
@@ -383,7 +389,7 @@ def until(team, seconds):
     return worker
 
 
-@pytest.mark.parametrize("target", [5, 22, 63])
+@pytest.mark.parametrize("target", [0, 5, 22, 63])
 @pytest.mark.parametrize(("more_s", "makes_it"), [(1.0, True), (1e-9, True), (-1e-3, False)])
 @pytest.mark.parametrize("returns", [True, False])
 def test_a_stop_is_made_if_there_is_just_time_for_it_and_the_way_home(
@@ -415,6 +421,7 @@ def test_who_comes_late_to_an_aisle_makes_the_stops_after_which_it_is_home_in_ti
     day = Day(Aisles.of(rectangle(4, 16)))
     team, worker = standing(day, 1, [33, 35, 38, 40, 2])
     plan = worker.plan
+    worker.plan = plan = replace(plan, arrive_s=plan.arrive_s + 30.0)
     arrive_s = 100.0 + plan.arrive_s + late_s
     leave_s = arrive_s + plan.stop_s
     until(team, leave_s[2] + worker.seconds(38, GATE) - 150.0)
@@ -501,6 +508,7 @@ def test_a_find_is_heard_of_at_the_next_contact_and_each_contact_is_one_event(
     team._tell(team.workers[0], found_s)
     team._tell(team.workers[1], found_s)
     assert [event[0] for event in team.events] == heard_s
+    assert [event[2] for event in team.events] == [-1]
     assert team.events[0][-1] == team._hear
     alone = _TeamDay(posts, sampler("naive"), Teamwork(contact_s=every_s), day.learn, None)
     alone._tell(alone.workers[0], found_s)
@@ -539,7 +547,7 @@ def far_legs(aisles):
     legs, corridor = legs_of(aisles), aisles.grid.corridor[aisles.grid.row]
     n, told = len(corridor), {}
     some = np.random.default_rng(4).integers(-1, n, (400, 2)).tolist()
-    for at, target in [[-1, n - 1], [n - 1, -1], *some]:
+    for at, target in [[-1, n - 1], [n - 1, -1], [n - 1, 0], *some]:
         if at == target or (at >= 0 and target >= 0 and corridor[at] == corridor[target]):
             continue
         told.setdefault((at < 0, target < 0, len(legs.leg(at, target).through)), (at, target))
@@ -602,6 +610,8 @@ def test_one_drives_on_if_all_aisles_that_it_needs_are_free_and_nobody_comes_hea
         expected = [0 if a in held else -1 if a == left else was[a] for a in range(len(was))]
         assert team.holder.tolist() == expected
         passes = [event for event in team.events if event[-1] == team._passed]
+        # whatever it plans meanwhile
+        assert all(event[2] == -1 for event in passes)
         assert bool(passes) == bool(through or passing_m)
         assert [event[:1] for event in passes] == [pytest.approx((arrives_s,))] * len(passes)
         whole_s = worker.seconds(at, target)
@@ -664,18 +674,22 @@ def test_who_waits_a_second_time_gives_up_when_that_is_in_vain_and_not_before():
     assert gives_up == [at_s + worker.spare_s(at_s + worker.onward_s())]
 
 
-@pytest.mark.parametrize("until_s", [900.0, 300.0])
+@pytest.mark.parametrize(
+    ("at", "target", "until_s"), [(1, 38, 900.0), (1, 38, 300.0), (41, 0, 900.0)]
+)
 @pytest.mark.parametrize("returns", [True, False])
-def test_who_waits_gives_up_when_it_would_no_longer_be_home_in_time(until_s, returns):
+def test_who_waits_gives_up_when_it_would_no_longer_be_home_in_time(at, target, until_s, returns):
     robot = Robot(hours=1.0, detection=1.0, returns=returns)
-    team, worker = leaving(Day(Aisles.of(rectangle(8, 8)), robot=robot), 1, 38)
+    team, worker = leaving(Day(Aisles.of(rectangle(8, 8)), robot=robot), at, target)
     until(team, until_s)
     team.holder[worker.claims] = 2
     team._out(worker, 280.0)
     assert team.waiting == [worker]
+    assert worker.holds == team.corridor[at]
+    assert team.holder[worker.holds] == 0
     ((at_s, _, _, k, event),) = team.events
     assert (k, event) == (0, team._give_up)
-    home_s = worker.seconds(38, GATE) if returns else 0.0
+    home_s = worker.seconds(target, GATE) if returns else 0.0
     assert at_s == pytest.approx(max(280.0, until_s - home_s - 40.0 - worker.onward_s()))
     # on the way home one waits as long as it takes
     team, worker = leaving(
@@ -687,8 +701,9 @@ def test_who_waits_gives_up_when_it_would_no_longer_be_home_in_time(until_s, ret
     assert (team.waiting, team.events) == ([worker], [])
 
 
-@pytest.mark.parametrize("target", [9, 22, 63, GATE])
-@pytest.mark.parametrize("at", [1, 6])
+@pytest.mark.parametrize(
+    ("at", "target"), [(0, GATE), (0, 22), (1, 9), (6, 63), (6, GATE), (41, 0)]
+)
 def test_one_comes_out_of_its_aisle_after_the_metres_to_its_end(at, target):
     plain = Robot(hours=1.0, row_change_s=0.0, turn_180_s=0.0, detection=1.0)
     team, worker = standing(
@@ -728,6 +743,11 @@ def test_who_hears_of_a_find_beside_its_own_aisles_plans_anew_and_nobody_else(se
         for r, c in beside if finder.done[0].found else []:
             if 0 <= r < 6 and 0 <= c < 8 and (k := owner[team.corridor[8 * r + c]]) != finder.k:
                 expected.add((int(k), 100.0))
+    for p in range(48):
+        row, number = divmod(p, 8)
+        beside = [(row, number - 1), (row, number + 1), (row - 1, number), (row + 1, number)]
+        near = [8 * r + c for r, c in beside if 0 <= r < 6 and 0 <= c < 8]
+        assert sorted(team._adjacent([p]).tolist()) == sorted(near)
     team._hear(team.workers[0], 100.0)
     assert sorted(anew) == ([] if shared else sorted(expected))
     assert [told.plant for told in team.news.known] == [own[0] for own in plants]
@@ -753,7 +773,7 @@ def test_who_plans_anew_is_asked_in_the_scene_that_it_stands_in():
     other.done = [StopMade(9, 60.0, 100.0, True, 1.0, 0.0)]
     worker.done = [StopMade(30, 70.0, 110.0, True, 0.8, 0.0)]
     worker.at, worker.next = 30, 3
-    team._walk(worker, 400.0)
+    team._ready(worker, 400.0)
     ((told, would_find),) = asked
     # of the other's find it has not heard yet
     believed = day.learn(np.array([30], np.int32), np.array([True]), np.array([0.8]))
@@ -776,12 +796,12 @@ def test_finds_are_heard_of_by_those_who_work_together_and_go_by_what_is_believe
     together, name, learns
 ):
     day = Day(Aisles.of(rectangle(6, 8)))
-    posts = [Posted(replace(day.scene(), at=at), 0.0, day.would_find) for at in (17, GATE, 18)]
+    posts = [Posted(replace(day.scene(), at=at), 0.0, day.would_find) for at in (0, GATE, 2)]
     learn = day.learn if learns else None
     team = _TeamDay(posts, sampler(name), Teamwork(together=together), learn, None)
     assert team.news.heard == (together and name == "adaptive" and learns)
     # who begins in an aisle has it, the first of two
-    aisle = int(team.corridor[17])
+    aisle = int(team.corridor[0])
     assert np.flatnonzero(team.holder >= 0).tolist() == [aisle]
     assert team.holder[aisle] == 0
     assert [worker.holds for worker in team.workers] == [aisle, -1, aisle]
@@ -819,3 +839,49 @@ def test_in_a_day_of_all_each_stop_keeps_its_own_figures(seed):
     whole = merged(works, starts_s)
     columns = whole.plant, whole.arrive_s, whole.found, whole.stop_s, whole.detects
     assert list(zip(*columns, strict=True)) == [stop[1:] for stop in sorted(stops)]
+    assert whole.end_s == max(w.end_s + at for w, at in zip(works, starts_s, strict=True))
+
+
+@pytest.mark.parametrize("at", [GATE, 0, 17])
+@pytest.mark.parametrize("returns", [True, False])
+def test_who_waits_in_vain_and_need_not_drive_home_has_ended_its_day_where_it_stands(at, returns):
+    robot = Robot(hours=1.0, detection=1.0, returns=returns)
+    team, worker = leaving(Day(Aisles.of(rectangle(8, 8)), robot=robot), at, 38)
+    worker.post = worker.post._replace(starts_s=20.0)
+    if at >= 0:
+        worker.done = [StopMade(at, 60.0, 100.0, False, 1.0, 0.0)]
+    team.waiting = [worker]
+    # it is not asked twice, and not once it drives
+    team._give_up(team.workers[1], 900.0)
+    assert team.waiting == [worker]
+    team._give_up(worker, 900.0)
+    ends = at < 0 or not returns
+    assert worker.over == ends
+    assert team.waiting == ([] if ends else [worker])
+    assert worker.target() == GATE
+    if ends:
+        assert worker.end_s == (20.0 if at < 0 else 100.0)
+        assert team.events == []
+
+
+def test_who_finds_something_tells_and_who_finds_nothing_does_not():
+    team, worker = standing(Day(Aisles.of(rectangle(4, 16))), 1, [33, 35, 38])
+    worker.plan = replace(worker.plan, found=np.array([True, False, True]))
+    told = []
+    team._tell = lambda one, at_s: told.append((one.k, at_s))
+    team._visit(worker, 100.0, 0.0)
+    assert told == [(0, worker.done[1].leave_s), (0, worker.done[3].leave_s)]
+
+
+@pytest.mark.parametrize("more", [True, False])
+def test_who_is_given_other_aisles_plans_again_and_goes_past_those_that_stay_shut(more):
+    team, worker = standing(Day(Aisles.of(rectangle(8, 8))), 1, [])
+    plans = [[17, 33, 50]] if more else [[]]
+    team._shared_anew = lambda _: more
+    team._walk = lambda one, _: setattr(one, "plan", stopping(team, plans.pop()))
+    other = team.workers[1]
+    other.over, team.holder[team.corridor[17]] = True, 1
+    team._ready(worker, 100.0)
+    assert plans == ([] if more else [[]])
+    assert worker.target() == (33 if more else GATE)
+    assert worker.next == int(more)

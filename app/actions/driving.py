@@ -30,14 +30,7 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
         required=True, format_func=texts.DRIVE_ROBOTS.__getitem__,
     )  # fmt: skip
     share = widget_memory.show(
-        st.number_input,
-        texts.DRIVE_SHARE,
-        0.1,
-        50.0,
-        step=0.5,
-        key="drive_share",
-        default=2.0,
-        format=widget_memory.SHORTEST,
+        st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key="drive_share", default=2.0
     )
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)

@@ -76,4 +76,5 @@ def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> Non
     if progress.inspected:
         ages = charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE))
         st.altair_chart(ages, alt=texts.ROW_AGES)
-    st.caption(texts.NEVER_ROWS.format(n=never, all=len(np.unique(line))))
+    said = texts.NEVER_ROWS.format(n=never, all=len(np.unique(line)))
+    st.caption(said if never else texts.EVERY_ROW)

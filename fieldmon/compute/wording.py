@@ -18,7 +18,7 @@ class Worded(str):  # noqa: SLOT000 - it holds what it was made of
     Attributes
     ----------
     words
-        The sentence with its blanks, ``"{n} plants"``.
+        The sentence with its blanks, ``"{n:,} plants"``.
     values
         What stands in the blanks: numbers, names, other `Worded`.
     one
@@ -150,8 +150,8 @@ def first_few(names: Sequence[str], most: int) -> str:
 
 
 def counted(number: int, thing: str) -> Worded:
-    """Return so many things in words: "1 plant", "12 plants"."""
-    one, many = f"{{n}} {thing}", f"{{n}} {thing}s"
+    """Return so many things in words: "1 plant", "1,320 plants"."""
+    one, many = f"{{n:,}} {thing}", f"{{n:,}} {thing}s"
     made = worded(one if number == 1 else many, n=number)
     made.words, made.one, made.number = many, one, int(number)
     return made

@@ -61,6 +61,6 @@ def season(columns: list, pest: PestInWeather | None = None) -> tuple[int, float
     if pest is not None:
         third.caption(texts.NIGHTS_OF_PEST.format(pest=pest_figures.title(pest.pest)))
         return int(n_days), share / 100, 0.0
-    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=5.0, key="rate", default=10.0,
+    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=0.5, key="rate", default=10.0,
                 help=texts.SPREAD_HELP)  # fmt: skip
     return int(n_days), share / 100, rate / 100

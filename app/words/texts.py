@@ -272,7 +272,7 @@ SPREAD_HELP = "Chance a night that an infested plant infests each plant next to 
 NIGHTS_OF_PEST = "Spreads as the chosen pest, by its weather where that is known: {pest}."
 SEED_HELP = "The same seed gives the same season."
 DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"
-COMPARED = "Who chooses the plants, compared"
+COMPARED = "Ways to choose the plants"
 BOTH_FACES = "Inspect both faces of each row"
 SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really infested"
 LEFT = "Infested left"
@@ -825,7 +825,7 @@ COMPARE_INTRO = (
     "Seasons are simulated on this plot: the start is drawn from today's chance map, and every "
     "strategy meets the same insects. Less loss (infested plants times days) is better."
 )
-STRATEGY_SAMPLERS, STRATEGY_HOURS = "Who chooses the plants", "Working hours"
+STRATEGY_SAMPLERS, STRATEGY_HOURS = "Ways to choose the plants", "Working hours"
 WHOSE_DAY = "Whose day"
 STRATEGY_INSPECTION_S, STRATEGY_ROBOTS = "Seconds at a plant", "Robots"
 STRATEGY_ROBOTS_HELP = (

@@ -120,14 +120,14 @@ def estimate(value: float) -> Worded:
 
 
 def hours_figure(value_h: float) -> Worded:
-    """Return hours to the tenth, whole ones without.
+    """Return hours to the tenth, whole ones without; what takes time takes a tenth or more.
 
     Examples
     --------
-    >>> hours_figure(11.98), hours_figure(3.46)
-    ('12', '3.5')
+    >>> hours_figure(11.98), hours_figure(3.46), hours_figure(0.01), hours_figure(0)
+    ('12', '3.5', '0.1', '0')
     """
-    return figure(round(value_h, 1), "g")
+    return figure(max(round(value_h, 1), 0.1) if value_h > 0 else round(value_h, 1), "g")
 
 
 def joined(between: str, parts: Iterable[str]) -> Worded:

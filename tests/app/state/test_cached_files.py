@@ -1,8 +1,9 @@
 """What files come to, read once for all who bring the same."""
 
-import numpy as np
+import pytest
 
 from app.state import cached_files
+from fieldmon.errors import PlotError
 from tests.app.chosen import a_plot
 
 
@@ -15,6 +16,7 @@ def test_what_an_answer_leads_to_is_tried_once_for_a_key():
 
 def test_directions_of_plants_are_kept_by_the_key_of_their_plot():
     plants = a_plot().grid.lonlat()
-    found = cached_files.directions("directions of a square", plants)
-    assert cached_files.directions("directions of a square", np.empty((0, 2))) is found
-    assert len(found) > 0
+    found = cached_files.directions("a square", plants)
+    assert cached_files.directions("a square", plants[:1]) == found
+    with pytest.raises(PlotError, match="2 plants or more"):
+        cached_files.directions("a single plant", plants[:1])

@@ -197,7 +197,7 @@ def test_what_the_library_gives_says_itself_in_one_short_line():
         fm.read_records("sample_data/mite_records.csv", plot): "<Observations: 329 records>",
         day: f"<DayPlan: {len(day.route)} of 3,825 plants, {day.route.drive_m / 1000:.2f} km, ",
         day.route: f"<Route: {len(day.route)} stops, ",
-        start: f"<Start: {start.infested.sum()} of 3825 plants infested>",
+        start: f"<Start: {start.infested.sum()} of 3,825 plants infested>",
         simulated: "<SeasonMetrics: 2 days, ",
         season: "<Season season.gpkg: <Plot Gate: 3,825 plants in 45 rows>>",
         season.history.inspections: "<Inspections: 2 inspections, 1 find>",

@@ -9,6 +9,7 @@ from fieldmon.compute.jit import loop
 from fieldmon.plot.layout import rectangle
 from fieldmon.samplers.adaptive.arrays import BLOCK
 from fieldmon.samplers.adaptive.rows import (
+    _pays_from,
     best_time,
     mark_changed,
     most_in,
@@ -168,3 +169,12 @@ def test_a_plant_that_changed_changes_what_the_next_is_worth_after_it_too(change
     assert (np.flatnonzero(now[1] != before[1]) == changed).all()
     differ = np.flatnonzero(np.array(now[2]) != before[2])
     assert set(differ) == {changed, changed + 1} & set(plants)
+
+
+@pytest.mark.parametrize("times", [ONE_TIME, QUICK, TIMES])
+def test_no_plant_that_pays_by_a_rounding_is_passed_over(times):
+    for price in (1e-4, 0.0031, 0.07):
+        pays = _pays_from.py_func(times, price)
+        # of what is just worth its seconds the best inspection gains nothing
+        assert best_time.py_func(times, pays * (1.0 + 1e-6), price)[0] > 0.0
+        assert best_time.py_func(times, pays, price)[0] < 0.0

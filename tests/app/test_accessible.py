@@ -220,6 +220,10 @@ def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today
         box.press("Control+a")
         page.keyboard.type("2,5")
         assert box.input_value() == typed
+    # turned at once, while the box still holds what was typed last
+    open_room(page, texts.ROOMS["today"])
+    open_room(page, texts.ROOMS["ahead"])
+    assert box.input_value() == "25"
 
 
 def test_strategies_are_compared_and_a_plot_is_brought_by_keys_alone(today):

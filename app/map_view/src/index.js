@@ -21,6 +21,7 @@ import { ofRuns, runsOf, withRow } from "./select.js";
 import { covered, keepShape, listed } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
+import { waitForBoxes } from "./turning.js";
 import { besideBox, metresPerPixel } from "./view.js";
 
 const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600, TURN_MS = 300;
@@ -34,6 +35,7 @@ const MARGIN_PX = 8, MOST_ASKED = 4000;
 class MapPage {
   constructor(parent) {
     takeCommas();
+    waitForBoxes();
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(style);
     const root = parent.getRootNode();

@@ -36,5 +36,13 @@ def test_shares_are_in_percent_and_plants_are_numbers(shown):
     ]
 
 
+def test_how_far_insects_jump_is_said_where_they_may(shown):
+    length = Learnt("length of jumps", 3.4, 3.1, 3.8)
+    for chance, lines in ((0.004, 1), (0.3, 2)):
+        assert (
+            len(shown(Learnt("jumps beyond neighbours", chance, chance, chance), length)) == lines
+        )
+
+
 def test_a_season_that_traces_to_neighbours_only_says_so(shown):
     assert shown() == [texts.NOT_LEARNT]

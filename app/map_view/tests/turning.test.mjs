@@ -1,0 +1,33 @@
+// What was typed last is sent before the page is turned.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { waitForBoxes } from "../src/turning.js";
+
+test("a link waits for a box that was left for it, and only for that", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  let now = 1000;
+  context.mock.method(performance, "now", () => now);
+  const heard = {};
+  globalThis.document = { addEventListener: (kind, hear) => { heard[kind] = hear; } };
+  waitForBoxes();
+  const turned = [], link = { click: () => turned.push(now) };
+  const press = (more = {}) => {
+    let stopped = false;
+    heard.click({ target: { closest: () => link }, preventDefault() {}, stopImmediatePropagation() { stopped = true; }, ...more });
+    return stopped;
+  };
+  assert.equal(press(), false, "no box was left");
+  heard.focusout({ target: { tagName: "BUTTON" } });
+  assert.equal(press(), false);
+  heard.focusout({ target: { tagName: "INPUT" } });
+  assert.equal(press({ ctrlKey: true }), false);
+  assert.equal(press({ target: { closest: () => null } }), false);
+  assert.equal(press(), true);
+  assert.deepEqual(turned, []);
+  now += 250;
+  context.mock.timers.tick(250);
+  assert.deepEqual(turned, [1250]);
+  assert.equal(press(), false, "it is turned then");
+});

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import progress
+from fieldmon.compute.ranges import SEED
 from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
@@ -22,15 +24,24 @@ def routes(  # noqa: PLR0913 - one a command-line option
         list[Path] | None, typer.Argument(help="Reward matrices (CSV, one line per row).")
     ] = None,
     budget: Annotated[
-        list[float] | None, typer.Option(help="Share of the full budget; repeat for more.")
+        list[float] | None,
+        typer.Option(
+            help="Share of the full budget; repeat for more.",
+            callback=within(0, 1, above=True, said="above 0 and 1 at most"),
+        ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Draw the published families from this seed, too.")
+        int | None,
+        typer.Option(
+            help="Draw the published families from this seed, too.", callback=within(SEED)
+        ),
     ] = None,
     *,
     team: Annotated[
         list[int] | None,
-        typer.Option(min=1, help="Size of a team, each with the budget; repeat for more."),
+        typer.Option(
+            help="Size of a team, each with the budget; repeat for more.", callback=within(1, 1000)
+        ),
     ] = None,
     maps: Annotated[
         bool, typer.Option(help="With the families, maps of 240 x 500 and 274 x 214 plants.")
@@ -45,7 +56,11 @@ def routes(  # noqa: PLR0913 - one a command-line option
         ),
     ] = False,
     solver_seconds: Annotated[
-        float, typer.Option(help="Seconds for PyVRP and for the mixed-integer program.")
+        float,
+        typer.Option(
+            help="Seconds for PyVRP and for the mixed-integer program.",
+            callback=within(0, 86_400, above=True, unit=" s"),
+        ),
     ] = 10.0,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the tables (routes.csv, routes.md).")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.arguments import must_hold_numbers
 from fieldmon.compute.wording import worded
+from fieldmon.decisions.doses import WATER_L_HA
 from fieldmon.decisions.labels import checked_waits
 from fieldmon.errors import SettingError
 
@@ -91,7 +92,7 @@ class Application:
     def __post_init__(self) -> None:
         must_hold_numbers(self, "A treatment's")
         checked_waits(self.waiting_days, self.reentry_hours)
-        if self.water_l_ha is not None and not 0.0 < self.water_l_ha < 1e6:
+        if self.water_l_ha is not None and WATER_L_HA.broken(self.water_l_ha):
             raise SettingError(
                 worded(
                     "Water must be above 0 litres a hectare, but it is {water_l_ha:g}.",

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.infestation.observations import ABSENT, MOST_COUNTED, PRESENT, UNKNOWN
+from fieldmon.compute.ranges import MOST_COUNTED
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.result_words import meaning
 

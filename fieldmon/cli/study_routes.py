@@ -15,6 +15,7 @@ from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
     from fieldmon.studies.routes.instances import Instance
+    from fieldmon.studies.routes.study import MethodOutcome
 
 _ALWAYS = ("GR", "GPR", "GFR", "OFR", "HPR")
 
@@ -68,6 +69,8 @@ def routes(  # noqa: PLR0913 - one a command-line option
 ) -> None:
     """Compare walks along rows in the published model: unit steps, back to the corner.
 
+    A team takes up to a minute for each budget and matrix. Ctrl-C keeps what is done by then.
+
     Example: fieldmon study routes rewards.csv --budget 0.1 --budget 0.5 -o study
     """
     from fieldmon.studies.routes.study import (
@@ -83,16 +86,27 @@ def routes(  # noqa: PLR0913 - one a command-line option
 
     can_be_folder(output)
     shares = budget or [0.1, 0.5]
-    if not all(0.0 < share <= 1.0 for share in shares):
-        raise SettingError(f"A budget must be a share above 0 and up to 1, but it is {shares}.")
     instances = _instances(files, seed, maps=maps)
     methods = [*_ALWAYS, *([PYVRP] if pyvrp else []), *([MILP] if milp else [])]
-    made, teams = [], []
-    with progress("Instances", len(instances)) as bar:
-        for instance in instances:
-            made += list(run(instance, shares, methods, solver_seconds))
-            teams += list(run_teams(instance, shares, team or []))
-            bar.update(1)
+    made: list[MethodOutcome] = []
+    teams: list[MethodOutcome] = []
+    each = len(shares) * (1 + len(methods) + len(team or []))
+    with progress("Walks", each * len(instances)) as bar:
+        try:
+            for done, instance in enumerate(instances, start=1):
+                walks = run(instance, shares, methods, solver_seconds)
+                for kept, outcomes in (
+                    (made, walks),
+                    (teams, run_teams(instance, shares, team or [])),
+                ):
+                    for one in outcomes:
+                        kept.append(one)
+                        bar.update(1)
+                bar.update(done * each - bar.pos)  # not every method plays every matrix
+        except KeyboardInterrupt:
+            if not made:
+                raise
+            typer.echo("Stopped: this is what was done.")
     for sentence in (*sentences(made), *team_sentences(teams)):
         typer.echo(sentence)
     write_all(output, {"routes.csv": csv_text([*made, *teams]), "routes.md": table(made)})

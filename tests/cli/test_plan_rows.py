@@ -248,3 +248,13 @@ def test_a_bearing_of_the_file_that_cannot_be_is_refused_unless_another_is_given
     code, out, err, _ = run(*plan, "--bearing", "20")
     assert code == 0, err
     assert "bearing 20.0 degrees" in out
+
+
+def test_a_single_plant_is_refused_with_what_plans_it(run, tmp_path):
+    (tmp_path / "one.csv").write_text("lon,lat\n35.1512345,30.3612345\n")
+    plan = "plan", "--plants", "one.csv", "--hours", "1", "--no-bound", "-o", "r.geojson"
+    code, _, err, made = run(*plan)
+    assert (code, made) == (2, set())
+    assert "--no-rows" in err.splitlines()[-1]
+    code, _, err, _ = run(*plan, "--no-rows")
+    assert code == 0, err

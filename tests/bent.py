@@ -14,11 +14,12 @@ import shapely
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
+from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
+from fieldmon.plot.row_lines import Ground, RowLines
 
 if TYPE_CHECKING:
     from pathlib import Path

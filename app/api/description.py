@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from fieldmon.compute.ranges import MOST_COUNTED
 from fieldmon.infestation.inspections import RESULT_NAMES
-from fieldmon.infestation.observations import MOST_COUNTED
 from fieldmon.monitoring import findings, photos
 
 #: findings in one request

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.app_package import app_package
+from fieldmon.cli.numbers import within
 from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import SettingError
 
@@ -18,7 +19,9 @@ _HERE = "127.0.0.1"
 
 
 def open_app(  # noqa: PLR0913, PLR0917 - the command's options
-    port: Annotated[int, typer.Option(help="Port on this machine.", min=1, max=65535)] = 8501,
+    port: Annotated[
+        int, typer.Option(help="Port on this machine.", callback=within(1, 65535))
+    ] = 8501,
     address: Annotated[
         str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
     ] = _HERE,

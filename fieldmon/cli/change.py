@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
-    MOST_EVERY,
     Hours,
     Look,
     Robots,
@@ -23,7 +23,9 @@ from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
+from fieldmon.compute.ranges import CHANCE
 from fieldmon.errors import SettingError
+from fieldmon.samplers import EVERY
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
@@ -37,7 +39,8 @@ class ChangeOptions:
     season: SeasonFile
     sampler: Annotated[str | None, typer.Option(help="What chooses the plants.")] = None
     every: Annotated[
-        int | None, typer.Option(max=MOST_EVERY, help="Every N-th plant or stop, as in plan.")
+        int | None,
+        typer.Option(help="Every N-th plant or stop, as in plan.", callback=within(EVERY)),
     ] = None
     hours: Hours = None
     look: Look = None
@@ -49,7 +52,10 @@ class ChangeOptions:
     )
     spread: Annotated[
         float | None,
-        typer.Option(help="Believed chance per night that a plant infests its neighbour."),
+        typer.Option(
+            help="Believed chance per night that a plant infests its neighbour.",
+            callback=within(CHANCE),
+        ),
     ] = None
     trace: Annotated[
         bool | None,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Contact,
@@ -27,6 +28,7 @@ from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import CHANCE, DAYS, PAIRED, SHARE
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -53,7 +55,10 @@ class CompareOptions:
     robots: Annotated[str, typer.Option(help="How many robots: 1-5, or 1,2,4.")] = "1-3"
     hectares: Annotated[
         list[float] | None,
-        typer.Option(help="Size in hectares of a square plot, instead of a file; repeat for more."),
+        typer.Option(
+            help="Size in hectares of a square plot, instead of a file; repeat for more.",
+            callback=within(0, 1000, above=True, unit=" ha"),
+        ),
     ] = None
     sampler: Annotated[
         list[SamplerName] | None,
@@ -69,13 +74,18 @@ class CompareOptions:
     contact: Contact = 30.0
     least_gain: LeastGain = 0.5
     passing: Passing = None
-    days: Annotated[int, typer.Option(help="Working days.")] = 25
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons of each.")] = 10
-    infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
+    days: Annotated[int, typer.Option(help="Working days.", callback=within(DAYS))] = 25
+    seeds: Annotated[
+        int, typer.Option(help="Simulated seasons of each.", callback=within(PAIRED))
+    ] = 10
+    infested: Annotated[
+        float, typer.Option(help="Share of plants infested at the start.", callback=within(SHARE))
+    ] = 0.02
     spread: Annotated[
         list[float] | None,
         typer.Option(
-            help="Chance per night; repeat for more. 0.1 if neither it nor --pest is given."
+            help="Chance per night; repeat for more. 0.1 if neither it nor --pest is given.",
+            callback=within(CHANCE),
         ),
     ] = None
     to: Annotated[

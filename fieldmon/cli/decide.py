@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.times import day
+from fieldmon.compute.arguments import RATE_L_HA
+from fieldmon.compute.ranges import MOST_COUNTED, SURE
+from fieldmon.decisions.sprayer import COSTS, SWITCHED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -25,13 +29,28 @@ Level = Annotated[
 Own = Annotated[
     Path | None, typer.Option(help="CSV of thresholds of your own: name,measure,level,source.")
 ]
-Sure = Annotated[float, typer.Option(help="How sure a verdict must be, 0.5 to 1.")]
-Leaves = Annotated[int, typer.Option(help="Leaves inspected, for a threshold of leaves.", min=0)]
+Sure = Annotated[
+    float, typer.Option(help="How sure a verdict must be, 0.5 to 1.", callback=within(SURE))
+]
+Leaves = Annotated[
+    int,
+    typer.Option(
+        help="Leaves inspected, for a threshold of leaves.", callback=within(0, MOST_COUNTED)
+    ),
+]
 Counted = Annotated[
     float,
-    typer.Option(help="Of these leaves: how many are infested, or animals counted on them.", min=0),
+    typer.Option(
+        help="Of these leaves: how many are infested, or animals counted on them.",
+        callback=within(0, MOST_COUNTED),
+    ),
 ]
-Rate = Annotated[float, typer.Option(help="Litres per hectare in the zones, for the files.")]
+Rate = Annotated[
+    float,
+    typer.Option(
+        help="Litres per hectare in the zones, for the files.", callback=within(RATE_L_HA)
+    ),
+]
 Product = Annotated[str, typer.Option(help="What is sprayed, for the files.")]
 Outputs = Annotated[
     list[Path] | None,
@@ -44,24 +63,75 @@ Outputs = Annotated[
 Presence = Annotated[
     bool, typer.Option("--presence", help="For a mean: --counted is the number of infested leaves.")
 ]
-Boom = Annotated[float, typer.Option(help="Width of the boom, metres; with --sections.", min=0)]
-Sections = Annotated[int, typer.Option(help="Sections of the boom.", min=1)]
+Boom = Annotated[
+    float,
+    typer.Option(help="Width of the boom, metres; with --sections.", callback=within(0, 1000)),
+]
+Sections = Annotated[int, typer.Option(help="Sections of the boom.", callback=within(1, 10_000))]
 Ring = Annotated[
-    int, typer.Option(help="Knapsack: how many plants around each are sprayed with it.", min=0)
+    int,
+    typer.Option(
+        help="Knapsack: how many plants around each are sprayed with it.",
+        callback=within(SWITCHED["ring"]),
+    ),
 ]
 Reserve = Annotated[
-    float, typer.Option(help="Share of the plot that is never sprayed, for predators, 0 to 1.")
+    float,
+    typer.Option(
+        help="Share of the plot that is never sprayed, for predators, 0 to 1.",
+        callback=within(COSTS["reserve"]),
+    ),
 ]
 Rows = Annotated[
-    int, typer.Option(help="Rows that a section covers; 0: a knapsack sprayer.", min=0)
+    int,
+    typer.Option(
+        help="Rows that a section covers; 0: a knapsack sprayer.", callback=within(SWITCHED["rows"])
+    ),
 ]
-LeastOn = Annotated[float, typer.Option(help="Least length of a zone along the rows, metres.")]
-LeastOff = Annotated[float, typer.Option(help="Least gap between two zones, metres.")]
-PerHa = Annotated[float, typer.Option(help="Cost of product, water and work per hectare.")]
-PerZone = Annotated[float, typer.Option(help="Cost of switching on and off, per zone.")]
-Loss = Annotated[float, typer.Option(help="Loss per plant that is infested for a day.")]
-Days = Annotated[float, typer.Option(help="Days that an untreated plant stays infested.")]
-Works = Annotated[float, typer.Option(help="Chance that treating cleans a plant, 0 to 1.")]
+LeastOn = Annotated[
+    float,
+    typer.Option(
+        help="Least length of a zone along the rows, metres.",
+        callback=within(SWITCHED["least_on_m"]),
+    ),
+]
+LeastOff = Annotated[
+    float,
+    typer.Option(
+        help="Least gap between two zones, metres.", callback=within(SWITCHED["least_off_m"])
+    ),
+]
+PerHa = Annotated[
+    float,
+    typer.Option(
+        help="Cost of product, water and work per hectare.", callback=within(COSTS["per_ha"])
+    ),
+]
+PerZone = Annotated[
+    float,
+    typer.Option(
+        help="Cost of switching on and off, per zone.", callback=within(COSTS["per_zone"])
+    ),
+]
+Loss = Annotated[
+    float,
+    typer.Option(
+        help="Loss per plant that is infested for a day.",
+        callback=within(COSTS["infested_plant_day"]),
+    ),
+]
+Days = Annotated[
+    float,
+    typer.Option(
+        help="Days that an untreated plant stays infested.", callback=within(COSTS["days"])
+    ),
+]
+Works = Annotated[
+    float,
+    typer.Option(
+        help="Chance that treating cleans a plant, 0 to 1.", callback=within(COSTS["works"])
+    ),
+]
 
 _LEAVES_OF_PLANTS = (
     "--leaves, --counted and --presence answer a threshold of leaves, but {} is a share of the "

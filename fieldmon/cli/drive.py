@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fieldmon.cli.messages import tell_assumed
+from fieldmon.cli.numbers import refusing, within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Every,
@@ -28,6 +29,7 @@ from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.season_files import refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
+from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -62,9 +64,20 @@ SteeringName = Annotated[
         "which turns at corners by arcs and shunts."
     ),
 ]
+
+
+def _too_rough(height_m: float) -> str:
+    from fieldmon.drive.ground import ROUGH_M
+
+    return ROUGH_M.broken(height_m)
+
+
 Rough = Annotated[
     float,
-    typer.Option(help="With mujoco: height of bumps in metres (standard deviation)."),
+    typer.Option(
+        help="With mujoco: height of bumps in metres (standard deviation).",
+        callback=refusing(_too_rough),
+    ),
 ]
 GroundHeights = Annotated[
     Path | None, typer.Option("--ground", help="With mujoco: raster of heights (GeoTIFF), metres.")
@@ -110,11 +123,20 @@ class DriveOptions:
     every: Every = None
     on: WorkDate = None
     infested: Annotated[
-        float, typer.Option(help="Share of plants that a simulated robot finds infested.")
+        float,
+        typer.Option(
+            help="Share of plants that a simulated robot finds infested.", callback=within(CHANCE)
+        ),
     ] = 0.02
-    seed: Annotated[int, typer.Option(help="Seed of simulated insects and noise.")] = 1
+    seed: Annotated[
+        int, typer.Option(help="Seed of simulated insects and noise.", callback=within(SEED))
+    ] = 1
     gnss: Annotated[
-        float, typer.Option(help="Noise of simulated positions, metres (standard deviation).")
+        float,
+        typer.Option(
+            help="Noise of simulated positions, metres (standard deviation).",
+            callback=within(0, 100, unit=" metres"),
+        ),
     ] = 0.0
     robot_model: RobotModel = None
     steering: SteeringName = "differential"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Contact,
@@ -32,6 +33,7 @@ from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
@@ -68,10 +70,13 @@ class InitOptions:
         float | None,
         typer.Option(
             help="Believed chance per night that a plant infests its neighbour: 0.02 if neither "
-            "it nor --pest is given."
+            "it nor --pest is given.",
+            callback=within(CHANCE),
         ),
     ] = None
-    seed: Annotated[int, typer.Option(help="Seed for samplers that draw at random.")] = 1
+    seed: Annotated[
+        int, typer.Option(help="Seed for samplers that draw at random.", callback=within(SEED))
+    ] = 1
     robots: Robots = None
     contact: Contact = 0.0
     least_gain: LeastGain = 0.5

@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.named_values import Options, chosen, chosen_of_file
+from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.cli.sampler_names import SamplerName
 from fieldmon.errors import SettingError
-from fieldmon.samplers import SAMPLERS, kind_of, sampler
+from fieldmon.planning.members import TEAMWORK
+from fieldmon.plot.planting import PLANTED
+from fieldmon.plot.robot import KM_H
+from fieldmon.samplers import EVERY, SAMPLERS, kind_of, sampler
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,8 +27,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
-#: no plot has more plants than that
-MOST_EVERY = 10_000_000
 PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
 
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
@@ -111,14 +113,33 @@ ContoursChoices = Annotated[
 ]
 Bearing = Annotated[
     float | None,
-    typer.Option(help="Direction of the rows, degrees from north; found if not given."),
+    typer.Option(
+        help="Direction of the rows, degrees from north; found if not given.",
+        callback=within(PLANTED["row_bearing_deg"]),
+    ),
 ]
-RowSpacing = Annotated[float | None, typer.Option(help="Metres from row to row.")]
-PlantSpacing = Annotated[float | None, typer.Option(help="Metres from plant to plant in a row.")]
-Headland = Annotated[float | None, typer.Option(help="Metres without plants at both row ends.")]
+RowSpacing = Annotated[
+    float | None,
+    typer.Option(help="Metres from row to row.", callback=within(PLANTED["row_spacing_m"])),
+]
+PlantSpacing = Annotated[
+    float | None,
+    typer.Option(
+        help="Metres from plant to plant in a row.", callback=within(PLANTED["plant_spacing_m"])
+    ),
+]
+Headland = Annotated[
+    float | None,
+    typer.Option(
+        help="Metres without plants at both row ends.", callback=within(PLANTED["headland_m"])
+    ),
+]
 HalfCanopy = Annotated[
     float | None,
-    typer.Option(help="Metres that plants reach to each side of their middle; for --width."),
+    typer.Option(
+        help="Metres that plants reach to each side of their middle; for --width.",
+        callback=within(PLANTED["half_canopy_m"]),
+    ),
 ]
 BothFaces = Annotated[
     bool, typer.Option("--both-faces", help="Inspect both faces of each row, each from its aisle.")
@@ -129,12 +150,31 @@ NoRows = Annotated[
 ]
 Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
 Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
-Hours = Annotated[float | None, typer.Option(help="Working hours per day.")]
-Look = Annotated[float | None, typer.Option("--look", help="Seconds to inspect a plant.")]
-Speed = Annotated[float | None, typer.Option(help="Driving speed, km/h.")]
-RowChange = Annotated[float | None, typer.Option(help="Seconds added for changing rows.")]
+Hours = Annotated[
+    float | None, typer.Option(help="Working hours per day.", callback=of_robot("hours", 1.0, " h"))
+]
+Look = Annotated[
+    float | None,
+    typer.Option(
+        "--look", help="Seconds to inspect a plant.", callback=of_robot("look_s", 1.0, " s")
+    ),
+]
+Speed = Annotated[
+    float | None,
+    typer.Option(help="Driving speed, km/h.", callback=of_robot("speed_m_s", KM_H, " km/h")),
+]
+RowChange = Annotated[
+    float | None,
+    typer.Option(
+        help="Seconds added for changing rows.", callback=of_robot("row_change_s", 1.0, " s")
+    ),
+]
 Turn = Annotated[
-    float | None, typer.Option(help="Seconds to turn to the other side of the same aisle.")
+    float | None,
+    typer.Option(
+        help="Seconds to turn to the other side of the same aisle.",
+        callback=of_robot("turn_180_s", 1.0, " s"),
+    ),
 ]
 Robots = Annotated[
     str | None,
@@ -145,29 +185,39 @@ Robots = Annotated[
 ]
 Contact = Annotated[
     float,
-    typer.Option(min=0.0, help="Minutes between contacts; 0: the team learns of finds at once."),
+    typer.Option(
+        help="Minutes between contacts; 0: the team learns of finds at once.",
+        callback=within(0, 24 * 60, unit=" minutes"),
+    ),
 ]
 LeastGain = Annotated[
     float,
-    typer.Option(min=0.0, help="Least gain, in finds, for which somebody is sent elsewhere."),
+    typer.Option(
+        help="Least gain, in finds, for which somebody is sent elsewhere.",
+        callback=within(TEAMWORK["least_gain"]),
+    ),
 ]
 Passing = Annotated[
     float | None,
     typer.Option(
-        min=0.0,
         help="With --robots: metres of headland that two need to pass each other; nobody meets "
         "head-on where it is narrower. Without it they may pass each other anywhere.",
+        callback=within(TEAMWORK["passing_m"]),
     ),
 ]
 Width = Annotated[
     float | None,
     typer.Option(
-        help="Width of the robot, metres: it stays off canopies and out of narrow aisles."
+        help="Width of the robot, metres: it stays off canopies and out of narrow aisles.",
+        callback=of_robot("width_m"),
     ),
 ]
 Length = Annotated[
     float | None,
-    typer.Option(help="Length of the robot, metres, for its turns; default: its width."),
+    typer.Option(
+        help="Length of the robot, metres, for its turns; default: its width.",
+        callback=of_robot("length_m"),
+    ),
 ]
 RobotTimesName = Annotated[
     str | None,
@@ -188,8 +238,8 @@ OneSampler = Annotated[SamplerName, typer.Option(help="What chooses the plants."
 Every = Annotated[
     int | None,
     typer.Option(
-        max=MOST_EVERY,
         help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3).",
+        callback=within(EVERY),
     ),
 ]
 Outputs = Annotated[
@@ -219,19 +269,6 @@ LastDate = Annotated[
 StartTime = Annotated[str, typer.Option(help="Local time at which work starts, HH:MM.")]
 
 
-#: settings of `Robot`: the option of each, how many of its units make one of the setting's, and
-#: the unit where a rule does not say it
-_WORKER_OPTIONS = {
-    "hours": ("hours", 1.0, " h"),
-    "look_s": ("look", 1.0, " s"),
-    "speed_m_s": ("speed", 3.6, " km/h"),
-    "row_change_s": ("row_change", 1.0, " s"),
-    "turn_180_s": ("turn", 1.0, " s"),
-    "width_m": ("width", 1.0, ""),
-    "length_m": ("length", 1.0, ""),
-}
-
-
 @dataclass(frozen=True)
 class WorkerOptions:
     """Who inspects, and how long."""
@@ -248,19 +285,17 @@ class WorkerOptions:
     robot_times: RobotTimesName = None
 
     def given(self) -> dict[str, float]:
-        """Return what was said, as settings of `Robot`; refuse in the option's own words."""
-        from fieldmon.plot.robot import broken_rule
-
-        given = {}
-        for name, (option, units, unit) in _WORKER_OPTIONS.items():
-            value = getattr(self, option)
-            if value is None:
-                continue
-            if rule := broken_rule(name, value, units, unit):
-                flag = f"--{option.replace('_', '-')}"
-                raise SettingError(f"{flag} must be {rule}, but it is {value:g}.")
-            given[name] = value / units
-        return given
+        """Return what was said, as settings of `Robot`."""
+        said = {
+            "hours": self.hours,
+            "look_s": self.look,
+            "speed_m_s": None if self.speed is None else self.speed / KM_H,
+            "row_change_s": self.row_change,
+            "turn_180_s": self.turn,
+            "width_m": self.width,
+            "length_m": self.length,
+        }
+        return {name: value for name, value in said.items() if value is not None}
 
     def robot(self) -> Robot:
         """Return the robot, or the scout, with what was said."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fieldmon.cli.named_values import named_values
+from fieldmon.cli.numbers import within
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -34,7 +35,10 @@ Canopy = Annotated[
     typer.Option(help="GeoTIFF of the canopy (height, NDVI): plants are missing where it is low."),
 ]
 CanopyBelow = Annotated[
-    float | None, typer.Option(help="A plant is missing where the canopy is below this.")
+    float | None,
+    typer.Option(
+        help="A plant is missing where the canopy is below this.", callback=within(-1e9, 1e9)
+    ),
 ]
 CanopyChoices = Annotated[
     list[str] | None,

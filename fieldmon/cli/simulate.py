@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import tell_unusable
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Every,
@@ -24,6 +25,7 @@ from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
 from fieldmon.cli.times import day, day_on
+from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
 from fieldmon.samplers import kind_of, sampler
 
 if TYPE_CHECKING:
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
     from fieldmon.simulation.treating import TreatmentRule
 
 # ten years
-_MOST_DAYS = 3650
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
 
 
@@ -58,17 +59,27 @@ class SimulateOptions:
         ),
     ] = None
     every: Every = None
-    days: Annotated[int, typer.Option(max=_MOST_DAYS, help="Working days.")] = 25
-    seed: Annotated[int, typer.Option(help="Seed: the same seed, the same season.")] = 1
-    infested: Annotated[float, typer.Option(help="Share of plants infested at the start.")] = 0.02
+    days: Annotated[int, typer.Option(help="Working days.", callback=within(DAYS))] = 25
+    seed: Annotated[
+        int, typer.Option(help="Seed: the same seed, the same season.", callback=within(SEED))
+    ] = 1
+    infested: Annotated[
+        float, typer.Option(help="Share of plants infested at the start.", callback=within(SHARE))
+    ] = 0.02
     spread: Annotated[
         float | None,
         typer.Option(
-            help="Chance per night to infest each neighbour; 0.1 if neither it nor --pest is given."
+            help="Chance per night to infest each neighbour; 0.1 if neither it nor --pest is "
+            "given.",
+            callback=within(CHANCE),
         ),
     ] = None
     treat_from: Annotated[
-        float | None, typer.Option(help="Treat in the evening from this share of infested plants.")
+        float | None,
+        typer.Option(
+            help="Treat in the evening from this share of infested plants.",
+            callback=within(SHARE),
+        ),
     ] = None
     treat: Annotated[
         str, typer.Option(help="What is treated then: zones above it, or the whole plot.")

@@ -8,8 +8,10 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.drive import BrokerName, Maker, Version
+from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.option_groups import with_options
-from fieldmon.errors import SettingError
+from fieldmon.compute.ranges import CHANCE, SEED
+from fieldmon.plot.robot import KM_H
 
 
 @dataclass(frozen=True)
@@ -23,10 +25,20 @@ class StandInOptions:
     ] = None
     manufacturer: Maker = "fieldmon"
     vda: Version = "2.1"
-    speed: Annotated[float, typer.Option(help="Driving speed, km/h.")] = 2.5
-    faster: Annotated[float, typer.Option(help="How many times faster than the clock.")] = 60.0
-    infested: Annotated[float, typer.Option(help="Share of plants found infested.")] = 0.02
-    seed: Annotated[int, typer.Option(help="Seed of what it finds.")] = 1
+    speed: Annotated[
+        float,
+        typer.Option(help="Driving speed, km/h.", callback=of_robot("speed_m_s", KM_H, " km/h")),
+    ] = 2.5
+    faster: Annotated[
+        float,
+        typer.Option(
+            help="How many times faster than the clock.", callback=within(0, 1e6, above=True)
+        ),
+    ] = 60.0
+    infested: Annotated[
+        float, typer.Option(help="Share of plants found infested.", callback=within(CHANCE))
+    ] = 0.02
+    seed: Annotated[int, typer.Option(help="Seed of what it finds.", callback=within(SEED))] = 1
 
     def look(self, plant: int) -> bool:
         """Return what it makes up of a plant: the same each time."""
@@ -48,15 +60,13 @@ def stand_in(options: StandInOptions) -> None:
     from fieldmon.drive.vda5050.versions import known_version
     from fieldmon.drive.vda5050.wire import Broker, RobotName
 
-    if not (options.speed > 0 and options.faster > 0 and 0 <= options.infested <= 1):
-        raise SettingError("--speed and --faster must be above 0, and --infested in 0..1.")
     broker, version = Broker.of(options.broker), known_version(options.vda)
     robots = [
         StandIn(
             broker,
             RobotName(options.manufacturer, serial, version),
             options.look,
-            options.speed / 3.6,
+            options.speed / KM_H,
             options.faster,
         )
         for serial in dict.fromkeys(options.serial or ["robot1"])

@@ -7,13 +7,17 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
+from fieldmon.compute.ranges import SEASONS
 from fieldmon.errors import SettingError
 
 
 def beliefs(
-    seeds: Annotated[int, typer.Option(min=1, help="Simulated seasons per chance map.")] = 10,
+    seeds: Annotated[
+        int, typer.Option(help="Simulated seasons per chance map.", callback=within(SEASONS))
+    ] = 10,
     scenario: Annotated[
         str | None,
         typer.Option(

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, check_no_pest
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import SEASONS, SEED
 
 if TYPE_CHECKING:
     from fieldmon.studies.thesis.chapter5.calibrate import FittedChoices
@@ -21,11 +23,24 @@ if TYPE_CHECKING:
 class CalibrateOptions:
     """What `fieldmon study calibrate` is told."""
 
-    drawn: Annotated[int, typer.Option(help="How many open choices are drawn at first.")] = 500
-    kept: Annotated[int, typer.Option(help="How many of them are tried on everything.")] = 20
-    steps: Annotated[int, typer.Option(help="Steps of improving one choice or two.")] = 400
-    seeds: Annotated[int, typer.Option(help="Paired seasons in the final comparison.")] = 20
-    seed: Annotated[int, typer.Option(help="Seed; the same seed gives the same figures.")] = 1
+    drawn: Annotated[
+        int,
+        typer.Option(help="How many open choices are drawn at first.", callback=within(SEASONS)),
+    ] = 500
+    kept: Annotated[
+        int,
+        typer.Option(help="How many of them are tried on everything.", callback=within(SEASONS)),
+    ] = 20
+    steps: Annotated[
+        int,
+        typer.Option(help="Steps of improving one choice or two.", callback=within(0, 1_000_000)),
+    ] = 400
+    seeds: Annotated[
+        int, typer.Option(help="Paired seasons in the final comparison.", callback=within(SEASONS))
+    ] = 20
+    seed: Annotated[
+        int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
+    ] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for tables and report.")
     ] = Path()

@@ -8,10 +8,12 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, check_no_pest
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import SEASONS, SEED
 from fieldmon.errors import FileProblem
 
 
@@ -26,8 +28,12 @@ class NoPriorOptions:
             "everywhere, slips, or all."
         ),
     ] = "2-5"
-    replicates: Annotated[int, typer.Option(help="Simulated seasons per row.")] = 400
-    seed: Annotated[int, typer.Option(help="Seed; the same seed gives the same figures.")] = 1
+    replicates: Annotated[
+        int, typer.Option(help="Simulated seasons per row.", callback=within(SEASONS))
+    ] = 400
+    seed: Annotated[
+        int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
+    ] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
     ] = Path()

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import Terminal
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import SEASONS, SEED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -31,8 +33,12 @@ class PriorOptions:
         list[str] | None,
         typer.Option(help="size, spread, time or detection; repeat for more."),
     ] = None
-    seeds: Annotated[int, typer.Option(help="Paired seasons of each configuration.")] = 100
-    seed: Annotated[int, typer.Option(help="Seed; the same seed gives the same figures.")] = 1
+    seeds: Annotated[
+        int, typer.Option(help="Paired seasons of each configuration.", callback=within(SEASONS))
+    ] = 100
+    seed: Annotated[
+        int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
+    ] = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for tables and report.")
     ] = Path()

@@ -6,15 +6,22 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.waiting import progress
+from fieldmon.compute.ranges import CHANCE, PAIRED
 
 
 def replanning(
     seeds: Annotated[
-        int, typer.Option(min=2, help="Seasons of each, with the same insects.")
+        int, typer.Option(help="Seasons of each, with the same insects.", callback=within(PAIRED))
     ] = 100,
-    hours: Annotated[float, typer.Option(help="Working hours per day.")] = 4.0,
-    spread: Annotated[float, typer.Option(help="Chance per night to infest a neighbour.")] = 0.3,
+    hours: Annotated[
+        float,
+        typer.Option(help="Working hours per day.", callback=of_robot("hours", 1.0, " h")),
+    ] = 4.0,
+    spread: Annotated[
+        float, typer.Option(help="Chance per night to infest a neighbour.", callback=within(CHANCE))
+    ] = 0.3,
 ) -> None:
     """Compare Adaptive with itself held to its plan of the morning, and with the best route.
 

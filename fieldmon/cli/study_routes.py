@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import progress
+from fieldmon.compute.ranges import SEED
 from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
     from fieldmon.studies.routes.instances import Instance
+    from fieldmon.studies.routes.study import MethodOutcome
 
 _ALWAYS = ("GR", "GPR", "GFR", "OFR", "HPR")
 
@@ -22,15 +25,24 @@ def routes(  # noqa: PLR0913 - one a command-line option
         list[Path] | None, typer.Argument(help="Reward matrices (CSV, one line per row).")
     ] = None,
     budget: Annotated[
-        list[float] | None, typer.Option(help="Share of the full budget; repeat for more.")
+        list[float] | None,
+        typer.Option(
+            help="Share of the full budget; repeat for more.",
+            callback=within(0, 1, above=True, said="above 0 and 1 at most"),
+        ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Draw the published families from this seed, too.")
+        int | None,
+        typer.Option(
+            help="Draw the published families from this seed, too.", callback=within(SEED)
+        ),
     ] = None,
     *,
     team: Annotated[
         list[int] | None,
-        typer.Option(min=1, help="Size of a team, each with the budget; repeat for more."),
+        typer.Option(
+            help="Size of a team, each with the budget; repeat for more.", callback=within(1, 1000)
+        ),
     ] = None,
     maps: Annotated[
         bool, typer.Option(help="With the families, maps of 240 x 500 and 274 x 214 plants.")
@@ -45,13 +57,19 @@ def routes(  # noqa: PLR0913 - one a command-line option
         ),
     ] = False,
     solver_seconds: Annotated[
-        float, typer.Option(help="Seconds for PyVRP and for the mixed-integer program.")
+        float,
+        typer.Option(
+            help="Seconds for PyVRP and for the mixed-integer program.",
+            callback=within(0, 86_400, above=True, unit=" s"),
+        ),
     ] = 10.0,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the tables (routes.csv, routes.md).")
     ] = Path(),
 ) -> None:
     """Compare walks along rows in the published model: unit steps, back to the corner.
+
+    A team takes up to a minute for each budget and matrix. Ctrl-C keeps what is done by then.
 
     Example: fieldmon study routes rewards.csv --budget 0.1 --budget 0.5 -o study
     """
@@ -68,16 +86,27 @@ def routes(  # noqa: PLR0913 - one a command-line option
 
     can_be_folder(output)
     shares = budget or [0.1, 0.5]
-    if not all(0.0 < share <= 1.0 for share in shares):
-        raise SettingError(f"A budget must be a share above 0 and up to 1, but it is {shares}.")
     instances = _instances(files, seed, maps=maps)
     methods = [*_ALWAYS, *([PYVRP] if pyvrp else []), *([MILP] if milp else [])]
-    made, teams = [], []
-    with progress("Instances", len(instances)) as bar:
-        for instance in instances:
-            made += list(run(instance, shares, methods, solver_seconds))
-            teams += list(run_teams(instance, shares, team or []))
-            bar.update(1)
+    made: list[MethodOutcome] = []
+    teams: list[MethodOutcome] = []
+    each = len(shares) * (1 + len(methods) + len(team or []))
+    with progress("Walks", each * len(instances)) as bar:
+        try:
+            for done, instance in enumerate(instances, start=1):
+                walks = run(instance, shares, methods, solver_seconds)
+                for kept, outcomes in (
+                    (made, walks),
+                    (teams, run_teams(instance, shares, team or [])),
+                ):
+                    for one in outcomes:
+                        kept.append(one)
+                        bar.update(1)
+                bar.update(done * each - bar.pos)  # not every method plays every matrix
+        except KeyboardInterrupt:
+            if not made:
+                raise
+            typer.echo("Stopped: this is what was done.")
     for sentence in (*sentences(made), *team_sentences(teams)):
         typer.echo(sentence)
     write_all(output, {"routes.csv": csv_text([*made, *teams]), "routes.md": table(made)})

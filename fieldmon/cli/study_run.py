@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fieldmon.cli.messages import Terminal
+from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -38,26 +40,40 @@ class StudyOptions:
         list[str] | None,
         typer.Option(help="Sampler; repeat for more. Default: naive, bouncy, dynamic."),
     ] = None
-    hours: Annotated[list[float] | None, typer.Option(help="Working hours; repeat.")] = None
+    hours: Annotated[
+        list[float] | None,
+        typer.Option(help="Working hours; repeat.", callback=of_robot("hours", 1.0, " h")),
+    ] = None
     look: Annotated[
-        list[float] | None, typer.Option(help="Seconds to inspect a plant; repeat.")
+        list[float] | None,
+        typer.Option(
+            help="Seconds to inspect a plant; repeat.", callback=of_robot("look_s", 1.0, " s")
+        ),
     ] = None
     infested: Annotated[
-        list[float] | None, typer.Option(help="Share infested at the start; repeat.")
+        list[float] | None,
+        typer.Option(help="Share infested at the start; repeat.", callback=within(SHARE)),
     ] = None
     spread: Annotated[
-        list[float] | None, typer.Option(help="Chance per night and neighbour; repeat.")
+        list[float] | None,
+        typer.Option(help="Chance per night and neighbour; repeat.", callback=within(CHANCE)),
     ] = None
-    days: Annotated[int, typer.Option(help="Working days of a season.")] = 25
-    seeds: Annotated[int, typer.Option(help="Seasons of each combination.")] = 100
+    days: Annotated[int, typer.Option(help="Working days of a season.", callback=within(DAYS))] = 25
+    seeds: Annotated[
+        int, typer.Option(help="Seasons of each combination.", callback=within(SEASONS))
+    ] = 100
     first_seed: Annotated[
-        int, typer.Option(help="First seed; the same seeds give the same seasons.")
+        int,
+        typer.Option(
+            help="First seed; the same seeds give the same seasons.", callback=within(SEED)
+        ),
     ] = 1
     on: Annotated[
         str | None, typer.Option("--date", help="First day, YYYY-MM-DD; default: today.")
     ] = None
     workers: Annotated[
-        int | None, typer.Option(help="Processes; default: one per core.", min=1)
+        int | None,
+        typer.Option(help="Processes; default: one per core.", callback=within(1, 1000)),
     ] = None
     scheduler: Annotated[
         str | None, typer.Option(help="Scheduler of a Dask cluster: tcp://host:8786.")

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import PAIRED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -26,7 +28,9 @@ if TYPE_CHECKING:
 class SamplersOptions:
     """What `fieldmon study samplers` is told."""
 
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons per scenario.")] = 10
+    seeds: Annotated[
+        int, typer.Option(help="Simulated seasons per scenario.", callback=within(PAIRED))
+    ] = 10
     full: Annotated[
         bool,
         typer.Option(

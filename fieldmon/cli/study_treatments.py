@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import PAIRED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +23,9 @@ _LOOKED_AT = (0.25, 0.5, 1.0)
 
 
 def treatments(
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated seasons per scenario.")] = 10,
+    seeds: Annotated[
+        int, typer.Option(help="Simulated seasons per scenario.", callback=within(PAIRED))
+    ] = 10,
     sampler: Annotated[
         list[str] | None, typer.Option(help="Sampler; repeat for more. Default: all.")
     ] = None,

@@ -8,13 +8,17 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import PAIRED
 
 
 def verdicts(
-    seeds: Annotated[int, typer.Option(min=2, help="Simulated plots per question.")] = 100,
+    seeds: Annotated[
+        int, typer.Option(help="Simulated plots per question.", callback=within(PAIRED))
+    ] = 100,
     maps: Annotated[
         Path | None,
         typer.Option(help="Folder with the public plant maps, to compare on these too."),

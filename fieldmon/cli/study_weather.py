@@ -6,19 +6,21 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, tell_pest
 from fieldmon.cli.waiting import counting
+from fieldmon.compute.ranges import DAYS, PAIRED
 
 
 def weather(
     seeds: Annotated[
-        int, typer.Option(min=2, help="Seasons of each, with the same insects.")
+        int, typer.Option(help="Seasons of each, with the same insects.", callback=within(PAIRED))
     ] = 100,
     shape: Annotated[
         str, typer.Option(help="One shape of the weather, such as 'heat wave'; empty: all of them.")
     ] = "",
     pest: PestName = None,
-    days: Annotated[int, typer.Option(min=1, help="Days of a season.")] = 20,
+    days: Annotated[int, typer.Option(help="Days of a season.", callback=within(DAYS))] = 20,
 ) -> None:
     """Compare Adaptive that knows temperature and wind with Adaptive that believes averages.
 

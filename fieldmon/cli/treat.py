@@ -10,10 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import tell_not_come
+from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile, TheDate
 from fieldmon.cli.times import clock, day, day_on
+from fieldmon.compute.ranges import CHANCE
 from fieldmon.compute.wording import estimate
+from fieldmon.decisions.doses import WATER_L_HA
+from fieldmon.decisions.labels import WAITS_DAYS, WAITS_HOURS
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -35,11 +39,20 @@ DoseSaid = Annotated[
 ]
 Groups = Annotated[str, typer.Option("--irac", help="Mode-of-action group: 6, or 4A+28.")]
 Waiting = Annotated[
-    int | None, typer.Option("--waiting-days", help="Whole days until harvest; else the label's.")
+    int | None,
+    typer.Option(
+        "--waiting-days",
+        help="Whole days until harvest; else the label's.",
+        callback=within(WAITS_DAYS),
+    ),
 ]
 ReEntry = Annotated[
     float | None,
-    typer.Option("--reentry-hours", help="Hours until people may enter; else the label's."),
+    typer.Option(
+        "--reentry-hours",
+        help="Hours until people may enter; else the label's.",
+        callback=within(WAITS_HOURS),
+    ),
 ]
 Began = Annotated[str | None, typer.Option("--began", help="Local time at which it began, HH:MM.")]
 Ended = Annotated[
@@ -57,7 +70,8 @@ class TreatOptions:
         float | None,
         typer.Option(
             help="Chance that an infested plant is clean afterwards, 0 to 1; else as the season "
-            "learnt it of the product."
+            "learnt it of the product.",
+            callback=within(CHANCE),
         ),
     ] = None
     area: Area = None
@@ -66,7 +80,10 @@ class TreatOptions:
     product: Annotated[str, typer.Option(help="What was used.")] = ""
     active_ingredient: Annotated[str, typer.Option(help="Its active ingredient.")] = ""
     dose: DoseSaid = None
-    water: Annotated[float | None, typer.Option(help="Litres of water per hectare.")] = None
+    water: Annotated[
+        float | None,
+        typer.Option(help="Litres of water per hectare.", callback=within(WATER_L_HA)),
+    ] = None
     operator: Annotated[str, typer.Option(help="Who did it.")] = ""
     reason: Annotated[str, typer.Option(help="Why: the pest, and what was seen.")] = ""
     waiting_days: Waiting = None

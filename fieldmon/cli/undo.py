@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.options import SeasonFile
+from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError
 
 UndoChange = Annotated[
@@ -17,10 +19,16 @@ UndoChange = Annotated[
 def undo(
     season: SeasonFile,
     batch: Annotated[
-        int | None, typer.Option(help="Number of a batch; see fieldmon status --batches.")
+        int | None,
+        typer.Option(
+            help="Number of a batch; see fieldmon status --batches.", callback=within(NUMBER)
+        ),
     ] = None,
     inspection: Annotated[
-        int | None, typer.Option(help="Number (fid) of one inspection in the season's file.")
+        int | None,
+        typer.Option(
+            help="Number (fid) of one inspection in the season's file.", callback=within(NUMBER)
+        ),
     ] = None,
     change: UndoChange = False,  # noqa: FBT002 - a flag
     who: Annotated[str, typer.Option(help="Who takes it back.")] = "",

@@ -10,6 +10,7 @@ from datetime import date, datetime
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     K = TypeVar("K", np.float64, np.bool_)
 
 _LONGEST = 40
-_MOST_L_HA = 100_000.0
+RATE_L_HA = AllowedRange(0.0, 100_000.0, above=True, below=True, unit=" litres per hectare")
 _NUMBERS = {"float", "int"}
 # beyond it, whole numbers of Python become no others
 _MOST = 10**300
@@ -157,7 +158,7 @@ def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDAr
 def must_be_rate(rate_l_ha: float) -> None:
     """Raise `SettingError` unless so many litres can be sprayed on a hectare."""
     must_be("The rate in the zones must be a number", rate_l_ha, Real, "Give litres a hectare.")
-    if not 0.0 < rate_l_ha < _MOST_L_HA:
+    if RATE_L_HA.broken(rate_l_ha):
         raise SettingError(
             worded(
                 "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "

@@ -6,9 +6,11 @@ import re
 from dataclasses import dataclass
 
 from fieldmon.compute.arguments import must_be, must_hold_numbers
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
+WATER_L_HA = AllowedRange(0.0, 1e6, above=True, below=True, unit=" litres per hectare")
 # litres or kilograms
 _AMOUNTS = {
     "l": ("l", 1.0), "ltr": ("l", 1.0), "litre": ("l", 1.0), "liter": ("l", 1.0),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.arguments import must_be, must_hold_numbers
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -15,7 +16,8 @@ if TYPE_CHECKING:
 
     from fieldmon.decisions.doses import Dose
 
-MOST_DAYS, MOST_HOURS = 3650, 10_000
+#: whole days until harvest, and hours until people may enter
+WAITS_DAYS, WAITS_HOURS = AllowedRange(0, 3650, unit=" days"), AllowedRange(0, 10_000, unit=" h")
 
 
 @dataclass(frozen=True)
@@ -83,19 +85,19 @@ class ProductLabel:
 
 def checked_waits(days: int | None, hours: float | None) -> None:
     """Raise `SettingError` unless waiting days and re-entry hours can be."""
-    if days is not None and not (0 <= days <= MOST_DAYS and days == int(days)):
+    if days is not None and (WAITS_DAYS.broken(days) or days != int(days)):
         raise SettingError(
             worded(
                 "A waiting period must be 0 to {most} whole days, but it is {days:g}.",
-                most=MOST_DAYS,
+                most=int(WAITS_DAYS.most),
                 days=days,
             )
         )
-    if hours is not None and not 0 <= hours <= MOST_HOURS:
+    if hours is not None and WAITS_HOURS.broken(hours):
         raise SettingError(
             worded(
                 "Re-entry must be after 0 to {most} hours, but it is {hours:g}.",
-                most=MOST_HOURS,
+                most=int(WAITS_HOURS.most),
                 hours=hours,
             )
         )

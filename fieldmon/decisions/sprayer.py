@@ -5,19 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.ranges import MONEY, AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-# no plot has more rows or is longer
-_MOST = {"rows": 10_000, "least_on_m": 10_000.0, "least_off_m": 10_000.0, "ring": 10_000}
+#: what settings of `Sprayer` may be: no plot has more rows or is longer
+SWITCHED = dict.fromkeys(("rows", "least_on_m", "least_off_m", "ring"), AllowedRange(0.0, 10_000.0))
+#: what settings of `TreatmentCosts` may be
+COSTS = {
+    "per_ha": MONEY,
+    "per_zone": MONEY,
+    "infested_plant_day": MONEY,
+    "days": AllowedRange(0.0, 3650.0),
+    "works": AllowedRange(0.0, 1.0, above=True),
+    "reserve": AllowedRange(0.0, 1.0, below=True),
+}
 
 
 @dataclass(frozen=True)
@@ -45,24 +55,11 @@ class Sprayer:
     ring: int = 0
 
     def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            if not 0 <= value < np.inf:
-                raise SettingError(
-                    worded(
-                        "A sprayer's {name} must be 0 or more, but it is {value:g}.",
-                        name=name.replace("_", " "),
-                        value=value,
-                    )
-                )
-            if value > _MOST[name]:
-                raise SettingError(
-                    worded(
-                        "A sprayer's {name} must be {most:g} at most, but it is {value:g}.",
-                        name=name.replace("_", " "),
-                        most=_MOST[name],
-                        value=value,
-                    )
-                )
+        must_hold_numbers(self, "A sprayer's")
+        if broken := broken_setting(self, SWITCHED):
+            raise SettingError(
+                worded("A sprayer's {name} must be {rule}, but it is {value:g}.", **broken)
+            )
 
     @classmethod
     def of_boom(
@@ -127,30 +124,10 @@ class TreatmentCosts:
     reserve: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.reserve < 1.0:
+        must_hold_numbers(self, "The treatment's")
+        if broken := broken_setting(self, COSTS):
             raise SettingError(
-                worded(
-                    "The share that is never sprayed must be 0 or more and below 1, but it is "
-                    "{reserve:g}.",
-                    reserve=self.reserve,
-                )
-            )
-        for name, value in vars(self).items():
-            if not 0.0 <= value < np.inf:
-                raise SettingError(
-                    worded(
-                        "The cost {name!r} must be 0 or more, but it is {value:g}.",
-                        name=name.replace("_", " "),
-                        value=value,
-                    )
-                )
-        if not 0.0 < self.works <= 1.0:
-            raise SettingError(
-                worded(
-                    "The chance that a treatment works must be above 0 and at most 1, but it is "
-                    "{works:g}.",
-                    works=self.works,
-                )
+                worded("The treatment's {name} must be {rule}, but it is {value:g}.", **broken)
             )
 
     @property

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy import ndimage
 
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ _CELL_M = 0.25
 _MOST_CELLS = 4_000_000
 #: bumps are about so far apart
 _BUMP_M = 1.0
-_ROUGHEST_M = 0.3
+ROUGH_M = AllowedRange(0.0, 0.3, unit=" metres")
 
 
 class UnevenGround(NamedTuple):
@@ -75,9 +76,9 @@ def rough_ground(grid: PlantGrid, rough_m: float, seed: int = 1) -> UnevenGround
     >>> round(float(rough_ground(rectangle(3, 4), 0.02).height_m.std()), 3)
     0.02
     """
-    if not 0.0 <= rough_m <= _ROUGHEST_M:
+    if ROUGH_M.broken(rough_m):
         raise SettingError(
-            f"Roughness must be 0 to {_ROUGHEST_M:g} metres (standard deviation of heights), but "
+            f"Roughness must be 0 to {ROUGH_M.most:g} metres (standard deviation of heights), but "
             f"it is {rough_m:g}."
         )
     flat = _level(grid)

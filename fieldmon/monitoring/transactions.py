@@ -30,6 +30,7 @@ from fieldmon.monitoring.schema import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from contextlib import AbstractContextManager
 
 KIND = "season"
 # another window's transaction takes well under a second; a backup program may hold the file longer
@@ -133,7 +134,7 @@ class Store:
         _refuse_old(target, path)
         with _draft_folder(target) as folder:
             draft = Path(folder) / "season.gpkg"
-            with sentences(target, _PATIENCE_S), closing(_connect(draft)) as db:
+            with _sentences(target), closing(_connect(draft)) as db:
                 db.execute("BEGIN")
                 lay_out(db)
                 set_meta(db, "kind", KIND)
@@ -147,7 +148,7 @@ class Store:
     def reading(self, into: Path | None = None) -> Iterator[sqlite3.Connection]:
         """Give a consistent view of the file; what is read goes `into` another, if it is told."""
         still = _still().get(self.path)
-        with sentences(self.path, _PATIENCE_S, into):
+        with _sentences(self.path, into):
             if still is not None:
                 yield still
                 return
@@ -181,7 +182,7 @@ class Store:
         """
         if self.path in _still():  # it would wait for itself
             raise RuntimeError("What is read as of one moment must not be written within it.")
-        with sentences(self.path, _PATIENCE_S), closing(_connect(self.path, patience_s)) as db:
+        with _sentences(self.path), closing(_connect(self.path, patience_s)) as db:
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")
             _into_one_file(db)
@@ -238,7 +239,7 @@ def wait_until_free(
         return True
     began = time.monotonic()
     with (
-        sentences(path, _PATIENCE_S),
+        _sentences(path),
         _opened(path) as db,
         _patience(db, min(_ASK_AGAIN_S, patience_s)),
     ):
@@ -317,7 +318,7 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
         raise no_file(path)
     written = named or to
     with (
-        sentences(path, _PATIENCE_S, written),
+        _sentences(path, written),
         closing(_connect(path)) as db,
         closing(_connect(to)) as copy,
     ):
@@ -371,6 +372,11 @@ def get_meta(db: sqlite3.Connection, key: str) -> str | None:
     """Return what was noted about the file, or None."""
     row = db.execute("SELECT value FROM fieldmon WHERE key = ?", (key,)).fetchone()
     return None if row is None else str(row[0])
+
+
+def _sentences(path: Path, into: Path | None = None) -> AbstractContextManager[None]:
+    """Say what is wrong with a file, as `sentences` does of one that is waited for as usual."""
+    return sentences(path, _PATIENCE_S, into)
 
 
 def _connect(path: Path, patience_s: float | None = None) -> sqlite3.Connection:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.ranges import AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.plot.robot import Robot
@@ -15,6 +16,12 @@ if TYPE_CHECKING:
 
 # our choice: no plot has so many aisles that they would not meet
 _MOST_MEMBERS = 1000
+#: what settings of `Teamwork` may be
+TEAMWORK = {
+    "contact_s": AllowedRange(0.0, 86_400.0),
+    "least_gain": AllowedRange(0.0, 1e9),
+    "passing_m": AllowedRange(0.0, 1000.0),
+}
 
 
 @dataclass(frozen=True)
@@ -76,16 +83,11 @@ class Teamwork:
     passing_m: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("contact_s", "least_gain", "passing_m"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise SettingError(
-                    worded(
-                        "A team's {name} must be 0 or more, but it is {value}.",
-                        name=name,
-                        value=value,
-                    )
-                )
+        must_hold_numbers(self, "A team's")
+        if broken := broken_setting(self, TEAMWORK):
+            raise SettingError(
+                worded("A team's {name} must be {rule}, but it is {value:g}.", **broken)
+            )
 
 
 def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import shapely
+from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.arguments import must_be, must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
-
-if TYPE_CHECKING:
-    from shapely import MultiPolygon
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +42,11 @@ class Block:
 
     def __post_init__(self) -> None:
         must_hold_numbers(self, "The block's")
+        must_be("A block's name must be text", self.name, str, "Put it in quotes.")
+        must_be(
+            "A block's area must be a MultiPolygon", self.area, (MultiPolygon, Polygon),
+            "Give shapely.MultiPolygon([polygon]), in degrees.",
+        )  # fmt: skip
         if self.area.is_empty or not self.area.is_valid:
             raise PlotError(
                 worded(

@@ -12,10 +12,11 @@ from shapely import MultiLineString, MultiPolygon
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.aisle_lines import RowAisles
-from fieldmon.plot.bent_layout import Blocked, Ground, RowLines, bent_grid, row_aisles
+from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.line_layout import LaidRows, copies, is_straight, rows_along
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_detection import main_bearing, rows_from_lines
+from fieldmon.plot.row_lines import Blocked, Ground, RowLines, row_aisles
 from fieldmon.plot.strips import best_strips, check_size, fill, no_room
 
 if TYPE_CHECKING:

@@ -14,7 +14,6 @@ from fieldmon.compute.arrays import offsets, runs
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
-from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.block_layout import lay_blocks
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.line_layout import copies, is_straight, lay_along
@@ -36,6 +35,7 @@ from fieldmon.plot.row_detection import (
     rows_from_plants,
     split_lines,
 )
+from fieldmon.plot.row_lines import Ground
 from fieldmon.plot.strips import (
     SLACK_M,
     Intervals,

@@ -13,24 +13,19 @@ from shapely.ops import substring
 from fieldmon.compute.arrays import offsets, runs
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
-from fieldmon.plot.bent_layout import (
-    Blocked,
-    RowLines,
-    bent_grid,
-    row_aisles,
-    shut_stretches,
-)
+from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.line_sorting import sorted_rows
 from fieldmon.plot.polylines import Polylines
+from fieldmon.plot.row_lines import Blocked, RowLines, row_aisles, shut_stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.aisle_lines import RowAisles
-    from fieldmon.plot.bent_layout import Ground
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.planting import Planting
     from fieldmon.plot.projection import Frame
+    from fieldmon.plot.row_lines import Ground
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

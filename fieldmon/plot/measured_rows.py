@@ -9,9 +9,10 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import offsets
-from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
+from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.row_curves import row_lines_of
 from fieldmon.plot.row_detection import frame_around, rows_from_plants, split_lines
+from fieldmon.plot.row_lines import Ground, RowLines
 from fieldmon.plot.row_tracing import TracedRows, trace
 
 if TYPE_CHECKING:

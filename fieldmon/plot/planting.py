@@ -5,8 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+
+_SPACING = AllowedRange(0.05, 1000.0, said="0.05 to 1000 metres")
+#: what settings of `Planting` may be
+PLANTED = {
+    "row_bearing_deg": AllowedRange(-720.0, 720.0, said="-720 to 720 degrees"),
+    "row_spacing_m": _SPACING,
+    "plant_spacing_m": _SPACING,
+    "headland_m": _SPACING,
+    "half_canopy_m": AllowedRange(0.0, 10.0, said="0 to 10 metres"),
+}
 
 
 @dataclass(frozen=True)
@@ -49,7 +60,12 @@ class Planting:
 
     def __post_init__(self) -> None:
         must_hold_numbers(self, "The planting's")
-        if self.half_canopy_m is not None and not 0.0 <= self.half_canopy_m <= 10.0:
+        broken = {
+            name: range_.broken(value)
+            for name, range_ in PLANTED.items()
+            if (value := getattr(self, name)) is not None
+        }
+        if broken.get("half_canopy_m"):
             raise SettingError(
                 worded(
                     "A planting's half_canopy_m must be 0 to 10 metres, but it is {half_canopy_m}.",
@@ -57,7 +73,7 @@ class Planting:
                 )
             )
         for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
-            if not 0.05 <= getattr(self, name) <= 1000.0:
+            if broken[name]:
                 raise SettingError(
                     worded(
                         "A planting's {name} must be 0.05 to 1000 metres, but it is {value}.",
@@ -65,7 +81,7 @@ class Planting:
                         value=getattr(self, name),
                     )
                 )
-        if self.row_bearing_deg is not None and not abs(self.row_bearing_deg) <= 720.0:
+        if broken.get("row_bearing_deg"):
             raise SettingError(
                 worded(
                     "A row bearing must be -720 to 720 degrees, but it is {row_bearing_deg}.",

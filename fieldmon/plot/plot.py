@@ -11,7 +11,6 @@ from shapely import MultiPolygon
 from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
-from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import check_apart, grid_from_plants, lay, planting_in
 from fieldmon.plot.line_layout import lay_along
@@ -20,6 +19,7 @@ from fieldmon.plot.missing_plants import without
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
+from fieldmon.plot.row_lines import Ground
 from fieldmon.plot.row_report import RowReport, row_report
 from fieldmon.plot.travel import Aisles
 from fieldmon.plot.trees import trees_grid

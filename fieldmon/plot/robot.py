@@ -12,6 +12,8 @@ from fieldmon.compute.arguments import must_be, must_hold_numbers
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
+#: people say speeds in km/h
+KM_H = 3.6
 THESIS_VIEWPOINTS = ((20.0, 0.50), (25.0, 0.60), (30.0, 0.69), (35.0, 0.77), (40.0, 0.84))
 THESIS_LONGER = 0.90
 

@@ -128,7 +128,7 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
         raise PlotError(
             worded(
                 "Rows can be found from 2 plants or more, but there are {n}. "
-                "Give the row bearing and the spacings.",
+                "Add plants, or have them visited without rows (--no-rows).",
                 n=len(lonlat),
             )
         )

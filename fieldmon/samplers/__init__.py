@@ -5,6 +5,7 @@
 
 from fieldmon.samplers.registry import (
     COMPARED,
+    EVERY,
     SAMPLERS,
     USUAL,
     SamplerKind,
@@ -16,6 +17,7 @@ from fieldmon.samplers.registry import (
 
 __all__ = [
     "COMPARED",
+    "EVERY",
     "SAMPLERS",
     "USUAL",
     "SamplerKind",

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from importlib import import_module
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import shown
+from fieldmon.compute.arguments import must_be, shown
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -68,6 +70,8 @@ class SamplerKind:
         return {} if every is None or self.every is None else {"every": every}
 
 
+#: no plot has more plants than that
+EVERY = AllowedRange(1, 10_000_000)
 SAMPLERS = {
     "naive": SamplerKind("sweeps:Naive", "Naive", "every plant, row by row"),
     "bouncy": SamplerKind("sweeps:Bouncy", "Bouncy", "every second plant", every=2),
@@ -107,6 +111,14 @@ SAMPLERS = {
 #: who plans where nobody says otherwise, and who is compared
 USUAL = "adaptive"
 COMPARED = ("naive", "bouncy", "dynamic")
+
+
+def check_every(every: int) -> None:
+    """Raise `SettingError` unless every N-th plant or stop can be inspected."""
+    instead = "Give 2 for every second one."
+    must_be("'every' must be a whole number", every, Integral, instead, but_no=(bool,))
+    if rule := EVERY.broken(every):
+        raise SettingError(f"'every' must be {rule}, but it is {shown(every)}.")
 
 
 def kind_of(name: str) -> SamplerKind:

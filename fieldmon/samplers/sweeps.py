@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from fieldmon.compute.jit import loop, part
-from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
 from fieldmon.samplers.base import Sampler, Scene, Stops
+from fieldmon.samplers.registry import check_every
 
 if TYPE_CHECKING:
     import numpy as np
@@ -49,10 +49,7 @@ class Bouncy(Sampler):
     every: int = 2
 
     def __post_init__(self) -> None:
-        if self.every < 1:
-            raise SettingError(
-                f"Bouncy must inspect every 1st, 2nd, ... plant, but 'every' is {self.every}."
-            )
+        check_every(self.every)
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""

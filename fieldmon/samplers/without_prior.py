@@ -17,9 +17,9 @@ from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import loop, part
 from fieldmon.compute.random_streams import coin, coin_table
 from fieldmon.compute.wording import counted
-from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
 from fieldmon.samplers.base import Sampler, Scene, Stops
+from fieldmon.samplers.registry import check_every
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,7 +62,7 @@ class Snake(Sampler):
     every: int = 1
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        check_every(self.every)
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
@@ -97,7 +97,7 @@ class Neighbor(Sampler):
     every: int = 1
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        check_every(self.every)
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the sweep's next stops."""
@@ -129,7 +129,7 @@ class RandomShare(Sampler):
     every: int = 3
 
     def __post_init__(self) -> None:
-        _check_every(self.every)
+        check_every(self.every)
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:  # noqa: ARG002
         """Return the day's draw from the start of the plot."""
@@ -138,11 +138,6 @@ class RandomShare(Sampler):
         wanted = np.zeros(n, np.bool_)
         wanted[drawn] = True
         return _walked(scene, _one_by_one(scene.grid), wanted, (0, 1, 1, False))
-
-
-def _check_every(every: int) -> None:
-    if every < 1:
-        raise SettingError(f"'every' must be 1 or more, but it is {every}.")
 
 
 @lru_cache(maxsize=4)

@@ -11,12 +11,12 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.planning.plan import plan_in
-from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.line_layout import lay_along
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_lines import Ground
 from fieldmon.samplers import sampler
 from tests.scenes import scene_on
 

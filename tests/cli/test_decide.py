@@ -53,7 +53,7 @@ def test_a_threshold_of_leaves_asks_for_leaves_and_then_answers(run, season):
     [
         (["--threshold", "rose"], "must be a share of the plants"),
         (["--threshold", "5%", "--sure", "0.4"], "between 0.5 and 1"),
-        (["--threshold", "5%", "--works", "0"], "treatment works"),
+        (["--threshold", "5%", "--works", "0"], "--works must be above 0"),
         (["--threshold", "5%", "--per-ha", "1e9", "-o", "z.gpkg"], "pays nowhere"),
         (["--threshold", "5%", *CHEAP, "-o", "z.txt"], "must be called"),
         (["--threshold", "5%", "--thresholds", "none.csv"], "none.csv"),

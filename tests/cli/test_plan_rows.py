@@ -14,6 +14,7 @@ from rasterio.transform import from_origin
 
 from fieldmon.monitoring import Season
 from tests.bent import FRAME
+from tests.cli.estate import square
 
 
 def arcs(radius_m, n_rows, n_plants, east_m=0.0):
@@ -236,3 +237,24 @@ def test_each_direction_of_a_planting_is_named_with_the_option_that_chooses_it(
         assert code == 0, err
         assert f"240 plants in {n_rows} rows, bearing {bearing} degrees" in out
         assert "could be:" not in err
+
+
+def test_a_bearing_of_the_file_that_cannot_be_is_refused_unless_another_is_given(run, tmp_path):
+    square(row_bearing_deg=1000.0).to_file(tmp_path / "turned.geojson")
+    plan = "plan", "turned.geojson", "--hours", "1", "--no-bound", "-o", "r.geojson"
+    code, _, err, made = run(*plan)
+    assert (code, made) == (2, set())
+    assert "must be -720 to 720 degrees, but it is 1000" in err
+    code, out, err, _ = run(*plan, "--bearing", "20")
+    assert code == 0, err
+    assert "bearing 20.0 degrees" in out
+
+
+def test_a_single_plant_is_refused_with_what_plans_it(run, tmp_path):
+    (tmp_path / "one.csv").write_text("lon,lat\n35.1512345,30.3612345\n")
+    plan = "plan", "--plants", "one.csv", "--hours", "1", "--no-bound", "-o", "r.geojson"
+    code, _, err, made = run(*plan)
+    assert (code, made) == (2, set())
+    assert "--no-rows" in err.splitlines()[-1]
+    code, _, err, _ = run(*plan, "--no-rows")
+    assert code == 0, err

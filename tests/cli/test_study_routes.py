@@ -23,7 +23,7 @@ def test_what_cannot_be_read_or_played_is_said_in_a_sentence(run, tmp_path):
     for words, said in (
         ((tmp_path / "bad.csv",), "must hold numbers"),
         ((), "A reward matrix or a seed must be given"),
-        (("--seed", 1, "--budget", 2), "share above 0 and up to 1"),
+        (("--seed", 1, "--budget", 2), "--budget must be above 0 and 1 at most"),
     ):
         code, _, err, _ = run("study", "routes", *words)
         assert code == 2
@@ -41,3 +41,32 @@ def test_a_team_has_its_lines_and_its_bound(run, tmp_path):
         rows = {row["method"]: row for row in csv.DictReader(file)}
     assert float(rows["ladder"]["reward"]) <= float(rows["team of 2"]["reward"])
     assert float(rows["team of 3"]["reward"]) <= float(rows["team of 3"]["bound"]) <= 13
+
+
+def test_a_study_that_is_stopped_keeps_what_was_done(run, tmp_path, monkeypatch):
+    (tmp_path / "plot.csv").write_text("1,0,3\n0,2,2\n5,0,0\n")
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fieldmon.studies.routes.study.team_walks", stopped)
+    code, out, err, _ = run(
+        *("study", "routes", tmp_path / "plot.csv", "--budget", 0.3, "--team", 2)
+    )
+    assert code == 0, err
+    assert "Stopped: this is what was done." in out
+    with (tmp_path / "routes.csv").open(encoding="utf-8") as file:
+        assert next(csv.DictReader(file))["method"] == "ladder"
+
+
+def test_a_study_that_is_stopped_at_once_writes_nothing(run, tmp_path, monkeypatch):
+    (tmp_path / "plot.csv").write_text("1,0,3\n0,2,2\n5,0,0\n")
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fieldmon.studies.routes.study.best_walk", stopped)
+    code, _, err, made = run("study", "routes", tmp_path / "plot.csv")
+    assert code == 130
+    assert "Stopped" in err
+    assert "routes.csv" not in {path.name for path in made}

@@ -94,7 +94,7 @@ def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, seas
         (["--rows", "1", "--area", "a.geojson"], "not both"),
         (["--irac", "sulphur"], "must be one of IRAC"),
         (["--ended", "9"], "--ended must be a time"),
-        (["--waiting-days", "-2"], "A waiting period must be"),
+        (["--waiting-days", "-2"], "--waiting-days must be 0 days or more"),
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_is_noted(run, season, words, said):

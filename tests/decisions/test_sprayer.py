@@ -28,3 +28,10 @@ def test_a_booms_section_covers_whole_rows():
 def test_what_cannot_be_is_refused(made):
     with pytest.raises(SettingError, match="must be"):
         made()
+
+
+@pytest.mark.parametrize("name", ["per_ha", "per_zone", "infested_plant_day", "days"])
+@pytest.mark.parametrize("value", [10**30, 1e30, float("nan"), float("inf"), -1.0, "much"])
+def test_costs_that_nobody_has_are_refused_by_their_name(name, value):
+    with pytest.raises(SettingError, match=f"treatment's {name} must be"):
+        TreatmentCosts(**{name: value})

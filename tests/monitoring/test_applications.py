@@ -33,3 +33,13 @@ def test_only_what_was_said_is_told():
 def test_what_cannot_be_is_refused(wrong):
     with pytest.raises(SettingError):
         Application("soap", **wrong)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [{"product": 3}, {"operator": None}, {"reason": 10**30}, {"began": "8:30"}, {"ended": 8.5}],
+)
+def test_what_is_said_of_a_treatment_is_of_its_kind(said):
+    (name,) = said
+    with pytest.raises(SettingError, match=f"A treatment's {name} must be (text|a time)"):
+        Application(**said)

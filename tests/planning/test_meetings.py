@@ -6,11 +6,12 @@ import shapely
 
 from fieldmon.planning.meetings import _presences, meetings
 from fieldmon.planning.plan import plan_in
-from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
+from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.robot import Robot
+from fieldmon.plot.row_lines import Ground, RowLines
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.base import NEVER, Sampler, Scene, Stops
 from tests.bent import FRAME

@@ -8,10 +8,11 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
+from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.missing_plants import without
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
+from fieldmon.plot.row_lines import Ground, RowLines
 from fieldmon.plot.travel import Aisles
 from tests.bent import FRAME, bent_grids
 from tests.crossing import crosses_rows

@@ -4,7 +4,7 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.errors import PlotError
+from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.block import Block
 
 AREA = MultiPolygon([shapely.box(8.0, 47.0, 8.001, 47.001)])
@@ -20,3 +20,11 @@ def test_all_that_is_said_of_a_block_is_told():
     others = [Block("south", AREA), Block("north", AREA, 20.0), Block("north", AREA, None, 3.0)]
     assert all(other.content != told for other in others)
     assert Block("north", AREA, None, None, 1.5).content != told
+
+
+@pytest.mark.parametrize(
+    ("name", "area"), [("north", 1), ("north", None), (3, shapely.box(0, 0, 1, 1))]
+)
+def test_a_block_is_a_name_and_an_area_and_nothing_else(name, area):
+    with pytest.raises(SettingError, match=r"A block's (name|area) must be"):
+        Block(name, area)

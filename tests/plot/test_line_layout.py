@@ -8,12 +8,12 @@ import shapely
 from shapely import MultiLineString, MultiPolygon
 
 from fieldmon.errors import PlotError
-from fieldmon.plot.bent_layout import Ground
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.line_layout import copies, is_straight, lay_along
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
+from fieldmon.plot.row_lines import Ground
 from fieldmon.plot.travel import Aisles
 
 FRAME = Frame(8.0, 47.0)

@@ -5,10 +5,11 @@ import pytest
 import shapely
 from hypothesis import given
 
-from fieldmon.plot.bent_layout import Ground, RowLines, bent_grid
+from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
 from fieldmon.plot.row_course import row_courses
+from fieldmon.plot.row_lines import Ground, RowLines
 from tests.bent import FRAME, bent_grids
 
 

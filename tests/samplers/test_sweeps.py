@@ -113,7 +113,7 @@ def test_steps_longer_than_the_plot_still_see_every_plant(name):
 
 @pytest.mark.parametrize("every", [0, -2])
 def test_a_step_that_leads_nowhere_is_refused(every):
-    with pytest.raises(SettingError, match=f"'every' is {every}"):
+    with pytest.raises(SettingError, match=f"'every' must be 1 or more, but it is {every}"):
         Bouncy(every)
 
 

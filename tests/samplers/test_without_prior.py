@@ -285,3 +285,9 @@ def test_a_station_is_who_faces_one_place_of_an_aisle_and_aisles_go_up_and_down_
     parts = np.split(found.plant, found.start[1:-1])
     assert [sorted(one.tolist()) for one in parts] == [sorted(one) for one in told]
     assert found.of[found.plant].tolist() == np.repeat(range(len(told)), [*map(len, told)]).tolist()
+
+
+@pytest.mark.parametrize("every", [10**30, 10_000_001, 0, 1.5, "2", True, None])
+def test_a_step_that_no_plot_has_is_refused(every):
+    with pytest.raises(SettingError, match="'every' must be"):
+        Snake(every)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.infestation.observations import ABSENT, MOST_COUNTED, PRESENT, UNKNOWN
+from fieldmon.compute.ranges import MOST_COUNTED
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.result_words import meaning
 
@@ -106,34 +107,34 @@ def counted(cell: str, decimal: str = ".") -> CellCount:
         return CellCount(np.nan, UNKNOWN, is_rough=False)
     value = number(cell, decimal)
     if np.isfinite(value):
-        if not 0 <= value <= MOST_COUNTED:
-            return CellCount(np.nan, UNKNOWN, is_rough=True)
-        return CellCount(value, PRESENT if value > 0 else ABSENT, is_rough=False)
+        return _countable(value, CellCount(value, PRESENT if value > 0 else ABSENT, is_rough=False))
     said = meaning(word)
     if said is not None:
         return CellCount(np.nan if said == PRESENT else 0.0, said, is_rough=False)
     return _roughly(word, decimal)
 
 
+def _countable(highest: float, said: CellCount) -> CellCount:
+    """Return what a cell says, unless the highest number in it cannot have been counted."""
+    return said if 0 <= highest <= MOST_COUNTED else CellCount(np.nan, UNKNOWN, is_rough=True)
+
+
 def _roughly(word: str, decimal: str) -> CellCount:
     between = _RANGE.match(word)
     if between:
         low, high = (number(part, decimal) for part in between.groups())
-        if high > MOST_COUNTED:
-            return CellCount(np.nan, UNKNOWN, is_rough=True)
-        return CellCount((low + high) / 2, PRESENT if high > 0 else ABSENT, is_rough=True)
+        present = PRESENT if high > 0 else ABSENT
+        return _countable(high, CellCount((low + high) / 2, present, is_rough=True))
     bound = _BOUND.match(word)
     if not bound:
         return CellCount(np.nan, UNKNOWN, is_rough=True)
     sign, digits, _ = bound.groups()
     value = number(digits, decimal)
-    if value > MOST_COUNTED:
-        return CellCount(np.nan, UNKNOWN, is_rough=True)
     if sign in {"<", "<=", "≤"}:
         # fewer than 5 were seen, so some were; fewer than 1 may be none
         some = value > 1 or (sign != "<" and value >= 1)
-        return CellCount(np.nan, PRESENT if some else UNKNOWN, is_rough=True)
-    return CellCount(value, PRESENT if value > 0 else UNKNOWN, is_rough=True)
+        return _countable(value, CellCount(np.nan, PRESENT if some else UNKNOWN, is_rough=True))
+    return _countable(value, CellCount(value, PRESENT if value > 0 else UNKNOWN, is_rough=True))
 
 
 def presence(cell: str) -> int:

@@ -259,3 +259,8 @@ def test_a_day_in_three_columns_is_put_together():
 def test_where_neither_order_fits_all_it_is_counted_what_could_be_either(column, mixed):
     assert dates(cells(*column)).n_mixed == mixed
     assert dates(cells(*column), "dmy").n_mixed == 0
+
+
+@pytest.mark.parametrize("cell", ["5-.", "1 to ,", "5-3e12", "<3e12", "3000000000+", "2e9"])
+def test_a_count_whose_end_is_no_number_or_beyond_counting_is_unknown_and_never_clean(cell):
+    assert counted(cell).present == UNKNOWN

@@ -72,9 +72,7 @@ def test_more_memory_than_allowed_is_a_sentence_and_the_process_goes_on(reader):
     assert reader.call("tests.io.sandbox.harm:hungry", (10,), 10.0) == 10
 
 
-def test_gdal_loads_without_pandas_which_is_there_for_nanoseconds(
-    reader, tmp_path
-):
+def test_gdal_loads_without_pandas_which_is_there_for_nanoseconds(reader, tmp_path):
     gpd.GeoSeries([Point(35, 30)], crs=4326).to_file(tmp_path / "p.gpkg")
     task = "fieldmon.io.formats.gdal:list_layers"
     (layer,) = reader.call(task, (tmp_path / "p.gpkg", "p.gpkg"), 60.0)

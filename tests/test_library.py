@@ -193,13 +193,13 @@ def test_what_the_library_gives_says_itself_in_one_short_line():
     season = fm.Season.create("season.gpkg", plot, begins=date(2026, 11, 18))
     season.record(fm.Inspections.of([0, 1], [0, 1], date(2026, 11, 18)))
     said = {
-        plot: "<Plot Gate: 3825 plants in 45 rows>",
+        plot: "<Plot Gate: 3,825 plants in 45 rows>",
         fm.read_records("sample_data/mite_records.csv", plot): "<Observations: 329 records>",
-        day: f"<DayPlan: {len(day.route)} of 3825 plants, {day.route.drive_m / 1000:.2f} km, ",
+        day: f"<DayPlan: {len(day.route)} of 3,825 plants, {day.route.drive_m / 1000:.2f} km, ",
         day.route: f"<Route: {len(day.route)} stops, ",
-        start: f"<Start: {start.infested.sum()} of 3825 plants infested>",
+        start: f"<Start: {start.infested.sum()} of 3,825 plants infested>",
         simulated: "<SeasonMetrics: 2 days, ",
-        season: "<Season season.gpkg: <Plot Gate: 3825 plants in 45 rows>>",
+        season: "<Season season.gpkg: <Plot Gate: 3,825 plants in 45 rows>>",
         season.history.inspections: "<Inspections: 2 inspections, 1 find>",
         season.status(date(2026, 11, 18)).hot_spots: "<HotSpots: 0 hot spots with 0 finds>",
     }

@@ -37,7 +37,7 @@ def _boxes(choices: Choices) -> None:
     usual = f"{100 * PriorSettings().background_chance:g}"
     widget_memory.show(
         st.number_input, texts.BACKGROUND, 0.0, 100.0, step=0.5, key=assumptions.BACKGROUND,
-        placeholder=usual, help=texts.BACKGROUND_HELP, format=widget_memory.SHORTEST,
+        placeholder=usual, help=texts.BACKGROUND_HELP,
     )  # fmt: skip
     st.caption(texts.ASSUMED_ROBOT)
 
@@ -46,15 +46,14 @@ def _boxes_of_season(choices: Choices) -> None:
     settings = choices.season.settings
     with st.form("assumed_form", border=False):
         st.caption(texts.ASSUMED_LAID)
-        st.number_input(texts.BACKGROUND, 0.0, 100.0, 100 * settings.prior.background_chance, 0.5,
-                        key="season_background", help=texts.BACKGROUND_HELP,
-                        format=widget_memory.SHORTEST)  # fmt: skip
+        usual = 100 * settings.prior.background_chance
+        widget_memory.anew(st.number_input, texts.BACKGROUND, 0.0, 100.0, usual, 0.5,
+                           key="season_background", help=texts.BACKGROUND_HELP)  # fmt: skip
         # a pest says itself how it spreads
         if settings.pest is None:
             usual = 100 * settings.belief.spread.rate_per_day
-            st.number_input(texts.SPREAD, 0.0, 100.0, usual, 0.5,
-                            key="season_spread", help=texts.SPREAD_HELP,
-                            format=widget_memory.SHORTEST)  # fmt: skip
+            widget_memory.anew(st.number_input, texts.SPREAD, 0.0, 100.0, usual, 0.5,
+                               key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
         st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
 
 

@@ -57,11 +57,10 @@ def season(columns: list, pest: PestInWeather | None = None) -> tuple[int, float
     """
     show, (first, second, third) = widget_memory.show, columns
     n_days = show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25)
-    share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5, key="share", default=2.0,
-                 format=widget_memory.SHORTEST)  # fmt: skip
+    share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5, key="share", default=2.0)
     if pest is not None:
         third.caption(texts.NIGHTS_OF_PEST.format(pest=pest_figures.title(pest.pest)))
         return int(n_days), share / 100, 0.0
-    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=5.0, key="rate", default=10.0,
-                help=texts.SPREAD_HELP, format=widget_memory.SHORTEST)  # fmt: skip
+    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=0.5, key="rate", default=10.0,
+                help=texts.SPREAD_HELP)  # fmt: skip
     return int(n_days), share / 100, rate / 100

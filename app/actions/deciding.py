@@ -81,7 +81,6 @@ def _box(key: str) -> None:
         st.number_input, label, type(step)(deciding.shown(key, low)),
         type(step)(deciding.shown(key, high)), step=step, key=key,
         default=type(step)(deciding.shown(key, deciding.BEGINS[key])),
-        format="%d" if isinstance(step, int) else widget_memory.SHORTEST,
     )  # fmt: skip
 
 

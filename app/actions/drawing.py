@@ -45,20 +45,18 @@ def rows(plot_key: str, *, measured: bool = False) -> None:
             widget_memory.show(st.toggle, texts.NO_ROWS, key=f"no_rows {plot_key}", default=False,
                                help=texts.NO_ROWS_HELP)  # fmt: skip
         widget_memory.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
-                        help=texts.BEARING_HELP, key=f"row_bearing {plot_key}",
-                        format=widget_memory.SHORTEST)  # fmt: skip
+                        help=texts.BEARING_HELP, key=f"row_bearing {plot_key}")  # fmt: skip
         spacings(plot_key)
         now, usual_m = units(), Planting().headland_m
         widget_memory.show(
             st.number_input, texts.HEADLAND.format(unit=texts.UNITS[now.length]),
             *now.limits(0.1, 50.0), step=0.1, key=f"headland {plot_key}",
-            default=now.shown(usual_m), format=widget_memory.SHORTEST,
+            default=now.shown(usual_m),
         )  # fmt: skip
         widget_memory.show(
             st.number_input, texts.HALF_CANOPY.format(unit=texts.UNITS[now.length]),
             *now.limits(0.0, 10.0), step=0.05, key=f"half_canopy {plot_key}",
             help=texts.HALF_CANOPY_HELP.format(usual=now.metres(USUAL_HALF_CANOPY_M, 2)),
-            format=widget_memory.SHORTEST,
         )  # fmt: skip
         widget_memory.show(st.toggle, texts.BOTH_FACES, key=f"both_faces {plot_key}", default=False)
 
@@ -80,7 +78,7 @@ def spacings(plot_key: str) -> None:
     for name, label in (("row_spacing", texts.ROW_SPACING), ("plant_spacing", texts.PLANT_SPACING)):
         widget_memory.show(
             st.number_input, label.format(unit=unit), *now.limits(0.1, 50.0), step=0.1,
-            help=help_, key=f"{name} {plot_key}", format=widget_memory.SHORTEST,
+            help=help_, key=f"{name} {plot_key}",
         )  # fmt: skip
 
 
@@ -104,7 +102,6 @@ def blocks(choices: Choices) -> None:
                     widget_memory.show(
                         st.number_input, label, *limits, step=0.5,
                         key=f"{name} {block.name} {choices.plot_key}",
-                        format=widget_memory.SHORTEST,
                     )  # fmt: skip
 
 
@@ -154,7 +151,9 @@ def content(
         *marks.blocks(field, dark=choices.dark), *marks.paths(field),
         *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
-    if field.gate is not None:
+    if field.gate is None:
+        layers.append(map_layers.gate(choices))
+    else:
         layers.append(marks.places([list(field.gate)], "gate", colours.GATE, texts.TIP_GATE))
     typed = _points(choices)
     if typed:
@@ -168,7 +167,7 @@ def content(
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
         legend=[*turning_rows.legend(choices), *legends.signs(dark=choices.dark)[2:],
-                *legends.plan(field, dark=choices.dark)],
+                legends.gate(), *legends.plan(field, dark=choices.dark)],
         draw=draw,
         labels=[*turning_rows.labels(choices), *map_layers.words(choices)],
     )  # fmt: skip

@@ -10,7 +10,7 @@ import streamlit as st
 from fieldmon.drive.simulated import CHARGED, MUJOCO, MadeUp
 from fieldmon.samplers import sampler
 
-from ..state import cached, widget_memory
+from ..state import cached_simulations, widget_memory
 from ..words import texts
 from ..words.language import of_error
 from . import background
@@ -30,18 +30,13 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
         required=True, format_func=texts.DRIVE_ROBOTS.__getitem__,
     )  # fmt: skip
     share = widget_memory.show(
-        st.number_input,
-        texts.DRIVE_SHARE,
-        0.1,
-        50.0,
-        step=0.5,
-        key="drive_share",
-        default=2.0,
-        format=widget_memory.SHORTEST,
+        st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key="drive_share", default=2.0
     )
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)
-    made = cached.drive_run(key, kind, made_up, choices.plot, scene, sampler(choices.sampler))
+    made = cached_simulations.drive_run(
+        key, kind, made_up, choices.plot, scene, sampler(choices.sampler)
+    )
     over = made.day is not None
     at_work = background.buttons(made, texts.DRIVE_RUN, key="drive_run", over=over)
     st.fragment(_progress, run_every=0.5 if at_work else None)(made, at_work=at_work)

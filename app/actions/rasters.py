@@ -18,8 +18,7 @@ def show_missing() -> None:
         st.caption(texts.MISSING_NOTE)
         bringing_files.show_raster(texts.MISSING_FILE, rasters.MISSING)
         widget_memory.show(st.number_input, texts.MISSING_BELOW, -1000.0, 100_000.0, step=0.1,
-                           key=rasters.MISSING_BELOW, default=0.5,
-                           format=widget_memory.SHORTEST)  # fmt: skip
+                           key=rasters.MISSING_BELOW, default=0.5)  # fmt: skip
         bringing_files.show_kept_raster(rasters.MISSING)
 
 
@@ -33,7 +32,6 @@ def show_risk() -> None:
                            format_func=texts.RISK_MEANINGS.__getitem__)  # fmt: skip
         if widget_memory.value(rasters.RISK_MEANING) in RELATIVE:
             widget_memory.show(st.number_input, texts.RISK_SHARE, 0.1, 50.0, step=0.5,
-                               key=rasters.RISK_SHARE, default=2.0,
-                               format=widget_memory.SHORTEST)  # fmt: skip
+                               key=rasters.RISK_SHARE, default=2.0)  # fmt: skip
             widget_memory.show(st.toggle, texts.RISK_LOW, key=rasters.RISK_LOW, default=False)
         bringing_files.show_kept_raster(rasters.RISK)

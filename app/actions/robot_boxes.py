@@ -26,11 +26,12 @@ def of_files(robot: Robot) -> Robot:
     unit = texts.UNITS[units().length]
     shown = widget_memory.show(
         st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *units().limits(0.1, 10.0),
-        step=0.05, key="robot_width", help=texts.ROBOT_WIDTH_HELP, format=widget_memory.SHORTEST,
+        step=0.05, key="robot_width", help=texts.ROBOT_WIDTH_HELP,
     )  # fmt: skip
     times = widget_memory.show(
         st.selectbox, texts.ROBOT_TIMES_LABEL, list(ROBOT_TIMES), key="robot_times",
         default=robot.times, filter_mode=None, format_func=lambda name: _times_name(robot, name),
+        help=texts.ROBOT_TIMES_HELP,
     )  # fmt: skip
     return _with_width(robot.with_times(times or USUAL_TIMES), shown)
 
@@ -41,12 +42,13 @@ def of_season(robot: Robot, key: str) -> Robot:
     width_m, limits = robot.width_m, units().limits(0.1, 10.0)
     was = None if width_m is None else min(max(now.shown(width_m), limits[0]), limits[1])
     unit = texts.UNITS[now.length]
-    shown = st.number_input(texts.ROBOT_WIDTH.format(unit=unit), *limits, value=was, step=0.05,
-                            key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP,
-                            format=widget_memory.SHORTEST)  # fmt: skip
+    shown = widget_memory.anew(
+        st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *limits, value=was, step=0.05,
+        key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP,
+    )  # fmt: skip
     names = [*ROBOT_TIMES, *([_OWN] if robot.times is None else [])]
     times = st.selectbox(texts.ROBOT_TIMES_LABEL, names, names.index(robot.times or _OWN),
-                         key=f"robot_times {key}", filter_mode=None,
+                         key=f"robot_times {key}", filter_mode=None, help=texts.ROBOT_TIMES_HELP,
                          format_func=lambda name: _times_name(robot, name))  # fmt: skip
     charged = robot if times == _OWN else robot.with_times(times)
     # what is shown is rounded: what nobody changed stays as it was

@@ -70,7 +70,6 @@ def _crew() -> EstateCrew:
             chosen[name] = widget_memory.show(
                 st.number_input, texts.PLAN_ALL_CREW[name], least, most, step=step,
                 key=f"crew_{name}", default=getattr(usual, name),
-                format="%d" if isinstance(step, int) else widget_memory.SHORTEST,
             )  # fmt: skip
     return EstateCrew(
         **{name: getattr(usual, name) if v is None else v for name, v in chosen.items()}

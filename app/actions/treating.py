@@ -14,8 +14,7 @@ from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
 
-from ..state import notices
-from ..state.widget_memory import SHORTEST
+from ..state import notices, widget_memory
 from ..words import texts
 from ..words.language import in_words, listed
 from . import acting
@@ -62,21 +61,15 @@ def _boxes(units: UnitsInLanguage) -> None:
     """Show what a certifier asks of each treatment."""
     area = texts.UNITS[units.area]
     left, right = st.columns(2)
-    left.number_input(texts.TREAT_DOSE, 0.0, None, None, key="treat dose", format=SHORTEST)
+    anew = widget_memory.anew
+    anew(left.number_input, texts.TREAT_DOSE, 0.0, None, None, key="treat dose")
     right.text_input(texts.TREAT_UNIT, key="treat unit", placeholder="l/ha")
-    left.number_input(texts.TREAT_WATER.format(area=area), 0.0, None, None, key=_water(units),
-                      format=SHORTEST)  # fmt: skip
+    water = texts.TREAT_WATER.format(area=area)
+    anew(left.number_input, water, 0.0, None, None, key=_water(units))
     right.text_input(texts.TREAT_GROUP, key="treat group", help=texts.TREAT_GROUP_HELP)
     left.number_input(texts.TREAT_WAIT, 0, None, None, key="treat days", help=texts.TREAT_BY_LABEL)
-    right.number_input(
-        texts.TREAT_ENTRY,
-        0.0,
-        None,
-        None,
-        key="treat hours",
-        help=texts.TREAT_BY_LABEL,
-        format=SHORTEST,
-    )
+    anew(right.number_input, texts.TREAT_ENTRY, 0.0, None, None, key="treat hours",
+         help=texts.TREAT_BY_LABEL)  # fmt: skip
     left.time_input(texts.TREAT_BEGAN, None, key="treat began")
     right.time_input(texts.TREAT_ENDED, None, key="treat ended", help=texts.TREAT_ENDED_HELP)
     for name in _TEXTS:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..show.maps import directions as drawn_directions
-from ..state import cached, row_settings
+from ..state import cached, cached_files, row_settings
 from ..words import texts
 from ..words.language import number
 
@@ -34,7 +34,11 @@ def directions(choices: Choices) -> tuple[RowDirection, ...]:
         return rows.directions
     decided = rows.named or not rows.in_rows or plot.grid.aisles_m is not None
     # found without what was said of them: one may change one's mind
-    return () if decided or not _is_said(choices) else cached.directions(choices.plot_key, plants)
+    return (
+        ()
+        if decided or not _is_said(choices)
+        else cached_files.directions(choices.plot_key, plants)
+    )
 
 
 def show(choices: Choices) -> None:

@@ -11,7 +11,7 @@ from fieldmon.drive.vda5050.watcher import FAILED, LOST, PAUSED, WAITING
 from fieldmon.drive.vda5050.wire import Broker, RobotName
 from fieldmon.errors import FieldmonError
 
-from ..state import cached, widget_memory
+from ..state import cached_simulations, widget_memory
 from ..words import texts
 from ..words.language import of_error
 from . import background
@@ -42,7 +42,7 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
     except FieldmonError as error:
         st.error(of_error(error))
         return None
-    live = cached.live_drive(key, broker, name, scene)
+    live = cached_simulations.live_drive(key, broker, name, scene)
     at_work = background.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
     st.fragment(_standing, run_every=1.0 if at_work else None)(live, at_work=at_work)
     return live

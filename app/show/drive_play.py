@@ -44,8 +44,11 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
         **common,
         layers=[
             *map_layers.plan(choices), plant_layers.plants(grid, shade, notes, "plants-chance"),
+            map_layers.gate(choices),
         ],
-        legend=[{**legends.by_chance(dark=dark), "of": ""}, {**seen, "of": "", "title": ""}],
+        legend=[{**legends.by_chance(dark=dark), "of": ""}, {**seen, "of": "", "title": ""},
+                legends.gate()],
+        labels=map_layers.words(choices),
         drive=None if day is None else published(scene, day),
     )  # fmt: skip
 

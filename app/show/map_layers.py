@@ -17,13 +17,15 @@ from .maps import colours, labels, legends, marks, plan_layers, plant_layers, ro
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
+    from pydeck import Layer
+
     from fieldmon.planning.route import Route
 
     from ..state.choices import Choices
 
 #: the layers of each switch
 PARTS = {
-    "route": ("casing", "route", "arrows", "gate"),
+    "route": ("casing", "route", "arrows"),
     "hot": ("hot", "hot-edge"),
     "treated": ("treated", "treated-edge"),
     "records": ("records",),
@@ -53,6 +55,7 @@ def day_map(
         *sprayed,
         *marks.with_hot(plants(choices), _hot_layers(choices)),
         *route_of(choices, route),
+        gate(choices),
         *records(choices),
         *(above or []),
     ]
@@ -109,7 +112,7 @@ def legend(choices: Choices, *, treated: bool = False) -> list[legends.LegendPar
     """Return the legend of a day's map."""
     dark = choices.dark
     return [legends.by_chance(dark=dark), legends.by_state(), legends.by_age(dark=dark),
-            *legends.signs(dark=dark, treated=treated),
+            *legends.signs(dark=dark, treated=treated), legends.gate(),
             *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
 
 
@@ -134,6 +137,13 @@ def plan(choices: Choices) -> list:
     return cached.layers(
         f"plan {choices.key} {dark}", lambda: plan_layers.plan(plot.grid, plot.field, dark=dark)
     )
+
+
+def gate(choices: Choices) -> Layer:
+    """Return the ring of the gate; made once."""
+    return cached.layers(
+        f"gate {choices.key}", lambda: [route_layers.gate(choices.plot.aisles)]
+    )[0]  # fmt: skip
 
 
 def records(choices: Choices) -> list:

@@ -44,7 +44,9 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
         # results may be brought days later
         days = [date.fromisoformat(day) for day in dict.fromkeys((said.first, said.last))]
         if days != [at.date()]:
-            parts.append("–".join(choices.units.said_day(day, choices.on) for day in days))
+            said_days = "–".join(choices.units.said_day(day, choices.on) for day in days)
+            treated = batch.kind == "treatment"
+            parts.append(said_days if treated else texts.BATCH_OF_DAY.format(days=said_days))
     parts += [texts.isolated(batch.who) if batch.who else "", texts.UNDONE if batch.undone else ""]
     return " · ".join(part for part in parts if part)
 

@@ -48,6 +48,7 @@ def content(
     layers = [
         *map_layers.plan(choices), *shown,
         *route_layers.route(driven, dark=dark),
+        map_layers.gate(choices),
         *(marks.truth(grid, _left(day), dark=dark) if truth else []),
     ]  # fmt: skip
     colour = colours.TRUTH_IN_DARK if dark else colours.TRUTH

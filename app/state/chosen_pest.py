@@ -15,7 +15,7 @@ from fieldmon.io.readers.pest_file import read_pest, shipped_names, shipped_pest
 from fieldmon.io.readers.weather_options import WeatherOptions
 from fieldmon.plot.local_clock import local_clock
 
-from . import cached, widget_memory
+from . import cached_files, widget_memory
 from .brought_files import brought, messages_of, settled
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def weather(plot: Plot, today: date) -> Imported[Weather] | None:
     ends = local_clock(plot.field).moment(today, time(23, 59))
     try:
         wanted = settled(file, WeatherOptions(now=ends)).on(plot.field)
-        return cached.weather(file.key, wanted, file.source)
+        return cached_files.weather(file.key, wanted, file.source)
     except FieldmonError as error:
         _note(WEATHER, error)
         return None

@@ -12,7 +12,7 @@ from fieldmon.io.options import PlotOptions
 from fieldmon.plot.local_clock import local_clock
 
 from ..words.language import of_error
-from . import cached, held, plot_files, plot_source, sample_estate, seasons_folder
+from . import cached, cached_files, held, plot_files, plot_source, sample_estate, seasons_folder
 from .brought_files import settled
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def plots() -> tuple[list[PlotState], list[NotAmong]]:
     files = plot_files.of_session()
     if files is not None and files.plot is not None:
         try:
-            read = cached.plots(
+            read = cached_files.plots(
                 files.plot.key, settled(files.plot, PlotOptions()), files.plot.source
             )
             found += [

@@ -11,7 +11,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.io.rasters.tiles import is_tiles, read_tiles
 from fieldmon.io.rasters.values import RasterOptions
 
-from . import cached, kept_files, kept_ground, widget_memory
+from . import cached_files, kept_files, kept_ground, widget_memory
 from .brought_files import brought, messages_of, settled, take_out
 from .kept_ground import Agreement, Ground, GroundPicture, GroundTiles
 
@@ -76,7 +76,7 @@ def shows(file: File) -> str:
     if chosen is not None:
         return chosen
     options = settled(file, RasterOptions())
-    looks = cached.looks_like_heights(f"{file.key} {options}", options, file.source)
+    looks = cached_files.looks_like_heights(f"{file.key} {options}", options, file.source)
     return HEIGHTS if looks else PICTURE
 
 
@@ -109,7 +109,7 @@ def _read(file: File, choices: Choices) -> Ground:
     options = settled(file, RasterOptions())
     key = f"{file.key} {options} {choices.key}"
     is_relief = shows(file) == HEIGHTS
-    read = cached.relief if is_relief else cached.backdrop
+    read = cached_files.relief if is_relief else cached_files.backdrop
     imported = read(key, options, file.source, choices.plot.field)
     st.session_state[_SAID] = messages_of(file, imported)
     told = tuple(str(message.sentence) for message in imported.messages)

@@ -19,7 +19,7 @@ from fieldmon.io.prepare import with_plants
 from fieldmon.io.prepared import Laid
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
 
-from . import brought_files, cached, rasters, sample_estate
+from . import brought_files, cached, cached_files, rasters, sample_estate
 from .brought_files import File, FileMessage, LeftOut, messages_of, settled
 from .plot_edits import Edit, edited
 from .row_settings import block_settings, row_settings
@@ -126,14 +126,16 @@ def outline(files: Files, which: Which) -> Outline:
     if files.plot is None:
         return Outline(key, None, (), measured, heard)
     options = settled(files.plot, PlotOptions())
-    read = cached.plots(files.plot.key, options, files.plot.source)
+    read = cached_files.plots(files.plot.key, options, files.plot.source)
     number = which(files.plot, [field.name for field in read.value])
     field = read.value[number]
     if measured is not None:
         field = with_plants(field, measured)
     field, drawn_there, longer = _with_drawn(files, field)
     if files.plot.key.startswith(_SAMPLE):
-        field = replace(field, paths=cached.paths(_sample("path", sample_estate.PATHS).source))
+        field = replace(
+            field, paths=cached_files.paths(_sample("path", sample_estate.PATHS).source)
+        )
     said = messages_of(files.plot, read)
     own = tuple(one for one in said if one.message.feature in (None, field.name))
     said = (*own, *heard, *drawn_there)
@@ -145,7 +147,7 @@ def _measured(file: File | None) -> tuple[Plants | None, tuple[FileMessage, ...]
     if file is None:
         return None, (), ""
     options = settled(file, ReadOptions())
-    read = cached.measured_plants(file.key, options, file.source)
+    read = cached_files.measured_plants(file.key, options, file.source)
     return read.value, messages_of(file, read), f"{file.key}{options}"
 
 
@@ -155,12 +157,12 @@ def _with_drawn(files: Files, field: Field) -> tuple[Field, tuple[FileMessage, .
     key = ""
     if (file := files.rows) is not None and field.plants is None:
         options = settled(file, ReadOptions())
-        rows = cached.drawn_rows(file.key, options, file.source)
+        rows = cached_files.drawn_rows(file.key, options, file.source)
         field = replace(field, row_lines=rows.value)
         said, key = messages_of(file, rows), f"{file.key}{options}"
     if (file := files.blocks) is not None:
         options = settled(file, PlotOptions())
-        blocks = parted((field,), cached.drawn_blocks(file.key, options, file.source))
+        blocks = parted((field,), cached_files.drawn_blocks(file.key, options, file.source))
         (field,) = blocks.value
         said, key = (*said, *messages_of(file, blocks)), f"{key}{file.key}{options}"
     return field, said, key
@@ -197,7 +199,7 @@ def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:
     if field is None:
         choices = PlantingChoices(**row_settings(outline.key))
         sources = PlotSources(plants=files.plants.source)
-        around = cached.plot_around(outline.key, choices, sources, outline.measured)
+        around = cached_files.plot_around(outline.key, choices, sources, outline.measured)
         if not edits:
             return around, f"{outline.key}{choices}"
         field = around.field
@@ -221,7 +223,7 @@ def laid(
         replace(block, **said) for block, said in zip(field.blocks, by_hand, strict=True)
     )
     key = f"{plot_key}{edits}{by_hand if any(by_hand) else ''}"
-    return cached.plot(key, choices, replace(field, blocks=planted)), f"{key}{choices}"
+    return cached_files.plot(key, choices, replace(field, blocks=planted)), f"{key}{choices}"
 
 
 def drawn(plot_key: str) -> tuple[Edit, ...]:
@@ -245,7 +247,7 @@ def _records(
         options = settled(file, RecordOptions())
         longer = f"{key}{file.key}{options}"
         source = RecordSource(file.source, options)
-        read = cached.records(longer, source, plot, outline.fields, outline.measured)
+        read = cached_files.records(longer, source, plot, outline.fields, outline.measured)
     except FieldmonError as problem:
         return Observations.none(), (), (LeftOut(file, problem),), key
     return read.value, messages_of(file, read), (), longer

@@ -11,7 +11,7 @@ from fieldmon.infestation.raster_risk import RELATIVE, RiskSettings
 from fieldmon.io.rasters.values import RasterOptions
 from fieldmon.io.sources import CanopySource, RiskSource
 
-from . import cached, widget_memory
+from . import cached, cached_files, widget_memory
 from .brought_files import brought, messages_of, settled
 
 if TYPE_CHECKING:
@@ -33,13 +33,13 @@ RISK_SHARE, RISK_LOW = "risk_share", "risk_low"
 
 def without_missing(plot: Plot, key: str) -> tuple[Plot, tuple[FileMessage, ...], str]:
     """Return the plot without the plants that are not there, what was said, and the longer key."""
-    left, said, key = _read(MISSING, key, _canopy, cached.without_missing, plot)
+    left, said, key = _read(MISSING, key, _canopy, cached_files.without_missing, plot)
     return plot if left is None else left, said, key
 
 
 def risk(plot: Plot, key: str) -> tuple[cached.Array | None, tuple[FileMessage, ...], str]:
     """Return the risk of each plant ``(n,)`` or None, what the import said, and the longer key."""
-    return _read(RISK, key, _risk, cached.risk, plot)
+    return _read(RISK, key, _risk, cached_files.risk, plot)
 
 
 def problem(kind: str) -> FieldmonError | None:

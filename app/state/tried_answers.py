@@ -15,7 +15,7 @@ from fieldmon.io.read import read_plots, read_records
 from fieldmon.io.readers.nearby import records_on_plot
 from fieldmon.plot.local_clock import clock_at, local_clock
 
-from . import brought_files, cached
+from . import brought_files, cached_files
 from .brought_files import PLOT, settled
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def tried_of_records(left_out: LeftOut, field: Field) -> tuple[TriedAnswer, ...]
 def _each(problem: ChoiceNeeded, file: File, make: Make) -> tuple[TriedAnswer, ...]:
     before = f"{file.asked} {brought_files.answers(file.asked)} {problem.option}"
     return tuple(
-        cached.tried(f"{before} {answer}", partial(make, answer))
+        cached_files.tried(f"{before} {answer}", partial(make, answer))
         for answer in map(str, problem.choices[:_MOST])
     )
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 T = TypeVar("T")
-#: how a box writes a number that may have a fraction: 2, not 2.00
-SHORTEST = "%.8g"
+# how a box writes a number that may have a fraction: 2, not 2.00
+_SHORTEST = "%.8g"
 _VALUES, _PAGE, _BEGINS = "widget values", "page", "widget begins"
 
 
@@ -92,9 +92,17 @@ def show(
         # the last page's widget, if it was just left, knows better than what its last run saw
         begins[key] = state[key] = state.get(key, kept)
     own = _own_default(widget, arguments, begins.get(key, kept))
-    chosen = widget(*arguments, key=key, **settings, **own)
+    chosen = anew(widget, *arguments, key=key, **settings, **own)
     _values()[key] = (page, chosen)
     return chosen
+
+
+def anew(widget: Callable[..., T], *arguments: object, **settings: object) -> T:
+    """Show a widget that begins anew on each page, its number written as `show` writes it."""
+    numbers = (*arguments[1:], settings.get("value"), settings.get("step"))
+    if widget.__name__ == "number_input" and any(isinstance(one, float) for one in numbers):
+        settings["format"] = _SHORTEST
+    return widget(*arguments, **settings)
 
 
 def _own_default(

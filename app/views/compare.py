@@ -11,7 +11,7 @@ from fieldmon.simulation.worker import LaidPlot
 
 from ..actions import background, changing, comparing
 from ..show import charts, field_map, map_layers, verdicts
-from ..state import cached, chosen_day, chosen_pest
+from ..state import cached_simulations, chosen_day, chosen_pest
 from ..state.comparison import Comparison, curve, gains, outcomes
 from ..words import texts
 from ..words.language import of_error
@@ -37,7 +37,7 @@ def show(choices: Choices) -> None:
         return
     key = f"{choices.key} {choices.revision} {choices.day} {chosen_pest.key(pest)}"
     laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
-    running = cached.comparison(key, settings, choices.robot, laid)
+    running = cached_simulations.comparison(key, settings, choices.robot, laid)
     label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
     over = running.done == running.total
     at_work = background.buttons(running, label, key="run", over=over)

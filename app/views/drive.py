@@ -10,7 +10,7 @@ from fieldmon.compute.digest import digest
 
 from ..actions import driving, watching
 from ..show import drive_play, field_map
-from ..state import cached, widget_memory
+from ..state import cached_simulations, widget_memory
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def show(choices: Choices) -> None:
     else:
         data = brought.getvalue()
         key = f"{shown} {digest(data)}"
-        day = cached.recorded_drive(key, data, choices.plot, scene)
+        day = cached_simulations.recorded_drive(key, data, choices.plot, scene)
         st.caption(texts.DRIVE_BELIEVED)
     if day is not None:
         st.caption(texts.DRIVE_KEYS)

@@ -72,8 +72,8 @@ def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> Non
     st.altair_chart(charts.still_out(days, (day, out), named), alt=out)
     st.markdown(f"**{texts.ROW_AGES}**")
     line = choices.plot.grid.row_line.astype(np.int64) + 1
-    never = len(np.unique(line)) - len(np.unique(line[~np.isnan(progress.days_since)]))
+    rows, seen = (len(np.unique(of)) for of in (line, line[~np.isnan(progress.days_since)]))
     if progress.inspected:
         ages = charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE))
         st.altair_chart(ages, alt=texts.ROW_AGES)
-    st.caption(texts.NEVER_ROWS.format(n=never, all=len(np.unique(line))))
+    st.caption(texts.NEVER_ROWS.format(n=rows - seen, all=rows) if seen < rows else texts.EVERY_ROW)

@@ -11,7 +11,7 @@ from fieldmon.simulation.worker import LaidPlot
 
 from ..actions import comparing
 from ..show import charts, field_map, simulated_day
-from ..state import cached, chosen_day, chosen_pest
+from ..state import cached_simulations, chosen_day, chosen_pest
 from ..words import texts
 from ..words.language import number
 from ..words.strategies import sampler_name
@@ -32,7 +32,9 @@ def show(choices: Choices) -> None:
     laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
     key = f"{choices.key}{choices.revision}{choices.day}{chosen_pest.key(pest)}"
     seasons = {
-        name: cached.simulated_season(key, name, (*numbers, int(seed)), choices.robot, laid)
+        name: cached_simulations.simulated_season(
+            key, name, (*numbers, int(seed)), choices.robot, laid
+        )
         for name in names
     }
     name = st.segmented_control(

@@ -132,7 +132,7 @@ def _worded(function: str, arguments: list[ast.expr], named: dict[str, str]) -> 
     if function in _WORDING and said and isinstance(said[0], str) and _has_letters(said[0]):
         return TextEntry(LIBRARY, said[0])
     if function == "counted" and said and isinstance(said[-1], str):
-        return TextEntry(LIBRARY, f"{{n}} {said[-1]}s", f"{{n}} {said[-1]}")
+        return TextEntry(LIBRARY, f"{{n:,}} {said[-1]}s", f"{{n:,}} {said[-1]}")
     return None
 
 

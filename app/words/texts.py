@@ -68,7 +68,7 @@ NO_MAP_DO = {
 }
 NO_MAP_TAKE_OUT = "Take out {name}"
 ROWS = "Rows"
-BEARING = "Row bearing (degrees from north)"
+BEARING = "Row direction (degrees from north)"
 BEARING_HELP = "Leave empty to have it found from the boundary or the plants."
 ROW_SPACING, PLANT_SPACING = "Row to row ({unit})", "Plant to plant ({unit})"
 HEADLAND = "Headland ({unit})"
@@ -86,11 +86,12 @@ ROBOT_WIDTH_HELP = (
     "Ways keep half of it off the canopies of plants, and aisles that are too narrow are not "
     "entered. Left empty, the robot is a point."
 )
-ROBOT_TIMES_LABEL = "Times charged"
+ROBOT_TIMES_LABEL = "Time for row changes and stops"
+ROBOT_TIMES_HELP = "Measured in simulated drives, or as the thesis has them."
 ROBOT_TIMES_NAMES = {
-    "measured": "Measured in simulated drives: {row} s a row change, {stop} s a stop",
-    "thesis": "The thesis's: {row} s a row change, {turn} s a turn",
-    "own": "As set by command: {row} s a row change, {turn} s a turn, {stop} s a stop",
+    "measured": "Measured: {row} s a row, {stop} s a stop",
+    "thesis": "Thesis: {row} s a row, {turn} s a turn",
+    "own": "Own: {row} s a row, {turn} s a turn, {stop} s a stop",
 }
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
@@ -194,8 +195,8 @@ MAP_WORDS = {
 }  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
-    "neighbouring plants at night; every sampler meets the same insects. Detection is all finds "
-    "so far in percent of all infestations so far."
+    "neighbouring plants at night; every strategy meets the same insects. Found so far is in "
+    "percent of all infestations so far."
 )
 # pests and weather
 PEST_AND_WEATHER = "Pest and weather"
@@ -271,7 +272,7 @@ SPREAD_HELP = "Chance a night that an infested plant infests each plant next to 
 NIGHTS_OF_PEST = "Spreads as the chosen pest, by its weather where that is known: {pest}."
 SEED_HELP = "The same seed gives the same season."
 DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"
-COMPARED = "Samplers compared"
+COMPARED = "Ways to choose the plants"
 BOTH_FACES = "Inspect both faces of each row"
 SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really infested"
 LEFT = "Infested left"
@@ -375,7 +376,7 @@ NO_SEASONS = (
 TO_ROUTE = "Show today's route"
 
 # -- today
-PLANTS_COUNTED = Plural("{n} plant", "{n} plants")
+PLANTS_COUNTED = Plural("{n:,} plant", "{n:,} plants")
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
@@ -460,7 +461,7 @@ LEGEND_HEADLAND, LEGEND_AISLE, LEGEND_NO_GO = "headland", "aisle", "no-go area"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
-BEARING_IS, SPACING_IS = "Row bearing", "Rows / plants apart"
+BEARING_IS, SPACING_IS = "Row direction", "Rows / plants apart"
 BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
 BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
@@ -525,7 +526,7 @@ MISSING_NOTE = (
 )
 MISSING_BELOW = "A plant is missing where the raster is below"
 RECORDS, RECORDS_NONE = "Records up to", "There are no records of this plot."
-RECORDS_SHOWN = "{shown} of {all} records shown ({found} with pests, {clean} without)."
+RECORDS_SHOWN = "{shown:,} of {all:,} records shown ({found:,} with pests, {clean:,} without)."
 UNDATED = "Records without a date are always shown."
 
 # -- the map of the field
@@ -608,7 +609,7 @@ HISTORY_TREATED = (
     "It was found infested, and in this season plants found are taken as treated at once: from "
     "then on it counts as clean, and its chance grows again as insects come from its neighbours."
 )
-HISTORY_STOP = "Stop {n} of {all} on the day's route, at {time}."
+HISTORY_STOP = "Stop {n:,} of {all:,} on the day's route, at {time}."
 HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
@@ -713,10 +714,11 @@ LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too
 RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 BATCHES_SAID = {
-    "findings": Plural("{n} plant, {found} found", "{n} plants, {found} found"),
+    "findings": Plural("{n:,} plant, {found:,} found", "{n:,} plants, {found:,} found"),
     "treatment": "treatment {source}",
     "corrections": "corrections: {source}",
 }
+BATCH_OF_DAY = "inspected {days}"
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
 TREAT_UNSAID = (
@@ -766,6 +768,7 @@ TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
 OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
 ROW_NEVER, ROW_TODAY = "never", "today"
+EVERY_ROW = "Every row was inspected."
 NEVER_ROWS = Plural(
     "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
 )
@@ -801,7 +804,7 @@ NEXT, NEXT_PLACE = "Next", "Row {row} · plant {plant}"
 NEXT_WAY = "{metres} {compass}{along}"
 NEXT_ALONG = ", in this row"
 NEXT_AISLE = ", change rows"
-NEXT_CHANCE = Text("Chance {chance:.1%} · stop {done} done, {left} to go · {hours} left")
+NEXT_CHANCE = Text("Chance {chance:.1%} · {done:,} done, {left:,} to go · {hours} left")
 COMPASS = ("north", "north-east", "east", "south-east", "south", "south-west", "west",
            "north-west")  # fmt: skip
 ARROWS = ("⬆️", "↗️", "➡️", "↘️", "⬇️", "↙️", "⬅️", "↖️")
@@ -822,7 +825,7 @@ COMPARE_INTRO = (
     "Seasons are simulated on this plot: the start is drawn from today's chance map, and every "
     "strategy meets the same insects. Less loss (infested plants times days) is better."
 )
-STRATEGY_SAMPLERS, STRATEGY_HOURS = "Samplers", "Working hours"
+STRATEGY_SAMPLERS, STRATEGY_HOURS = "Ways to choose the plants", "Working hours"
 WHOSE_DAY = "Whose day"
 STRATEGY_INSPECTION_S, STRATEGY_ROBOTS = "Seconds at a plant", "Robots"
 STRATEGY_ROBOTS_HELP = (
@@ -849,7 +852,7 @@ DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago.
 DRIVE_PAUSED = "The robot is paused, or driven by hand."
 DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
 DRIVE_ROBOT = "Robot"
-DRIVE_ROBOTS = {"charged": "As charged", "mujoco": "Physical simulation"}
+DRIVE_ROBOTS = {"charged": "Planned times", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (
     "The finds are made up: insects are drawn from the chance map, on this share of the plants."
 )

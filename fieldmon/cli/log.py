@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import typer
 
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import FileProblem
 
+AllMornings = Annotated[
+    bool,
+    typer.Option("--mornings", help="Work all mornings of a long season out again: half a minute."),
+]
 
-def log(season: SeasonFile) -> None:
+
+def log(
+    season: SeasonFile,
+    mornings: AllMornings = False,  # noqa: FBT002 - a flag
+) -> None:
     """Show the log of a season, and check it and the file for changes to the past.
 
     A changed past is refused, with the entry that was changed. Give the last digest to somebody
     else: then nobody can rewrite the whole log unnoticed.
 
-    The entries come first. Then every morning is worked out again, which takes a long season half
-    a minute, and held to its digest.
+    Mornings are worked out again and held to their digests: all of a short season, of a long one
+    the last ones, or all with --mornings.
 
     Example: fieldmon log season.gpkg
     """
@@ -31,7 +41,12 @@ def log(season: SeasonFile) -> None:
             f"The file must say what its log says, but it does not: {' '.join(wrong)} Go back to a "
             "copy from before."
         )
+    whole = mornings or kept.is_short
     with counting("Mornings worked out again") as count:
-        said = kept.other_maps(tell=count)
+        said = kept.other_maps(whole=whole, tell=count)
     for sentence in said:
         typer.echo(f"doubtful: {sentence}", err=True)
+    if not whole:
+        typer.echo(
+            "worked out again: the last mornings only; fieldmon log --mornings does all", err=True
+        )

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring import Season, Status
 
-#: plants times days up to which a season is checked whole whenever its state is asked for
-_WHOLE = 2_000_000
 #: batches of which it is listed what they say
 _DETAILED = 100
 
@@ -59,13 +57,12 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
         _show_rows(kept, now)
     if batches:
         _show_batches(kept)
-    # all of a long season takes many seconds
-    whole = now.plants * (now.day + 1) <= _WHOLE
-    for sentence in kept.verify(whole=whole):
+    for sentence in kept.verify(whole=kept.is_short):
         typer.echo(f"doubtful: {sentence}", err=True)
-    if not whole:
+    if not kept.is_short:
         typer.echo(
-            "checked against their digests: the last mornings only; fieldmon log checks the rest",
+            "checked against their digests: the last mornings only; fieldmon log --mornings checks "
+            "the rest",
             err=True,
         )
 

@@ -18,7 +18,7 @@ class Worded(str):  # noqa: SLOT000 - it holds what it was made of
     Attributes
     ----------
     words
-        The sentence with its blanks, ``"{n} plants"``.
+        The sentence with its blanks, ``"{n:,} plants"``.
     values
         What stands in the blanks: numbers, names, other `Worded`.
     one
@@ -120,14 +120,14 @@ def estimate(value: float) -> Worded:
 
 
 def hours_figure(value_h: float) -> Worded:
-    """Return hours to the tenth, whole ones without.
+    """Return hours to the tenth, whole ones without; what takes time takes a tenth or more.
 
     Examples
     --------
-    >>> hours_figure(11.98), hours_figure(3.46)
-    ('12', '3.5')
+    >>> hours_figure(11.98), hours_figure(3.46), hours_figure(0.01), hours_figure(0)
+    ('12', '3.5', '0.1', '0')
     """
-    return figure(round(value_h, 1), "g")
+    return figure(max(round(value_h, 1), 0.1) if value_h > 0 else round(value_h, 1), "g")
 
 
 def joined(between: str, parts: Iterable[str]) -> Worded:
@@ -150,8 +150,8 @@ def first_few(names: Sequence[str], most: int) -> str:
 
 
 def counted(number: int, thing: str) -> Worded:
-    """Return so many things in words: "1 plant", "12 plants"."""
-    one, many = f"{{n}} {thing}", f"{{n}} {thing}s"
+    """Return so many things in words: "1 plant", "1,320 plants"."""
+    one, many = f"{{n:,}} {thing}", f"{{n:,}} {thing}s"
     made = worded(one if number == 1 else many, n=number)
     made.words, made.one, made.number = many, one, int(number)
     return made

@@ -85,7 +85,7 @@ class PlantingChoices:
     >>> import fieldmon as fm
     >>> choices = fm.PlantingChoices(row_spacing_m=5.0)
     >>> fm.read_plot("sample_data/paran_estate.zip", feature="Gate", planting=choices)
-    <Plot Gate: 3060 plants in 36 rows>
+    <Plot Gate: 3,060 plants in 36 rows>
     """
 
     row_bearing_deg: float | None = None

@@ -51,6 +51,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+#: plants times days of which all mornings are worked out again within some two seconds
+SHORT = 2_000_000
+
 
 class SeasonChange:
     """One change of a season within its transaction.
@@ -293,6 +296,12 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                     for row in rows
                 ),
             )
+
+    @property
+    def is_short(self) -> bool:
+        """Whether all its mornings can be worked out again whenever its state is asked for."""
+        days = (self.last_date() - self.settings.begins).days + 1
+        return len(self.plot.grid) * days <= SHORT
 
     def verify(self, *, whole: bool = True) -> tuple[str, ...]:
         """Hold the file to its digests; return a sentence for each thing that differs.

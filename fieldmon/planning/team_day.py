@@ -163,10 +163,10 @@ class _TeamDay:
             return
         self.waiting.append(worker)
         if self._wait_for_each_other(worker):
-            # one of them steps out into the headland, and lets the other in
-            self._release((worker.holds,), worker, now_s)
-            worker.holds = NOWHERE
-        if worker.target() >= 0:
+            # one of them steps out into the headland, lets the other in, and may follow at once
+            left, worker.holds = worker.holds, NOWHERE
+            self._release((left,), worker, now_s)
+        if worker in self.waiting and worker.target() >= 0:
             last_s = now_s + worker.spare_s(now_s + worker.onward_s())
             self._at(max(last_s, now_s), worker, self._give_up)
 
@@ -205,6 +205,7 @@ class _TeamDay:
             return False
         assert worker.leg is not None  # noqa: S101 - set on leaving
         left, worker.driven = worker.holds, driven
+        worker.version += 1  # that it would have given up is void
         self.holder[needed] = worker.k
         self._free((left,) if left not in needed else (), worker)
         arrive_s = now_s + worker.onward_s()

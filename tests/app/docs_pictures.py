@@ -2,8 +2,7 @@
 
 A season of a week is begun on a plot of the sample estate, with made-up insects that are found and
 treated; today is planned. On two more plots a season has just begun. Pictures go to `docs/images`.
-Those of questions about records, of a scout's code and page, of maps below the plot, of drives and
-of before and after are made by hand.
+Those of a scout's page, of maps below the plot, of drives and of before and after are made by hand.
 """
 
 import math
@@ -15,6 +14,7 @@ from datetime import timedelta
 from io import BytesIO
 from pathlib import Path
 
+import geopandas as gpd
 import numpy as np
 from PIL import Image
 from playwright.sync_api import sync_playwright
@@ -27,6 +27,8 @@ from tests.paths import ROOT
 
 IMAGES = ROOT / "docs" / "images"
 DAYS, NAME = 7, "Gate"
+#: the grid in which the records without one are written
+METRES = 2039
 #: plots of the estate on which a season has just begun
 OTHERS = ("Pond", "Wadi")
 #: where insects begin, as shares of the rows and of a row, and how far they reach in metres
@@ -43,6 +45,8 @@ SHOTS = {
     "plots": ("plots", "laptop", "light", "en", 1080),
     "compare": ("compare", "laptop", "light", "en", 1200),
     "answers": ("plot", "laptop", "light", "en", 1080),
+    "answers_of_records": ("plot", "laptop", "light", "en", 1080),
+    "send": ("today", "laptop", "light", "en", 1080),
 }
 
 
@@ -84,11 +88,24 @@ def compared(page):
     page.locator(".st-key-use_this button").scroll_into_view_if_needed()
 
 
-def asked(page):
-    """Bring a plot whose file names no coordinate system."""
+def bring(page, box, file):
+    """Bring a file of one's own, and wait until the map shows what it says."""
+    page.locator(f".st-key-{box} input[type=file]").set_input_files(file)
+    page.wait_for_timeout(3000)
+    page.wait_for_selector(pictures.STILL, timeout=90_000)
+    page.wait_for_selector(".map[data-shown]", timeout=90_000)
+
+
+def own_files(page):
+    """Turn to files of one's own."""
     page.locator(".st-key-season input").click()
     page.get_by_role("option", name=str(texts.UPLOAD)).click()
     page.wait_for_selector(pictures.STILL)
+
+
+def asked(page):
+    """Bring a plot whose file names no coordinate system."""
+    own_files(page)
     with tempfile.TemporaryDirectory() as folder:
         to = Path(folder) / "paran_estate.zip"
         with (
@@ -98,14 +115,39 @@ def asked(page):
             for name in whole.namelist():
                 if not name.endswith(".prj"):
                     made.writestr(name, whole.read(name))
-        page.locator(".st-key-plot_file input[type=file]").set_input_files(to)
-        page.wait_for_timeout(3000)
-        page.wait_for_selector(pictures.STILL, timeout=90_000)
-        page.wait_for_selector(".map[data-shown]", timeout=90_000)
+        bring(page, "plot_file", to)
+
+
+def asked_of_records(page):
+    """Bring a plot, and records in metres that name no coordinate system."""
+    own_files(page)
+    plot = fm.read_plot(ROOT / "sample_data" / "paran_estate.zip", feature=NAME)
+    rng = np.random.default_rng(5)
+    plants = rng.choice(len(plot.grid), 120, replace=False)
+    places = gpd.GeoSeries.from_xy(*plot.grid.lonlat(plants).T, crs=4326).to_crs(METRES)
+    lines = [f"{place.x:.2f},{place.y:.2f},2026-11-{1 + k % 20:02d},{int(rng.random() < 0.2)}"
+             for k, place in enumerate(places)]  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        own, records = Path(folder) / "gate.geojson", Path(folder) / "records.csv"
+        boundary = gpd.GeoDataFrame({"name": [NAME]}, geometry=[plot.field.boundary], crs=4326)
+        boundary.to_file(own)
+        records.write_text("\n".join(["x,y,date,count", *lines]), encoding="utf-8")
+        bring(page, "plot_file", own)
+        bring(page, "record_file", records)
+
+
+def sent(page):
+    """Make a code for a person."""
+    page.get_by_role("button", name=texts.STEP_BUTTONS["send"]).first.click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label(texts.INVITE_NAME).fill("Ann")
+    dialog.get_by_role("button", name=texts.INVITE_BUTTON).click()
+    dialog.locator(".qr").wait_for()
+    page.wait_for_selector(pictures.STILL)
 
 
 #: by the picture's name: what is done before it is taken
-ACTS = {"compare": compared, "answers": asked}
+ACTS = {"compare": compared, "answers": asked, "answers_of_records": asked_of_records, "send": sent}
 
 
 def taken(page, url, name, part, language):

@@ -211,6 +211,17 @@ def test_a_day_is_done_by_keys_alone(today):
     page.get_by_role("button", name="Undo", exact=True).first.wait_for()
 
 
+def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today):
+    page = today
+    open_room(page, texts.ROOMS["ahead"])
+    box = page.get_by_role("spinbutton", name=texts.INFESTED)
+    for language, typed in (("es", "2.5"), ("en", "25")):
+        page.evaluate("(spoken) => { document.documentElement.lang = spoken; }", language)
+        box.press("Control+a")
+        page.keyboard.type("2,5")
+        assert box.input_value() == typed
+
+
 def test_strategies_are_compared_and_a_plot_is_brought_by_keys_alone(today):
     page = today
     tab_to(page, page.get_by_role("link", name=texts.ROOMS["ahead"]).locator("visible=true"))

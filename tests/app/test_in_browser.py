@@ -723,7 +723,7 @@ def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
     page.get_by_role("button", name="Compare", exact=True).click()
     page.get_by_text("seasons simulated").wait_for(timeout=180_000)
     page.get_by_text(re.compile("is best|comes out best")).wait_for(timeout=240_000)
-    page.get_by_role("button", name="Stop").click()
+    page.get_by_role("button", name="Stop", exact=True).click()
     page.get_by_role("button", name="Go on").wait_for(timeout=180_000)
     done = page.get_by_text("of 180 seasons simulated").inner_text()
     assert 3 <= int(done.split(" ")[0]) < 180

@@ -1,16 +1,29 @@
 """The frame: every room and part opens, whatever is chosen."""
 
+import re
+
 from app.words import texts
 from tests.app.driving import PAGES, go, map_of, texts_of
 
 
-def test_every_part_opens_on_the_sample(app):
+def idle_digits(app):
+    """Return the boxes that write a whole number, or a half, with zeros behind it."""
+    written = [(box.label, box.proto.format % number) for box in app.number_input
+               for number in (box.value, 2.0, 2.5) if number is not None]  # fmt: skip
+    return [one for one in written if re.search(r"\.\d*0$", one[1])]
+
+
+def test_every_part_opens_on_the_sample_and_no_box_writes_digits_that_nobody_needs(app):
+    boxes = set()
     for page in PAGES:
         go(app, page)
         assert not app.exception, page
         assert not app.error, page
         assert texts_of(app), page
         assert map_of(app)["layers"], page
+        assert idle_digits(app) == [], page
+        boxes |= {box.label for box in app.number_input}
+    assert len(boxes) > 10
 
 
 def test_every_part_asks_for_a_plot_where_nothing_was_brought(app):
@@ -25,8 +38,9 @@ def test_every_part_asks_for_a_plot_where_nothing_was_brought(app):
         assert app.get("bidi_component") == [], page
 
 
-def test_every_part_opens_on_a_season(season_app):
+def test_every_part_opens_on_a_season_and_no_box_writes_digits_that_nobody_needs(season_app):
     for page in PAGES:
         go(season_app, page)
         assert not season_app.exception, page
         assert not season_app.error, page
+        assert idle_digits(season_app) == [], page

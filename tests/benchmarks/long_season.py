@@ -189,6 +189,7 @@ def commands(season: Path, work: Path) -> list[Prepared]:
         Prepared("undo --change", ["undo", "SEASON", "--change"],
                  first_of("change", "SEASON", "--hours", "6")),
         Prepared("log", ["log", "SEASON"]),
+        Prepared("log --mornings", ["log", "SEASON", "--mornings"]),
         Prepared("export of the inspections", [
             "export", "SEASON", "--of", "inspections", "-o", "all.csv"]),
         Prepared("export of the log", ["export", "SEASON", "--of", "log", "-o", "log.csv"]),
@@ -208,7 +209,7 @@ def commands(season: Path, work: Path) -> list[Prepared]:
 
 
 #: what works every morning of the season out again, and takes minutes: asked for by name
-LONG = ("change --spread: every morning anew", "correct, of the first day")
+LONG = ("log --mornings", "change --spread: every morning anew", "correct, of the first day")
 
 
 def _edited(copy: Path, row: int) -> None:

@@ -1,7 +1,9 @@
 """`fieldmon log`: what happened, and that it still holds."""
 
+import pytest
+
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, season_file
 from tests.cli.estate import BEGINS
 from tests.monitoring.test_season_log import by_hand
 
@@ -32,6 +34,23 @@ def test_entries_are_shown_before_any_morning_is_worked_out_again(run, season, m
     assert code == 2
     assert "1 entry, the chain holds" in out
     assert "no morning was worked out" in err
+
+
+@pytest.mark.parametrize("command", ["log", "status"])
+def test_of_a_long_season_only_the_last_mornings_are_held_to_their_digests_and_that_is_said(
+    run, season, monkeypatch, command
+):
+    for on in range(1, 4):
+        assert run("plan", season, "--date", BEGINS[:-1] + str(int(BEGINS[-1]) + on))[0] == 0
+    by_hand(season, "UPDATE days SET digest = 'other' WHERE day = 0")
+    only_last = "the last mornings only; fieldmon log --mornings"
+    _, _, short, _ = run(command, season)
+    monkeypatch.setattr(season_file, "SHORT", 0)
+    code, _, long, _ = run(command, season)
+    assert code == 0
+    _, _, asked, _ = run("log", season, "--mornings")
+    assert [f"chance map of {BEGINS}" in err for err in (short, long, asked)] == [True, False, True]
+    assert [only_last in err for err in (short, long, asked)] == [False, True, False]
 
 
 def test_what_was_advised_is_in_the_log_once(run, season):

@@ -8,7 +8,7 @@ from fieldmon.compute.wording import Worded, counted, first_few, worded
 
 
 @pytest.mark.parametrize(
-    ("number", "said"), [(0, "0 plants"), (1, "1 plant"), (2, "2 plants"), (1001, "1001 plants")]
+    ("number", "said"), [(0, "0 plants"), (1, "1 plant"), (2, "2 plants"), (1320, "1,320 plants")]
 )
 def test_one_thing_stands_alone_and_any_other_number_is_several(number, said):
     assert counted(number, "plant") == said
@@ -30,7 +30,7 @@ def test_worded_sentences_survive_the_way_from_another_process():
     assert (said, said.words, said.values["row"].one) == (
         "in row 2 plants",
         "in row {row}",
-        "{n} plant",
+        "{n:,} plant",
     )
 
 

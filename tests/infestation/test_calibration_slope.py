@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.jit import loop
-from fieldmon.infestation.calibration_slope import no_inspections, note_inspection, proved_slope
+from fieldmon.infestation.calibration_slope import (
+    _PRIOR_INFORMATION,
+    no_inspections,
+    note_inspection,
+    proved_slope,
+)
 
 SPREAD = np.linspace(-4.0, 1.0, 60)  # logarithms of odds
 
@@ -77,3 +82,25 @@ def test_what_records_say_is_relied_on_at_first_and_given_up_where_it_is_not_so(
     assert _slope(chances_of(said), found, first.copy()) < 0.1
     said, found = drawn(1.0, 20)
     assert _slope(chances_of(said), found, first.copy()) > 0.6
+
+
+@pytest.mark.parametrize("n", [1, 2, 30, 300])
+@pytest.mark.parametrize("first", [0.0, 0.4, 1.0])
+def test_the_slope_is_newton_s_first_step_less_what_is_not_known_of_it(n, first):
+    """Of a logistic regression with a level: by its gradient and matrix of information."""
+    rng = np.random.default_rng(n)
+    said = rng.choice(SPREAD, n)
+    found = rng.random(n) < chances_of(-1.0 + said)
+    rate = found.mean()
+    columns = np.column_stack([np.ones(n), said])
+    gradient = columns.T @ (found - rate)
+    information = rate * (1.0 - rate) * columns.T @ columns
+    # what is believed before: so sure of the first slope, and of no level
+    told = information[1, 1] - (information[0, 1] ** 2 / information[0, 0] if rate % 1 else 0.0)
+    told += _PRIOR_INFORMATION
+    slope = (gradient[1] + _PRIOR_INFORMATION * first) / told
+    slope -= (1.0 - first) / np.sqrt(told)
+    sums = no_inspections()
+    sums[-1] = first
+    expected = min(max(slope, 0.0), 1.0)
+    assert _slope(chances_of(said), found, sums) == pytest.approx(expected, abs=1e-9)

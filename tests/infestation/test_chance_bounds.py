@@ -22,7 +22,7 @@ def test_lesser_and_greater_are_those_of_python(a, b):
 
 @given(st.floats(-2.0, 2.0))
 def test_no_chance_is_certain(chance):
-    assert LEAST_CHANCE <= bounded_chance(chance) <= MOST_CHANCE
+    assert 0.0 < LEAST_CHANCE <= bounded_chance(chance) <= MOST_CHANCE < 1.0
     if LEAST_CHANCE < chance < MOST_CHANCE:
         assert bounded_chance(chance) == chance
 

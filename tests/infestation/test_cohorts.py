@@ -77,3 +77,15 @@ def test_what_a_night_brought_is_young_as_long_as_it_hides_or_stays(latency_days
         chance = chance + gain
         told = [1 / 3 if night < days else 0.0 for days in (hidden_days, latency_days)]
         assert [cohorts.hidden[0], cohorts.still[0]] == pytest.approx(told, abs=1e-6)
+
+
+@pytest.mark.parametrize("warmth", [3.1, 9.6, 10.0, 29.5, 45.0])
+def test_who_comes_into_a_stage_begins_it_and_takes_all_its_degree_days(warmth):
+    age, days = Age(), 0
+    for stage in range(2):
+        nights = int(np.ceil(30.0 / warmth))
+        for night in range(nights):
+            assert age == Age(stage, pytest.approx(night * warmth), days)
+            age, days = age.older(MITE, (warmth, warmth), 1.0), days + 1
+    assert age == Age(2, 0.0, days)
+    assert age.older(MITE, (warmth, warmth), 0.5) == Age(2, 0.0, days + 0.5)

@@ -1,5 +1,7 @@
 """Insects on plants: eggs wait, adults move, and a plant's coins are its own."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -121,3 +123,67 @@ def test_destroyed_colonies_are_gone_and_the_others_stay():
     start = Colonies.grown(GRID, Pest("mite"), at(3, 4))
     assert np.flatnonzero(start.without(np.array([3])).infested).tolist() == [4]
     assert start.infested.sum() == 2
+
+
+def test_a_new_colony_begins_at_the_beginning_also_where_an_older_one_died():
+    mite = Pest("mite", stages=(EGG, YOUNG), movement=Movement("adjacent", 0.5))
+    old = landed_on(Colonies.grown(GRID, mite, at(3)), 40, 41).older(warm(by=4.0))
+    left = old.treated(np.where(at(40), 1.0, 0.0), key(1))
+    assert left.infested.sum() == 2
+    new = left.entered(at(3, 40, 60))
+    for plant in (40, 60):
+        told = new.infested[plant], new.stage[plant], new.progress[plant], new.age_days[plant]
+        assert told == (True, 0, 0.0, 0.0)
+    # those that were there go on
+    for plant in (3, 41):
+        assert new.stage[plant] == old.stage[plant]
+        assert new.progress[plant] == old.progress[plant]
+        assert new.age_days[plant] == old.age_days[plant]
+    assert new.progress[41] == 4.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_each_plant_s_insects_grow_by_themselves_and_are_seen_and_move_by_stage_and_age(seed):
+    rng = np.random.default_rng(seed)
+    mite = Pest("mite", stages=(EGG, YOUNG), latency_days=2.0, hidden_days=3.0,
+                movement=Movement("adjacent", 0.5))  # fmt: skip
+    infested = rng.random(81) < 0.6
+    stage, progress = rng.integers(0, 3, 81).astype(np.int8), rng.uniform(0.0, 29.0, 81)
+    age, free = rng.uniform(0.0, 6.0, 81).round(), rng.uniform(0.0, 2.0, 81)
+    colonies = Colonies(GRID, mite, infested, stage, progress, age, free)
+    older = colonies.older(Spell(0.5, (7.0, 16.0), 0.0))
+    for k in range(81):
+        told = older.stage[k], older.progress[k]
+        warmth = (7.0, 16.0, 0.0)[stage[k]]
+        if not infested[k] or stage[k] == 2:
+            assert told == (stage[k], progress[k])
+        elif stage[k] == 0 and progress[k] + warmth >= 30.0:
+            # whether the spell that ends a stage counts for the next one, too, is left open
+            assert told in ((1, 0.0), (1, 16.0))
+        elif progress[k] + warmth >= 30.0:
+            assert told == (2, 0.0)
+        else:
+            assert told == pytest.approx((stage[k], progress[k] + warmth))
+        assert colonies.mobile[k] == (infested[k] and stage[k] == 2 and age[k] >= 2.0)
+        assert colonies.visible[k] == (infested[k] and stage[k] >= 1 and age[k] >= 3.0)
+    assert older.age_days.tolist() == (age + 0.5).tolist()
+    assert older.protected_days.tolist() == np.maximum(free - 0.5, 0.0).tolist()
+    assert (older.infested == infested).all()
+
+
+@pytest.mark.parametrize("protects_days", [0.0, 3.0])
+def test_a_treatment_works_as_often_as_it_is_said_to_and_protects_where_it_works(protects_days):
+    """The same coins: what works by less works by more, too."""
+    mite = Pest("mite", movement=Movement("adjacent", 0.5))
+    before = Colonies.grown(GRID, mite, np.ones(81, bool))
+    before = replace(before, protected_days=np.arange(81) % 5.0)
+    weak, strong = (before.treated(np.full(81, dies), key(2), protects_days) for dies in (0.3, 0.8))
+    assert not (strong.infested & ~weak.infested).any()
+    for after, dies in ((weak, 0.3), (strong, 0.8)):
+        assert np.mean(~after.infested) == pytest.approx(dies, abs=0.15)
+        longer = np.where(after.infested, 0.0, protects_days)
+        assert after.protected_days.tolist() == np.maximum(np.arange(81) % 5.0, longer).tolist()
+    lands = Spell(60.0, (), 0.0)
+    everywhere = Pest("mite", entry=Entry(anywhere_per_day=1.0))
+    entered = replace(strong, pest=everywhere).after(lands, key(3))
+    assert (entered.infested == (strong.infested | (strong.protected_days <= 0.0))).all()

@@ -76,3 +76,80 @@ def test_the_estimate_counts_the_fields():
     counts = belief.fields.sum(axis=1)
     assert ahead.expected == pytest.approx(counts.mean())
     assert np.mean((counts >= ahead.low) & (counts <= ahead.high)) >= 0.9
+
+
+def test_the_plot_is_clean_in_as_many_of_the_fields_as_hold_no_infested_plant():
+    belief = Ensemble.of(GRID, np.full(64, 0.02))
+    fields = [[*field] for field in belief.fields.tolist()]
+    clean = sum(not any(field) for field in fields) / len(fields)
+    assert 0.1 < clean < 0.9
+    assert belief.estimate().chance_clean == pytest.approx(clean)
+
+
+def test_a_chance_is_the_share_of_fields_and_one_more_field_that_is_as_the_plot():
+    belief = Ensemble.of(GRID, np.linspace(0.01, 0.9, 64))
+    fields = belief.fields.tolist()
+    share = sum(map(sum, fields)) / (len(fields) * 64)
+    for plant in range(64):
+        infested = sum(field[plant] for field in fields)
+        assert belief.chance[plant] == pytest.approx((infested + share) / (len(fields) + 1))
+    full = Ensemble(GRID, np.ones((30, 64), bool), belief.chances)
+    assert (full.chance < 1.0).all()
+
+
+@pytest.mark.parametrize("plant", [0, 27, 60])
+def test_plants_up_to_three_steps_from_a_look_come_along_and_each_once(plant):
+    block = np.empty(64, np.int64)
+    size = ensemble._about.py_func(GRID.adjacent, plant, block)
+    across, along = np.divmod(np.arange(64), 8)
+    steps = np.abs(across - across[plant]) + np.abs(along - along[plant])
+    assert sorted(block[:size].tolist()) == np.flatnonzero(steps <= 3).tolist()
+    assert (np.diff(steps[block[:size]]) >= 0).all()
+    # no more than there is room for
+    few = np.empty(5, np.int64)
+    assert ensemble._about.py_func(GRID.adjacent, plant, few) == 5
+    assert few.tolist() == block[:5].tolist()
+
+
+@pytest.mark.parametrize("wanted", [True, False])
+def test_a_field_that_says_the_same_is_the_next_from_where_the_draw_falls(wanted):
+    was = np.array([True, False, False, True, False])
+    for draw in np.linspace(0.0, 0.999, 11):
+        turn = [(int(5 * draw) + k) % 5 for k in range(5)]
+        expected = next(k for k in turn if was[k] == wanted)
+        assert ensemble._donor.py_func(was, wanted, draw) == expected
+    assert ensemble._donor.py_func(np.full(5, not wanted), wanted, 0.5) == -1
+
+
+def test_a_treatment_leaves_of_each_plant_s_fields_the_share_that_outlives_it():
+    belief = Ensemble(GRID, np.ones((300, 64), bool), Ensemble.of(GRID, np.full(64, 0.1)).chances)
+    left = np.linspace(0.0, 1.0, 64)
+    after = belief.treated(left)
+    assert after.fields.mean(axis=0) == pytest.approx(left, abs=0.12)
+    assert after.fields.mean() == pytest.approx(left.mean(), abs=0.02)
+    # the next treatment has coins of its own
+    again = after.treated(left)
+    assert again.fields.mean() == pytest.approx((left**2).mean(), abs=0.02)
+    clean = Ensemble(GRID, np.zeros((9, 64), bool), belief.chances)
+    assert not clean.treated(left).fields.any()
+
+
+@pytest.mark.parametrize("detection", [0.3, 0.84])
+@pytest.mark.parametrize("treated", [True, False])
+def test_after_looks_fields_say_of_each_plant_what_was_seen_and_keep_what_was_overlooked(
+    detection, treated
+):
+    belief = Ensemble.of(GRID, np.full(64, 0.4), clustering=0.0)
+    plants, found = np.array([3, 60], np.int32), np.array([True, False])
+    after = belief.learn(plants, found, Learning(detection, treated=treated))
+    assert after.fields[:, 3].mean() == (0.0 if treated else 1.0)
+    p = belief.fields[:, 60].mean()
+    kept = p * (1.0 - detection) / (1.0 - detection * p)
+    assert after.fields[:, 60].mean() == pytest.approx(kept, abs=0.09)
+    # nobody says anything of plants farther than three steps from both
+    across, along = np.divmod(np.arange(64), 8)
+    far = np.ones(64, bool)
+    for plant in plants:
+        far &= np.abs(across - across[plant]) + np.abs(along - along[plant]) > 3
+    assert (after.fields[:, far] == belief.fields[:, far]).all()
+    assert (after.steps, belief.steps) == (1, 0)

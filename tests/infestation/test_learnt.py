@@ -1,12 +1,18 @@
 """What inspections tell, in words."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from fieldmon.infestation.learnt import learnt_from
+from fieldmon.infestation.learnt import _length, learnt_from
+from fieldmon.infestation.origins import ANYWHERE, AT_START, AT_START_ELSEWHERE, BY_EDGE, JUMPED
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
+from tests.infestation.test_traced_pairs import mid_season
 
 GRID = rectangle(9, 9)
 FLAT = np.full(81, 0.02)
@@ -30,3 +36,55 @@ def test_infested_at_the_start_are_those_suspected_and_the_others():
 
 def test_a_belief_that_traces_nothing_has_learnt_nothing():
     assert learnt_from(PairApproximation.of(GRID, FLAT), 0.84) == ()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_told_are_the_counts_of_origins_with_their_intervals(seed):
+    belief = mid_season(seed)
+    told = {one.name: (one.value, one.low, one.high) for one in learnt_from(belief, 0.7)}
+    counts, n = belief.counts, len(belief.chance)
+
+    def both(one, other):
+        return one.value + other.value, one.low + other.low, one.high + other.high
+
+    start = both(counts.estimate(AT_START, float(belief.at_start[0])),
+                 counts.estimate(AT_START_ELSEWHERE, float(belief.at_start[1])))  # fmt: skip
+    # two in ten thousand plants a night anywhere, one by the edge, as first believed
+    nightly = both(counts.estimate(ANYWHERE, 2e-4 * n), counts.estimate(BY_EDGE, 1e-4 * n))
+    assert told["infested at the start"] == pytest.approx(start)
+    assert told["arrivals a night"] == pytest.approx(nightly)
+    seen = counts.detection(0.7)
+    assert told["detection"] == pytest.approx((seen.value, seen.low, seen.high))
+    assert told["jumps beyond neighbours"] == pytest.approx((belief.jumps,) * 3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_jumps_are_as_long_as_their_kernels_and_as_doubtful_as_each_share_of_them(seed):
+    """A doubt of each kernel's share, a little of it at a time, as it moves the mean."""
+    belief = mid_season(seed)
+    (length,) = [one for one in learnt_from(belief, 0.7) if one.name == "length of jumps"]
+    means = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)
+
+    def mean_of(beyond):
+        return float(beyond @ means / beyond.sum())
+
+    moved, little = [], 1e-6
+    for k in range(6):
+        more = belief.beyond.copy()
+        more[k] *= 1.0 + little
+        by = (mean_of(more) - mean_of(belief.beyond)) / little
+        moved.append(by * belief.counts.doubt[JUMPED + k])
+    off = 1.645 * np.sqrt(np.square(moved).sum())
+    assert length.value == pytest.approx(mean_of(belief.beyond))
+    assert length.high - length.value == pytest.approx(off, rel=1e-3)
+    assert length.low == pytest.approx(max(length.value - off, 1.0), rel=1e-3)
+
+
+@pytest.mark.parametrize("k", range(6))
+def test_jumps_that_are_all_of_one_kernel_are_as_long_as_it_without_a_doubt(k):
+    mite = Pest("mite", movement=Movement("exponential", 0.4, reach_m=0.5))
+    belief = TracedPairs.of(GRID, FLAT).of_pest(mite)
+    alone = SimpleNamespace(beyond=np.eye(6)[k], reach=belief.reach, counts=belief.counts)
+    mean = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)[k]
+    length = _length(alone)
+    assert (length.value, length.low, length.high) == pytest.approx((mean, mean, mean))

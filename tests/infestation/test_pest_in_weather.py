@@ -1,11 +1,13 @@
 """Weather becomes warmth, movement and wind along the rows, hour by hour and night by night."""
 
+from dataclasses import replace
 from datetime import date
 
 import numpy as np
 import pytest
 
 from fieldmon.infestation.pest_in_weather import (
+    _LATELY,
     PestInWeather,
     along_rows,
     hours_of_movement,
@@ -137,3 +139,105 @@ def test_a_night_is_a_day_long_and_an_hour_a_twenty_fourth_of_it():
     pest_in_weather = PestInWeather(MITE, None, BEGINS)
     assert pest_in_weather.night(0, FRAME).days == 1.0
     assert [hour.days for hour in pest_in_weather.hours(0, FRAME)] == pytest.approx([1 / 24] * 24)
+
+
+def a_station(seed, days=3):
+    """Return hours of a station, some of them not measured, and the columns as they are."""
+    rng, n = np.random.default_rng(seed), 24 * days
+    columns = {
+        "temperature_c": rng.uniform(8.0, 38.0, n), "rain_mm": rng.uniform(0.0, 2.0, n),
+        "wind_speed_m_s": rng.uniform(0.0, 6.0, n), "wind_from_deg": rng.uniform(0.0, 360.0, n),
+    }  # fmt: skip
+    for column in columns.values():
+        column[rng.random(n) < 0.15] = np.nan
+    return hourly(days, **columns), columns
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("by_hour", [True, False])
+@pytest.mark.parametrize("wind", ["with", "none"])
+def test_a_night_is_what_its_hours_bring_one_by_one(seed, by_hour, wind):
+    """Of a pest that moves in some hours, and in rain: hours that nobody measured hold nothing."""
+    weather, columns = a_station(seed)
+    moves = replace(MITE.movement, hours=(7.5, 18.25), wind=wind, least_rain_mm=1.0,
+                    by_hour=by_hour)  # fmt: skip
+    in_weather = PestInWeather(replace(MITE, movement=moves), weather, BEGINS)
+    warm = columns["temperature_c"][24:48].copy()
+    known = np.flatnonzero(~np.isnan(warm))
+    warm = np.interp(np.arange(24), known, warm[known])
+    rain = columns["rain_mm"][24:48]
+    to = np.deg2rad(columns["wind_from_deg"][24:48] + 180.0)
+    east, north = (columns["wind_speed_m_s"][24:48] * turn(to) for turn in (np.sin, np.cos))
+    overlap = [max(0.0, min(h + 1.0, 18.25) - max(h, 7.5)) / 10.75 for h in range(24)]
+    sends, degree_days, weights = [], [], []
+    for h in range(24):
+        enough = rain[h] if by_hour else rain.sum()
+        share = overlap[h] * (np.isnan(enough) or enough >= 1.0)
+        rate = 0.5 * np.interp(warm[h], (12.5, 15.0, 30.0), (0.0, 0.08, 0.321)) / 0.321
+        sends.append(share * rate)
+        weights.append(share)
+        degree_days.append(max(warm[h] - 12.5, 0.0) / 24)
+    night = in_weather.night(1, FRAME)
+    assert night.sends == pytest.approx(sum(sends))
+    assert night.warmth == pytest.approx((sum(degree_days),))
+    weights = np.array(weights) / max(sum(weights), 1e-12)
+    blows = [float(np.nan_to_num(one) @ weights) for one in (east, north)]
+    assert night.wind_m_s == (along_rows(*blows, FRAME) if wind == "with" else (0.0, 0.0))
+    spread = in_weather.spread(1, FRAME)
+    told = spread.sends, spread.wind_m_s, spread.warmth, spread.days, spread.arrivals_per_day
+    assert told == (night.sends, night.wind_m_s, night.warmth, 1.0, 1e-4)
+
+
+@pytest.mark.parametrize("day", [-3, 5, 30])
+def test_a_day_nobody_measured_is_the_mean_of_the_last_days_hour_by_hour(day):
+    """Of the days before it where there are some, else of all; of each hour what is known."""
+    weather, columns = a_station(7, days=20)
+    in_weather = PestInWeather(MITE, weather, date(2026, 6, 1))
+    assert in_weather.known(day) == (0 <= day < 20)
+    for k in (0, 13, 19):
+        warm = columns["temperature_c"][24 * k : 24 * k + 24]
+        measured = ~np.isnan(warm)
+        assert in_weather.day(k).temperature_c[measured].tolist() == warm[measured].tolist()
+        rain = columns["rain_mm"][24 * k : 24 * k + 24]
+        np.testing.assert_array_equal(in_weather.day(k).rain_mm, rain)
+    if day == 5:
+        return
+    usual = in_weather.day(day)
+    rain = columns["rain_mm"].reshape(20, 24)[-_LATELY:]
+    assert usual.rain_mm == pytest.approx(np.nanmean(rain, axis=0), nan_ok=True)
+
+
+@pytest.mark.parametrize("bearing", [0.0, 37.0, 90.0, 200.0])
+def test_a_wind_is_told_along_and_across_rows_by_half_metres_a_second(bearing):
+    rng, frame = np.random.default_rng(1), Frame(35.0, 31.0, bearing)
+    for east, north in rng.uniform(-8.0, 8.0, (20, 2)):
+        along, across = along_rows(east, north, frame)
+        blows = complex(east, north)
+        # rows head by their bearing from the north, clockwise
+        heads = complex(np.sin(np.deg2rad(bearing)), np.cos(np.deg2rad(bearing)))
+        turned = blows * heads.conjugate()
+        assert along == round(2.0 * turned.real) / 2.0
+        assert across == round(2.0 * turned.imag) / 2.0
+
+
+@pytest.mark.parametrize("hours", [(0, 24), (8, 18), (20, 4), (7.25, 7.75), (23.5, 0.5), (6, 6)])
+def test_the_share_of_an_hour_is_what_of_it_lies_in_the_hours_of_movement(hours):
+    """By a thousand moments of each."""
+    first, end = hours
+    length = (end - first) % 24 or 24
+    moments = (np.arange(24_000) + 0.5) / 1000
+    moving = ((moments - first) % 24 < length).reshape(24, 1000).sum(axis=1)
+    share = hours_of_movement(replace(MITE.movement, hours=hours))
+    assert share == pytest.approx(moving / moving.sum(), abs=1e-9)
+
+
+@pytest.mark.parametrize("by_hour", [True, False])
+@pytest.mark.parametrize(("least_mm", "moves"), [(0.0, True), (2.4, True), (2.5, False)])
+def test_so_much_rain_as_is_needed_is_enough_and_who_needs_none_moves_when_it_is_dry(
+    by_hour, least_mm, moves
+):
+    rain_mm = 0.0 if least_mm == 0.0 else 2.4 if by_hour else 0.1
+    movement = replace(MITE.movement, least_rain_mm=least_mm, by_hour=by_hour)
+    weather = hourly(1, temperature_c=30.0, rain_mm=rain_mm)
+    sends = PestInWeather(replace(MITE, movement=movement), weather, BEGINS).night(0, FRAME).sends
+    assert sends == pytest.approx(0.5 * moves)

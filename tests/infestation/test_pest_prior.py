@@ -38,3 +38,12 @@ def test_without_pest_weather_or_development_all_stays():
         np.array(["2027-06-01"], "datetime64[s]"), DAY_S, temperature_c=np.array([20.0])
     )
     assert prior_for(usual, MITE, later, ON) is usual
+
+
+def test_weather_of_the_day_itself_and_of_days_to_come_does_not_count():
+    usual, before = PriorSettings(), days(22.5)
+    at = np.concatenate([before.at, np.datetime64(ON, "s") + np.arange(3) * DAY_S])
+    warm = np.concatenate([before.temperature_c, np.full(3, 31.0)])
+    assert prior_for(usual, MITE, weather_of(at, DAY_S, temperature_c=warm), ON) == (
+        prior_for(usual, MITE, before, ON)
+    )

@@ -291,3 +291,9 @@ def test_a_record_just_outside_the_plot_still_speaks_of_the_plants_next_to_it():
     corner = GRID.xy_m.min(axis=0)
     chance = heard(records(corner - 6.0, PRESENT))
     assert chance[0] > 0.02
+
+
+def test_one_record_whose_longitude_and_latitude_are_exchanged_is_recognised_among_others():
+    exchanged, far = GRID.lonlat()[:1, ::-1], np.array([[-72.0, -41.0]])
+    with pytest.raises(ObservationError, match="longitude and latitude exchanged"):
+        heard(Observations.of(np.concatenate([far, exchanged, far]), [PRESENT] * 3))

@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.origins import OVERLOOKED
+from fieldmon.infestation.origins import BY_ADJACENT, N_ORIGINS, OVERLOOKED
+from fieldmon.infestation.pairs import Neighbourhood
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing import Raised
 from fieldmon.plot.layout import rectangle
-from tests.infestation.test_traced_pairs import EVERY, FLAT, GRID, LEARNING
+from tests.infestation.test_traced_pairs import EVERY, FEW, FLAT, GRID, LEARNING, mid_season
 
 
 def test_known_finds_looked_at_again_tell_the_detection():
@@ -38,3 +41,35 @@ def test_a_clean_look_leaves_what_was_overlooked_and_all_that_hides(nights):
     parts *= after.counts.scale / told.counts.scale
     assert after.chance[0] == pytest.approx(parts.sum(), rel=1e-5)
     assert after.shares[0] == pytest.approx(parts / parts.sum(), abs=1e-5)
+
+
+@pytest.mark.parametrize("treated", [False, True])
+def test_what_inspections_raise_plants_by_came_from_beside_them_one_after_the_other(treated):
+    """By the chances after each of them, where no insect jumps."""
+    belief, linked = mid_season(), FEW.linked
+    plants = np.array([5, 9, 6, 2, 10], np.int32)
+    found, detects = np.array([True, False, True, False, True]), np.full(5, 0.8)
+    each = belief.reach.kernels * belief.beyond[:, None, None]
+
+    def after(n):
+        chance, pair_chance = belief.chance.copy(), belief.pair_chance.copy()
+        day = TracedDay(belief.shares.copy(), chance.copy(), *np.zeros((2, 12)),
+                        *np.zeros((2, N_ORIGINS)))  # fmt: skip
+        traces = belief.traces.own()._replace(kernel=np.zeros((1, 1)))
+        room = KernelRoom(each, Neighbourhood.of(12, chance), Raised.of(12))
+        inspections = plants[:n], found[:n], detects[:n], np.zeros(n)
+        learn_day((chance, pair_chance), linked, inspections, (treated, 0.3), (day, traces), room)
+        return chance, day
+
+    before, shares, raised = belief.chance, belief.shares.astype(np.float64), 0
+    for n, plant in enumerate(plants.tolist(), 1):
+        chance, day = after(n)
+        for j in np.flatnonzero(chance > before):
+            parts = shares[j] * before[j]
+            parts[BY_ADJACENT] += chance[j] - before[j]
+            shares[j] = parts / chance[j]
+            raised += j != plant
+        shares[plant] = np.arange(N_ORIGINS) == OVERLOOKED
+        assert day.shares == pytest.approx(shares, abs=1e-5)
+        before = chance
+    assert raised > 5

@@ -21,7 +21,7 @@ from fieldmon.infestation.origins import (
 from fieldmon.infestation.pair_changes import pairs_after_arrivals
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.pest_in_weather import PestInWeather, PestSpread
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, _count, _share, _share_traced
 from fieldmon.infestation.traced_pairs import TracedPairs, _of_late
@@ -348,3 +348,16 @@ def test_what_was_found_clean_about_a_plant_lowers_it_by_the_relatives_it_would_
     assert lowered == pytest.approx(np.exp(-np.minimum(relatives, 3.0)))
     assert (relatives > 3.0).any()
     assert (relatives < 3.0).any()
+
+
+@pytest.mark.parametrize("tells_apart", [True, False])
+def test_what_lands_anywhere_is_what_all_plants_that_move_send_there(tells_apart):
+    belief, rng = mid_season(), np.random.default_rng(4)
+    reach = replace(belief.reach, anywhere=0.3)
+    spread = PestSpread(0.2, arrivals_per_day=0.01)
+    moves = rng.random(12)
+    for sends in (0.0, 0.4, 3.0):
+        brought = belief._brought(reach, (moves, sends), spread, tells_apart=tells_apart)
+        from_outside = 0.01 * belief.counts.scale[ANYWHERE]
+        landed = 0.3 * sum(sends * moves) / 12
+        assert brought[ANYWHERE] == pytest.approx(np.full(12, from_outside + landed))

@@ -10,7 +10,11 @@ from shapely import MultiPolygon, box
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT, Observations
-from fieldmon.planning.batch import Orders, Task, plan_task
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.pests.pest import Pest
+from fieldmon.planning.batch import Orders, Task, _robot, plan_task
+from fieldmon.planning.day_bound import found_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot
@@ -119,3 +123,68 @@ def test_a_task_has_the_digest_that_folders_of_routes_hold():
     orders = Orders(np.datetime64("2026-04-06"), "bouncy", 3, **by_hand)
     task = Task(field, "scout", {"look_s": 30.0, "hours": 4.0}, orders)
     assert task.digest(records) == "c9b199b28e29aa71"
+
+
+def planned(who=None, stated=HALF_AN_HOUR, **orders):
+    return plan_task(Task(FIELD, who, stated, replace(ORDERS, **orders)), PLOT, RECORDS)
+
+
+def test_a_day_says_its_bound_if_that_was_ordered_and_is_the_same_day():
+    bound, plain = planned(), planned(bound=False)
+    assert bound.route.found_bound == found_bound(plain)
+    assert plain.route.found_bound is None
+    assert bound.route.plant.tolist() == plain.route.plant.tolist()
+
+
+def test_what_records_say_is_told_by_the_prior_that_was_ordered():
+    for prior in (PriorSettings(), PriorSettings(background_chance=0.2, edge_chance=0.0)):
+        chance = prior_chance(PLOT.grid, FIELD, RECORDS, DAY, prior)
+        assert planned(prior=prior).chance.tolist() == chance.tolist()
+
+
+def test_records_are_taken_as_of_the_day_that_was_ordered():
+    chance = [planned(day=DAY + later).chance.max() for later in (0, 7, 60)]
+    assert sorted(chance, reverse=True) == chance
+    assert len({*chance}) == 3
+
+
+@pytest.mark.parametrize("name", ["naive", "adaptive"])
+def test_the_sampler_that_was_ordered_decides(name):
+    route, expected = planned(sampler=name).route, by_itself(Robot(hours=0.5), name)
+    assert route.plant.tolist() == expected.plant.tolist()
+
+
+@pytest.mark.parametrize("who", ["robot", "scout"])
+@pytest.mark.parametrize("on_foot", [True, False])
+@pytest.mark.parametrize("small", [True, False])
+@pytest.mark.parametrize("times", [None, "thesis"])
+def test_who_works_is_what_its_file_and_then_the_orders_say(who, on_foot, small, times):
+    """On foot goes before the small robot, and that before a scout of the plot's own file."""
+    found = _robot(Task(FIELD, who.upper(), {"look_s": 25.0, "hours": 2.0},
+                        replace(ORDERS, on_foot=on_foot, rover=small, robot_times=times,
+                                robot={"hours": 3.0})))  # fmt: skip
+    walks = on_foot or (who == "scout" and not small)
+    base = scout() if walks else rover() if small else Robot()
+    base = base if walks or times is None else base.with_times(times)
+    assert found == replace(base, look_s=25.0, hours=3.0)
+
+
+def test_a_pest_that_is_looked_for_is_seen_as_it_can_be_seen():
+    pest = Pest("mine", "", detection=0.31)
+    seen, plain = planned(pest=pest), planned()
+    assert seen.scene.robot == replace(plain.scene.robot, detection=0.31)
+    assert set(seen.work.detects.tolist()) == {0.31}
+
+
+@pytest.mark.parametrize(
+    "later", [{"prior": PriorSettings(edge_chance=0.2)}, {"pest": Pest("mine", "")},
+              {"rover": True}, {"robot_times": "thesis"}, {"at": time(7)}]
+)  # fmt: skip
+def test_what_could_be_ordered_later_only_tells_tasks_apart_where_it_is_ordered(later):
+    """Else folders of routes of old would all be planned again."""
+    tasks = [Task(FIELD, None, {}, Orders(DAY, **one)) for one in ({}, later)]
+    plain, other = (task.digest(RECORDS) for task in tasks)
+    assert plain != other
+    usual = {name: getattr(Orders(DAY), name) for name in later}
+    assert Task(FIELD, None, {}, Orders(DAY, **usual)).digest(RECORDS) == plain
+    assert len(plain) == 16

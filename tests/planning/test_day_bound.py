@@ -7,8 +7,9 @@ import pytest
 
 from fieldmon.compute.wording import estimate
 from fieldmon.planning.day_bound import found_bound, with_bound
-from fieldmon.planning.plan import DayPlan, plan_in
+from fieldmon.planning.plan import DayPlan, plan_day, plan_in
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import SAMPLERS, sampler
@@ -69,3 +70,54 @@ def test_with_no_time_to_compute_it_is_a_bound_all_the_same():
 def test_a_plant_that_is_certain_to_be_clean_makes_no_bound_of_nan():
     clean = replace(planned(), scene=replace(scene(), chance=np.zeros(108)))
     assert found_bound(clean) >= 0.0
+
+
+def test_a_bound_rises_with_the_hours_up_to_all_that_can_be_found():
+    """Of the hours of the scene, whatever a whole day of the robot has."""
+    bounds = [
+        found_bound(planned(seconds_left=seconds)) for seconds in (600.0, 1500.0, 3000.0, 1e5)
+    ]
+    everything = (scene().chance * Robot().detects).sum()
+    assert sorted({*bounds}) == bounds
+    assert bounds[-1] == pytest.approx(everything)
+    assert bounds[-2] < 0.9 * everything
+
+
+@pytest.mark.parametrize("detection", [0.25, 0.9])
+def test_a_bound_is_in_proportion_to_the_chance_to_see_what_is_there(detection):
+    sharp, dull = (
+        found_bound(plan_in(replace(scene(), robot=Robot(detection=d)), sampler("naive")))
+        for d in (1.0, detection)
+    )
+    assert dull == pytest.approx(detection * sharp, rel=1e-3)
+
+
+def test_no_bound_is_known_where_no_time_is_left_or_trees_stand_in_no_rows():
+    day = planned()
+    assert found_bound(replace(day, scene=replace(day.scene, seconds_left=0.0))) is None
+    lonlat = np.array([[34.9, 32.5], [34.9001, 32.5], [34.9, 32.5001]])
+    trees = Plot.among("park", lonlat)
+    assert found_bound(plan_day(trees, on="2026-11-18", robot=Robot(hours=1.0))) is None
+
+
+def test_a_route_says_the_bound_for_which_there_was_time_and_stays_what_it_was():
+    day = planned()
+    for within_s in (0.0, 10.0):
+        bound = with_bound(day, within_s)
+        assert bound.route.found_bound == found_bound(day, within_s)
+        assert (bound.work, bound.scene) == (day.work, day.scene)
+        assert bound.route.plant is day.route.plant
+
+
+def test_only_today_s_inspections_leave_nothing_to_find():
+    done = np.full(108, NEVER, np.int32)
+    done[:54] = 3
+    assert found_bound(planned(last_inspected=done, day=4)) == found_bound(planned())
+
+
+def test_what_a_route_holds_is_below_its_bound_though_sums_round():
+    day = planned()
+    sure = replace(day, route=replace(day.route, chance=day.route.chance + 1e-3))
+    assert found_bound(sure) >= sure.route.expected_found
+    rich = replace(day, route=replace(day.route, chance=np.ones(len(day.route))))
+    assert found_bound(rich) == rich.route.expected_found

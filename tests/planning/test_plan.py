@@ -1,6 +1,7 @@
 """A day planned by the library: what the command plans, as Python objects."""
 
-from datetime import date, datetime
+from datetime import UTC, date, datetime
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,7 +10,19 @@ import shapely.affinity
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import PRESENT, Observations
-from fieldmon.planning.plan import plan_day
+from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.planning.plan import (
+    PlanSettings,
+    first_day,
+    plan_believed,
+    plan_day,
+    plan_from,
+    plan_in,
+)
+from fieldmon.planning.wishes import Wishes
+from fieldmon.planning.workday import plan_work
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.local_clock import local_clock
@@ -17,7 +30,9 @@ from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
-from fieldmon.plot.travel import Aisles
+from fieldmon.plot.travel import GATE, Aisles
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER
 from fieldmon.samplers.sweeps import Naive
 
 ROBOT = Robot(hours=1)
@@ -142,3 +157,81 @@ def test_a_plot_is_planned_alike_wherever_it_lies_and_however_it_is_turned(place
 def test_what_is_no_plot_no_robot_and_no_records_is_refused_by_name(plot, asked, sentence):
     with pytest.raises(SettingError, match=sentence):
         plan_day(**{"plot": plot, "on": "2026-11-18", "robot": Robot(hours=0.2), **asked})
+
+
+def test_a_start_that_names_its_zone_is_the_plot_s_own_time():
+    field = Field("there", Frame(35.0, 30.5).geometry_lonlat(
+        shapely.MultiPolygon([shapely.box(-30, -25, 30, 25)])))  # fmt: skip
+    there = Plot.of(field)
+    starts = [plan_day(there, on=on, robot=ROBOT).route.notes.start for on in (
+        "2026-11-17T23:30:00+00:00", datetime(2026, 11, 18, 1, 30),
+        datetime(2026, 11, 17, 23, 30, tzinfo=UTC))]  # fmt: skip
+    # two hours ahead in winter: by then it is the next day there
+    assert starts == [datetime(2026, 11, 18, 1, 30)] * 3
+    at = there.grid.lonlat(np.array([20]))
+    records = Observations.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
+    late, same = (plan_day(there, records, on, ROBOT).chance for on in (
+        "2026-11-17T23:30:00+00:00", "2026-11-18"))  # fmt: skip
+    assert late.tolist() == same.tolist()
+
+
+def test_a_risk_is_one_more_way_of_being_infested_where_it_says_something(plot, day):
+    risk = np.full(len(plot.grid), np.nan)
+    risk[:50], risk[50:60] = 0.3, 0.0
+    chance = plan_day(plot, on="2026-11-18", robot=ROBOT, risk=risk).chance
+    assert chance[50:].tolist() == pytest.approx(day.chance[50:].tolist())
+    assert 1.0 - chance[:50] == pytest.approx(0.7 * (1.0 - day.chance[:50]))
+
+
+def test_a_day_is_planned_in_a_scene_of_what_is_known_before_anything_was_inspected(plot):
+    prior = PriorSettings(background_chance=0.04)
+    plans = PlanSettings(Robot(hours=0.5, look_s=25.0), Naive(), prior)
+    records = Observations.of(plot.grid.lonlat(np.array([130])), np.array([PRESENT], np.int8),
+                              np.array(["2026-11-10"], "M8[D]"))  # fmt: skip
+    on_day = np.datetime64("2026-11-18")
+    chance = prior_chance(plot.grid, plot.field, records, on_day, prior)
+    made = first_day(plot, records, on_day, plans)
+    believed = TracedPairs.of(plot.grid, chance)
+    again = plan_believed(plot, (chance, believed), plans)
+    for day in (made, plan_from(plot, chance, plans), again):
+        scene = day.scene
+        assert scene.chance.tolist() == chance.tolist() == day.chance.tolist()
+        assert scene.pair_chance == pytest.approx(believed.pair_chance)
+        for told, traces in zip(scene.traces[1:], believed.traces[1:], strict=True):
+            assert np.array_equal(told, traces)
+        assert (scene.last_inspected == NEVER).all()
+        assert (scene.at, scene.seconds_left, scene.supposed) == (GATE, 1800.0, False)
+        assert (scene.robot, scene.aisles.grid) == (plans.robot, plot.grid)
+        work = plan_work(scene, plans.sampler)
+        assert day.work.plant.tolist() == work.plant.tolist() == day.route.plant.tolist()
+        assert day.route.arrive_s.tolist() == work.arrive_s.tolist()
+
+
+def test_wishes_reach_every_way_to_plan_a_first_day_and_change_no_belief(plot):
+    plans = PlanSettings(ROBOT, Adaptive())
+    chance = np.random.default_rng(2).random(len(plot.grid)) * 0.1
+    plain = plan_from(plot, chance, plans)
+    wanted = np.setdiff1d(np.arange(len(plot.grid)), plain.route.plant)[:3]
+    wishes = Wishes(tuple(wanted.tolist()), tuple(plain.route.plant[:2].tolist()))
+    known = chance, TracedPairs.of(plot.grid, chance)
+    for day in (plan_from(plot, chance, plans, wishes), plan_believed(plot, known, plans, wishes),
+                plan_in(plain.scene, plans.sampler, wishes)):  # fmt: skip
+        assert not len(wishes.unmet(day.route))
+        assert not np.isin(plain.route.plant[:2], day.route.plant).any()
+        assert day.chance.tolist() == chance.tolist()
+        assert (day.scene.last_inspected == NEVER).all()
+
+
+def test_a_day_says_its_stops_its_way_and_its_hours(day):
+    line_m = day.route.line_m
+    km = sum(np.hypot(*(b - a)) for a, b in pairwise(line_m)) / 1000
+    said = f"<DayPlan: {len(day.route)} of 240 plants, {km:.2f} km, {day.work.end_s / 3600:.2f} h>"
+    assert repr(day) == said
+
+
+def test_by_default_a_usual_robot_goes_where_most_is_expected(plot):
+    usual = PlanSettings()
+    assert usual == PlanSettings(Robot(), Adaptive(), PriorSettings())
+    day = plan_day(plot, on="2026-11-18")
+    assert (day.scene.robot, day.scene.seconds_left) == (Robot(), 12 * 3600.0)
+    assert day.route.notes.sampler == "adaptive"

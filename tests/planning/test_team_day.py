@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 from heapq import heappop
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import MultiPolygon, Polygon
+from shapely import LineString, MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
@@ -26,7 +26,8 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s
 from fieldmon.samplers import SAMPLERS, sampler
-from fieldmon.samplers.base import NEVER, Scene
+from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.base import NEVER, Scene, Stops
 from tests.crooked import crooked_fields
 from tests.second_by_second import nobody_head_on, nobody_together
 
@@ -514,3 +515,307 @@ def test_aisles_are_given_out_anew_for_who_has_nowhere_to_go(monkeypatch, plan, 
     monkeypatch.setattr(team, "_shared_anew", lambda now_s: asks.append(now_s) or False)
     team._ready(worker, 100.0)
     assert asks == ([100.0] if asked else [])
+
+
+def leaving(day, at, target, teamwork=AT_ONCE):
+    """Return a day on its way: the first has come to the end of its aisle, bound for a plant."""
+    posts = [Posted(day.scene(), 0.0, day.would_find) for _ in range(3)]
+    team = _TeamDay(posts, sampler("naive"), teamwork, None, None)
+    worker = team.workers[0]
+    worker.at, worker.anew = at, False
+    if at >= 0:
+        worker.holds = int(team.corridor[at])
+        team.holder[worker.holds] = 0
+    plan = [] if target < 0 else [target]
+    worker.plan, worker.plan_from_s = (stopping(team, plan) if plan else None), 100.0
+    worker.claims = int(team.corridor[target]) if plan else -1
+    worker.leg = worker.legs.leg(at, target)
+    worker.out_s = worker.free_s = 300.0
+    return team, worker
+
+
+def far_legs(aisles):
+    """Yield ways of all kinds: from the gate and to it, to aisles near and far, through others."""
+    legs, corridor = legs_of(aisles), aisles.grid.corridor[aisles.grid.row]
+    n, told = len(corridor), {}
+    some = np.random.default_rng(4).integers(-1, n, (400, 2)).tolist()
+    for at, target in [[-1, n - 1], [n - 1, -1], *some]:
+        if at == target or (at >= 0 and target >= 0 and corridor[at] == corridor[target]):
+            continue
+        told.setdefault((at < 0, target < 0, len(legs.leg(at, target).through)), (at, target))
+    return list(told.values())
+
+
+EVERY_WAY = [(plot, leg) for plot in (EVEN, notched()) for leg in far_legs(plot)]
+
+
+@pytest.mark.parametrize(("plot", "leg"), EVERY_WAY)
+def test_steps_in_headlands_are_where_one_is_outside_aisles_and_at_the_moments_it_is(plot, leg):
+    """Followed along its way, moment by moment, from the end of its aisle on."""
+    team, worker = leaving(Day(plot), *leg, Teamwork(passing_m=20.0))
+    steps, grid = team._driven(worker, 500.0), plot.grid
+    way, whole_s = LineString(plot.path(*leg)), worker.seconds(*leg)
+    spent_s = whole_s * worker.leg.out_m / way.length
+    assert steps.since_s.min(initial=np.inf) >= 500.0 - 1e-9
+    for at_s in np.linspace(500.0, 500.0 + whole_s - spent_s, 301)[1:-1]:
+        gone_m = way.length * (at_s - 500.0 + spent_s) / whole_s
+        here, ahead = (np.array(way.interpolate(gone_m + more).coords[0]) for more in (0, 1e-4))
+        on = np.abs(grid.lane_y_m - here[1]) < 1e-3
+        inside = np.stack((here[0] - grid.lane_x_m[:, 0], grid.lane_x_m[:, 1] - here[0])).min(0)[on]
+        if np.abs(inside).min(initial=np.inf) < 0.02:
+            continue
+        in_aisle = (inside > 0.0).any() and abs(ahead[1] - here[1]) < 1e-6
+        now = np.flatnonzero((steps.since_s <= at_s) & (at_s <= steps.until_s))
+        assert in_aisle == (not len(now))
+        for k in now:
+            share = (at_s - steps.since_s[k]) / (steps.until_s[k] - steps.since_s[k])
+            there = steps.from_m[k] + share * (steps.to_m[k] - steps.from_m[k])
+            assert there == pytest.approx(here, abs=1e-3)
+    anywhere, same = leaving(Day(plot), *leg)
+    assert anywhere._driven(same, 500.0) is None
+
+
+@pytest.mark.parametrize("soon_s", [-10.0, 0.0, 10.0])
+@pytest.mark.parametrize("meets", [False, True])
+@pytest.mark.parametrize("passing_m", [0.0, 20.0])
+@pytest.mark.parametrize(("plot", "leg"), EVERY_WAY[::2])
+def test_one_drives_on_if_all_aisles_that_it_needs_are_free_and_nobody_comes_head_on(
+    plot, leg, passing_m, meets, soon_s
+):
+    """Whoever has each of them: nobody, itself or another; and nothing else changes hands."""
+    day, (at, target) = Day(plot), leg
+    through = legs_of(plot).leg(at, target).through
+    for holders in product((-1, 0, 2), repeat=min(len(through), 2) + (target >= 0)):
+        team, worker = leaving(day, at, target, Teamwork(passing_m=passing_m))
+        team._meets_head_on = lambda *_: meets
+        needed = [*through[-2:], *([int(team.corridor[target])] if target >= 0 else [])]
+        team.holder[needed], worker.free_s = holders, 400.0 + soon_s
+        now_s, left, was = 400.0, worker.holds, team.holder.copy()
+        free = soon_s <= 0 and 2 not in team.holder[[*through, *needed]]
+        assert team._enter(worker, now_s) == (free and not (meets and passing_m))
+        arrives_s = now_s + worker.onward_s() if worker.at == at else worker.done[-1].arrive_s
+        if not free or (meets and passing_m):
+            assert (team.holder == was).all()
+            assert (team.events, worker.done, worker.at, worker.holds) == ([], [], at, left)
+            continue
+        held = {*through, *needed}
+        expected = [0 if a in held else -1 if a == left else was[a] for a in range(len(was))]
+        assert team.holder.tolist() == expected
+        passes = [event for event in team.events if event[-1] == team._passed]
+        assert bool(passes) == bool(through or passing_m)
+        assert [event[:1] for event in passes] == [pytest.approx((arrives_s,))] * len(passes)
+        whole_s = worker.seconds(at, target)
+        out_s = whole_s * worker.leg.out_m / worker.leg.length_m
+        assert arrives_s == pytest.approx(now_s + whole_s - out_s)
+        if target < 0:
+            told = worker.over, worker.end_s, worker.wait_home_s
+            assert told == pytest.approx((True, arrives_s, 100.0))
+        else:
+            ((plant, _, leave_s, *_, wait_s),) = worker.done
+            assert (plant, wait_s, worker.at) == (target, 100.0, target)
+            assert leave_s == pytest.approx(arrives_s + 40.0)
+            assert worker.holds == team.corridor[target]
+        # once it is there, it has no other aisle than the one it is in
+        team._passed(worker, arrives_s)
+        kept = {int(team.corridor[target])} if target >= 0 else set()
+        assert {*np.flatnonzero(team.holder == 0).tolist()} == kept
+        assert (team.holder == 2).tolist() == (was == 2).tolist()
+
+
+def two_who_swap(order=(1, 0)):
+    """Return a day on which two stand in each other's next aisle, and come out of theirs."""
+    day = Day(Aisles.of(rectangle(8, 8)))
+    team = _TeamDay([Posted(day.scene(), 0.0, day.would_find) for _ in range(2)],
+                    sampler("naive"), AT_ONCE, None, None)  # fmt: skip
+    for k, worker in enumerate(team.workers):
+        at, target = 24 * k + 1, 24 * (1 - k) + 2
+        worker.at, worker.anew, worker.holds = at, False, int(team.corridor[at])
+        team.holder[worker.holds] = k
+        worker.plan, worker.claims = stopping(team, [target, 60]), int(team.corridor[target])
+        worker.leg = worker.legs.leg(at, target)
+    for at_s, k in zip((100.0, 130.0), order, strict=True):
+        team._out(team.workers[k], at_s)
+    return team
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_two_who_want_each_other_s_aisle_swap_and_each_has_the_one_that_it_is_in(order):
+    """Else an aisle would stay shut for the day once it is left."""
+    team = two_who_swap(order)
+    assert team.waiting == []
+    for worker in team.workers:
+        assert [stop.plant for stop in worker.done] == [24 * (1 - worker.k) + 2]
+        assert worker.holds == team.corridor[worker.at]
+        assert np.flatnonzero(team.holder == worker.k).tolist() == [worker.holds]
+    assert [team.workers[k].done[0].wait_s for k in order] == [30.0, 0.0]
+
+
+def test_who_waits_a_second_time_gives_up_when_that_is_in_vain_and_not_before():
+    """It was let in where it waited first: that it would have given up there says nothing."""
+    team = two_who_swap()
+    worker = team.workers[1]
+    at_s, target = worker.done[-1].leave_s, 9
+    worker.plan, worker.next, worker.claims = stopping(team, [target]), 0, int(team.corridor[9])
+    worker.leg, team.holder[worker.claims] = worker.legs.leg(worker.at, target), 0
+    team._out(worker, at_s)
+    assert team.waiting == [worker]
+    gives_up = [event[0] for event in team.events
+                if event[2:4] == (worker.version, 1) and event[-1] == team._give_up]  # fmt: skip
+    assert gives_up == [at_s + worker.spare_s(at_s + worker.onward_s())]
+
+
+@pytest.mark.parametrize("until_s", [900.0, 300.0])
+@pytest.mark.parametrize("returns", [True, False])
+def test_who_waits_gives_up_when_it_would_no_longer_be_home_in_time(until_s, returns):
+    robot = Robot(hours=1.0, detection=1.0, returns=returns)
+    team, worker = leaving(Day(Aisles.of(rectangle(8, 8)), robot=robot), 1, 38)
+    until(team, until_s)
+    team.holder[worker.claims] = 2
+    team._out(worker, 280.0)
+    assert team.waiting == [worker]
+    ((at_s, _, _, k, event),) = team.events
+    assert (k, event) == (0, team._give_up)
+    home_s = worker.seconds(38, GATE) if returns else 0.0
+    assert at_s == pytest.approx(max(280.0, until_s - home_s - 40.0 - worker.onward_s()))
+    # on the way home one waits as long as it takes
+    team, worker = leaving(
+        Day(notched()),
+        *next(w for w in far_legs(notched()) if w[1] < 0 and legs_of(notched()).leg(*w).through),
+    )
+    team.holder[worker.needed()] = 2
+    team._out(worker, 280.0)
+    assert (team.waiting, team.events) == ([worker], [])
+
+
+@pytest.mark.parametrize("target", [9, 22, 63, GATE])
+@pytest.mark.parametrize("at", [1, 6])
+def test_one_comes_out_of_its_aisle_after_the_metres_to_its_end(at, target):
+    plain = Robot(hours=1.0, row_change_s=0.0, turn_180_s=0.0, detection=1.0)
+    team, worker = standing(
+        Day(Aisles.of(rectangle(8, 8)), robot=plain), at, [target][: target >= 0]
+    )
+    worker.plan = worker.plan or stopping(team, [0])
+    worker.next = 0 if target >= 0 else 1
+    team._shared_anew = lambda _: False
+    team._ready(worker, 100.0)
+    ((out_s, *_, event),) = team.events
+    assert event == team._out
+    line_m, grid = worker.scene.aisles.path(at, target), worker.scene.grid
+    to_end_m = np.abs(grid.lane_x_m[grid.row[at]] - grid.along_m[at])
+    assert plain.speed_m_s * (out_s - 100.0) == pytest.approx(to_end_m[worker.leg.end % 2])
+    assert abs(line_m[1, 0] - grid.along_m[at]) == pytest.approx(to_end_m[worker.leg.end % 2])
+    assert worker.claims == (team.corridor[target] if target >= 0 else -1)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("shared", [False, True])
+def test_who_hears_of_a_find_beside_its_own_aisles_plans_anew_and_nobody_else(seed, shared):
+    rng, day = np.random.default_rng(seed), Day(Aisles.of(rectangle(6, 8)), 3)
+    posts = [Posted(day.scene(), 0.0, day.would_find) for _ in range(3)]
+    team = _TeamDay(posts, sampler("adaptive"), AT_ONCE, day.learn, None)
+    team.sections.owner = owner = rng.integers(0, 3, len(team.holder))
+    team._shared_anew, anew = lambda _: shared, []
+    team._interrupt = lambda one, at_s: anew.append((one.k, at_s))
+    plants = rng.permutation(48)[:6].reshape(3, 2).tolist()
+    for worker, own in zip(team.workers, plants, strict=True):
+        # the second of each is left after all hear
+        worker.done = [StopMade(plant, at_s - 40.0, at_s, bool(rng.random() < 0.6), 1.0, 0.0)
+                       for plant, at_s in zip(own, (90.0, 190.0), strict=True)]  # fmt: skip
+    expected = set()
+    for finder in team.workers:
+        row, number = divmod(finder.done[0].plant, 8)
+        beside = [(row, number - 1), (row, number + 1), (row - 1, number), (row + 1, number)]
+        for r, c in beside if finder.done[0].found else []:
+            if 0 <= r < 6 and 0 <= c < 8 and (k := owner[team.corridor[8 * r + c]]) != finder.k:
+                expected.add((int(k), 100.0))
+    team._hear(team.workers[0], 100.0)
+    assert sorted(anew) == ([] if shared else sorted(expected))
+    assert [told.plant for told in team.news.known] == [own[0] for own in plants]
+
+
+def test_who_plans_anew_is_asked_in_the_scene_that_it_stands_in():
+    """What is believed now, where it stands, its seconds left, and what others have or did."""
+    day, asked = Day(Aisles.of(rectangle(6, 8)), 2), []
+    seen = np.full(48, NEVER, np.int32)
+    seen[3] = -5 % 3
+    scene = replace(day.scene(), last_inspected=seen, day=7, key=np.uint64(9))
+    finds = np.random.default_rng(1).random(48) < 0.5
+
+    class Asked(Adaptive):
+        def walk(self, scene, would_find):
+            asked.append((scene, would_find))
+            return Stops(np.array([20], np.int32), np.array([33.0]))
+
+    posts = [Posted(scene, 50.0 * k, finds) for k in range(2)]
+    team = _TeamDay(posts, Asked(), AT_ONCE, day.learn, None)
+    team.sections.owner = np.array([0, 0, 1, 1, 0, 1])[: len(team.holder)]
+    worker, other = team.workers[1], team.workers[0]
+    other.done = [StopMade(9, 60.0, 100.0, True, 1.0, 0.0)]
+    worker.done = [StopMade(30, 70.0, 110.0, True, 0.8, 0.0)]
+    worker.at, worker.next = 30, 3
+    team._walk(worker, 400.0)
+    ((told, would_find),) = asked
+    # of the other's find it has not heard yet
+    believed = day.learn(np.array([30], np.int32), np.array([True]), np.array([0.8]))
+    assert told.chance == pytest.approx(believed.chance)
+    assert told.pair_chance == pytest.approx(believed.pair_chance)
+    assert told.traces is believed.traces or told.traces == believed.traces
+    shut = (team.sections.owner[team.corridor] != 1) | np.isin(np.arange(48), [9, 30])
+    assert told.last_inspected.tolist() == np.where(shut, 7, seen).tolist()
+    assert (told.at, told.day, told.key) == (30, 7, scene.key)
+    assert told.seconds_left == 50.0 + 3600.0 - 400.0
+    assert would_find is finds
+    assert (worker.plan_from_s, worker.next, worker.anew) == (400.0, 0, False)
+    assert worker.target() == 20
+
+
+@pytest.mark.parametrize("together", [True, False])
+@pytest.mark.parametrize("name", ["adaptive", "naive"])
+@pytest.mark.parametrize("learns", [True, False])
+def test_finds_are_heard_of_by_those_who_work_together_and_go_by_what_is_believed(
+    together, name, learns
+):
+    day = Day(Aisles.of(rectangle(6, 8)))
+    posts = [Posted(replace(day.scene(), at=at), 0.0, day.would_find) for at in (17, GATE, 18)]
+    learn = day.learn if learns else None
+    team = _TeamDay(posts, sampler(name), Teamwork(together=together), learn, None)
+    assert team.news.heard == (together and name == "adaptive" and learns)
+    # who begins in an aisle has it, the first of two
+    aisle = int(team.corridor[17])
+    assert np.flatnonzero(team.holder >= 0).tolist() == [aisle]
+    assert team.holder[aisle] == 0
+    assert [worker.holds for worker in team.workers] == [aisle, -1, aisle]
+
+
+@pytest.mark.parametrize("over", [True, False])
+def test_who_is_interrupted_goes_on_when_it_is_done_with_what_it_has_begun(over):
+    team, worker = standing(Day(Aisles.of(rectangle(4, 16))), 1, [])
+    worker.done += [StopMade(33, 110.0, 150.0, False, 1.0, 0.0),
+                    StopMade(34, 160.0, 200.0, False, 1.0, 0.0)]  # fmt: skip
+    worker.over = over
+    team._interrupt(worker, 120.0)
+    assert [stop.plant for stop in worker.done] == ([1, 33, 34] if over else [1, 33])
+    assert [(event[0], event[-1]) for event in team.events] == [(150.0, team._ready)][over:]
+    # one that has begun its last stop goes on as it would have
+    team.events.clear()
+    team._interrupt(worker, 190.0)
+    assert team.events == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_in_a_day_of_all_each_stop_keeps_its_own_figures(seed):
+    rng = np.random.default_rng(seed)
+    works, starts_s = [], rng.uniform(0, 500, 3)
+    for k in range(3):
+        n = int(rng.integers(0, 6))
+        arrive_s = np.cumsum(rng.uniform(1, 100, n))
+        works.append(Workday(10 * k + np.arange(n, dtype=np.int32), arrive_s, rng.random(n) < 0.5,
+                             rng.uniform(1, 50, n), rng.random(n), 1e4 * rng.random()))  # fmt: skip
+    stops = []
+    for work, at in zip(works, starts_s, strict=True):
+        for k, come_s in enumerate(work.arrive_s + at):
+            own = (work.plant[k], come_s, work.found[k], work.stop_s[k], work.detects[k])
+            stops.append((come_s + work.stop_s[k], *own))
+    whole = merged(works, starts_s)
+    columns = whole.plant, whole.arrive_s, whole.found, whole.stop_s, whole.detects
+    assert list(zip(*columns, strict=True)) == [stop[1:] for stop in sorted(stops)]

@@ -7,6 +7,7 @@
 import { Deck, FlyToInterpolator, MapView } from "@deck.gl/core";
 
 import { button, element, legendOf, Scale, signPicture } from "./chrome.js";
+import { takeCommas } from "./decimals.js";
 import { Drawing } from "./draw.js";
 import { Drive, PITCH } from "./drive.js";
 import { Frames } from "./frames.js";
@@ -32,6 +33,7 @@ const MARGIN_PX = 8, MOST_ASKED = 4000;
 
 class MapPage {
   constructor(parent) {
+    takeCommas();
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(style);
     const root = parent.getRootNode();

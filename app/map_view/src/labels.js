@@ -3,6 +3,9 @@
 // which switch a kind of label belongs to
 const SWITCH = { hot: "hot", leg: "numbers", stop: "numbers", row: "rows", place: "plan", block: "rows" };
 
+// every so many rows have their numbers, where there is not room for each
+const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+
 const NUMBERS = new Set(["leg", "stop"]);
 const numbered = new WeakMap();
 
@@ -29,6 +32,28 @@ function beyond(viewport, p, away, half, tall, gap) {
   return [dx * step, dy * step];
 }
 
+// Return how large a word is: half its width, and half its height.
+function sizeOf(t) {
+  const lines = t.split("\n");
+  return [4 * Math.max(...lines.map((one) => one.length)) + 7, 10 * lines.length];
+}
+
+// Return where a word stands that belongs beyond its place.
+function pushed(viewport, p, { away, gap }, [half, tall]) {
+  const [x, y] = viewport.project(p), [outX, outY] = away ? beyond(viewport, p, away, half, tall, gap ?? 3) : [0, 0];
+  return [x + outX, y + outY];
+}
+
+// Return every how many rows there is room for a number: the same all over the plot, whatever is in view.
+// Of very few rows none may be a multiple of that: then those of the next smaller step are shown.
+function rowStep(rows, viewport) {
+  const at = new Map(rows.map((one) => [one.row, { size: sizeOf(one.t), xy: pushed(viewport, one.p, one, sizeOf(one.t)) }]));
+  const covered = (a, b) => Math.abs(a.xy[0] - b.xy[0]) < a.size[0] + b.size[0] && Math.abs(a.xy[1] - b.xy[1]) < a.size[1] + b.size[1];
+  const several = STEPS.filter((step) => rows.filter(({ row }) => row % step === 0).length > 1);
+  const free = several.find((step) => rows.every(({ row }) => row % step || !at.has(row + step) || !covered(at.get(row), at.get(row + step))));
+  return free ?? several.at(-1) ?? 1;
+}
+
 // Return a middle from which a word reaches over neither edge, if it is not out of view.
 function inside(x, half, [left, right]) {
   return x < left || x > right || right - left < 2 * half ? x : Math.min(Math.max(x, left + half), right - half);
@@ -44,17 +69,27 @@ export class Labels {
     this.placed = [];
   }
 
+  // Return every how many rows have a number: it changes with the zoom alone.
+  step(labels, viewport) {
+    const { zoom, pitch } = viewport, known = this.known;
+    if (known?.labels === labels && known.zoom === zoom && known.pitch === pitch) return known.step;
+    const step = rowStep(labels.filter(({ k, row }) => k === "row" && row), viewport);
+    this.known = { labels, zoom, pitch, step };
+    return step;
+  }
+
   // `over` are the boxes [left, top, right, bottom] of what lies over the map: no word stands below it.
   // `free` is from where to where the map is seen: a name beside its edge is moved into it.
   draw(labels, viewport, hidden, over = [], free = [0, viewport.width]) {
     const boxes = [...over];
     this.placed = [];
-    for (const { p, t, k, from, to, row, at, away, gap } of labels) {
-      if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99)) continue;
-      const lines = t.split("\n"), half = 4 * Math.max(...lines.map((one) => one.length)) + 7, tall = 10 * lines.length;
-      const [outX, outY] = away ? beyond(viewport, p, away, half, tall, gap ?? 3) : [0, 0];
-      const place = (at ?? [p]).map((one) => viewport.project(one)).map(([x, y]) => [x + outX, y + outY])
-        .map(([x, y]) => [k === "name" ? inside(x, half + 4, free) : x, y]).find(([x, y]) => {
+    const step = this.step(labels, viewport);
+    for (const label of labels) {
+      const { p, t, k, from, to, row, at } = label;
+      if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99) || row % step) continue;
+      const [half, tall] = sizeOf(t);
+      const places = (at ?? [p]).map((one) => pushed(viewport, one, label, [half, tall]));
+      const place = places.map(([x, y]) => [k === "name" ? inside(x, half + 4, free) : x, y]).find(([x, y]) => {
         if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) return false;
         return !boxes.some((b) => x - half < b[2] && x + half > b[0] && y - tall < b[3] && y + tall > b[1]);
       });

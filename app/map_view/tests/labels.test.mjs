@@ -51,6 +51,27 @@ test("legs give way to stops at their zoom, and neither shows where it is switch
   assert.deepEqual(of(17, ["rows"]), ["1"]);
 });
 
+test("row numbers go in even steps, as many as have room, and the step does not change with what is in view", () => {
+  const rows = Array.from({ length: 45 }, (_, k) => ({ p: [0.1, -0.02 - k * 0.012], t: `${k + 1}`, k: "row", row: k + 1 }));
+  const steps = [2.1, 4.1, 11, 21].map((scale) => {
+    const closer = rows.map((one) => ({ ...one, p: [0.1, -0.02 - (one.row - 1) * scale / 1000] }));
+    const own = (labels, seen = view) => shown(labels, seen).map(({ t }) => Number(t));
+    const made = own(closer), step = made[1] - made[0];
+    assert.ok(made.length > 1 && made.every((row, k) => row === step * (k + 1)), `${scale}: ${made}`);
+    // two steps nearer to each other would not have room
+    assert.ok(step === 1 || scale * [0, 1, 1, 1, 1, 2, 2, 2, 2, 2, 5][Math.min(step, 10)] < 20, `${scale}: ${step}`);
+    assert.deepEqual(own(closer.slice(0, 31)), made.filter((row) => row <= 31));
+    return step;
+  });
+  assert.deepEqual([...steps].sort((a, b) => b - a), steps);
+  assert.equal(new Set(steps).size, 4);
+});
+
+test("of rows so few that none is a multiple of ten, some have their numbers", () => {
+  const rows = [1, 2, 3, 4].map((row) => ({ p: [0.1, -0.1 - row * 0.001], t: `${row}`, k: "row", row }));
+  assert.equal(shown(rows, view).length, 1);
+});
+
 test("what is out of view is not shown, and what was shown goes when the view moves", () => {
   const place = { made: [], appendChild(one) { this.made.push(one); return one; } }, drawn = new Labels(place);
   const labels = [{ p: [0.1, -0.1], t: "1", k: "stop" }];

@@ -54,7 +54,7 @@ def stops(route: Route) -> list[Label]:
 
 
 def rows(grid: PlantGrid) -> list[Label]:
-    """Return each row's number beyond its headland, every tenth row before the others."""
+    """Return each row's number beyond its headland; the browser shows those that have room."""
     if not grid.in_rows:
         return []
     line, first = np.unique(grid.row_line, return_index=True)
@@ -62,12 +62,10 @@ def rows(grid: PlantGrid) -> list[Label]:
     # a lane ends in the middle of the headland, whose end is the outline, where there are no others
     ends_m = [plant_m + times * (lane_m - plant_m) for times in (2.0, 3.0)]
     places = [np.round(grid.frame.lonlat(one), 7).tolist() for one in ends_m]
-    made = [
+    return [
         {"p": place, "away": away, "t": f"{number + 1}", "k": "row", "row": number + 1}
         for number, place, away in zip(line.tolist(), *places, strict=True)
     ]
-    tens = {"0", "1"}
-    return sorted(made, key=lambda one: (one["t"][-1] not in tens, one["t"][-1] != "5"))
 
 
 def places(plot: Plot) -> list[Label]:
@@ -79,7 +77,7 @@ def places(plot: Plot) -> list[Label]:
     out = side * _to_outline(plot, (x, y), side * _NEAR_ROWS * grid.row_spacing_m)
     ends_m = np.array([[x, y + out], [x, y + out + side]])
     at, away = np.round(grid.frame.lonlat(ends_m), 7).tolist()
-    gate = {"p": at, "away": away, "gap": _RING_PX, "t": texts.LABEL_GATE, "k": "place"}
+    gate = {"p": at, "away": away, "gap": _RING_PX, "t": texts.LABEL_GATE, "k": "gate"}
     inner = shapely.point_on_surface(shapely.get_parts(plot.field.no_go))
     no_go = np.round(shapely.get_coordinates(inner), 7).tolist()
     return [gate, *({"p": p, "t": texts.LABEL_NO_GO, "k": "place"} for p in no_go)]

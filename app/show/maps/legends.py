@@ -70,14 +70,18 @@ def plan(field: Field, *, dark: bool = False) -> list[LegendPart]:
     return [part("", items, "plan")]
 
 
+def gate() -> LegendPart:
+    """Return the sign of the gate."""
+    return part("", [("ring", colours.GATE, texts.LEGEND_GATE)])
+
+
 def signs(*, dark: bool = False, treated: bool = False) -> list[LegendPart]:
     """Return the signs of route, hot spots and records, and of what was treated, if there is."""
     route = colours.ROUTE_IN_DARK if dark else colours.ROUTE
     hot = colours.HOT_IN_DARK if dark else colours.HOT
     sprayed = colours.TREATED_IN_DARK if dark else colours.TREATED
     return [
-        part("", [("line", route, texts.LEGEND_ROUTE), ("ring", colours.GATE, texts.LEGEND_GATE)],
-             "route"),
+        part("", [("line", route, texts.LEGEND_ROUTE)], "route"),
         part("", [("outline", hot, texts.LEGEND_HOT)], "hot"),
         part("", [("dot", hot, texts.LEGEND_SEEN), ("ring", hot, texts.LEGEND_NOT_SEEN)],
              "records"),

@@ -1,4 +1,4 @@
-"""The route on a map: its line, its direction, the gate, and what plays it."""
+"""The route on a map: its line, its direction, where it begins, and what plays it."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from fieldmon.planning.route import Route
+    from fieldmon.plot.travel import Aisles
 
 _ARROWS = 40
 
 
 def route(the_route: Route, *, dark: bool = False) -> list[Layer]:
-    """Return the driven line in its casing, arrows in its direction, and the gate."""
+    """Return the driven line in its casing, and arrows in its direction."""
     if not len(the_route):
         return []
     colour = list(ROUTE_IN_DARK if dark else ROUTE)
     line = np.round(the_route.line_lonlat(), 7).tolist()
-    gate = the_route.aisles.grid.frame.lonlat(the_route.aisles.gate_m)[0].tolist()
     return [
         Layer(
             "PathLayer", [{"path": line}], id="casing", get_path="path",
@@ -39,15 +39,20 @@ def route(the_route: Route, *, dark: bool = False) -> list[Layer]:
             "PolygonLayer", _arrows(the_route), id="arrows", get_polygon="a",
             get_fill_color=colour, stroked=False,
         ),
-        Layer(
-            "ScatterplotLayer", [{"p": gate, "t": texts.TIP_GATE}], id="gate",
-            get_position="p", get_radius=3, radius_min_pixels=7,
-            # from near, it would cover a small plot
-            radius_max_pixels=14, filled=True,
-            get_fill_color=[255, 255, 255], stroked=True, get_line_color=list(GATE),
-            line_width_min_pixels=4, line_width_max_pixels=4,
-        ),
     ]  # fmt: skip
+
+
+def gate(aisles: Aisles) -> Layer:
+    """Return the ring of the gate, where each day begins and ends."""
+    place = aisles.grid.frame.lonlat(aisles.gate_m)[0].tolist()
+    return Layer(
+        "ScatterplotLayer", [{"p": place, "t": texts.TIP_GATE}], id="gate",
+        get_position="p", get_radius=3, radius_min_pixels=7,
+        # from near, it would cover a small plot
+        radius_max_pixels=14, filled=True,
+        get_fill_color=[255, 255, 255], stroked=True, get_line_color=list(GATE),
+        line_width_min_pixels=4, line_width_max_pixels=4,
+    )  # fmt: skip
 
 
 def _arrows(the_route: Route) -> list[dict[str, Any]]:

@@ -15,7 +15,7 @@ def test_rows_can_be_turned_and_set_apart(app):
     row_box(app, "row_bearing").set_value(158.0).run()
     row_box(app, "row_spacing").set_value(8.0).run()
     assert not app.exception
-    assert metric(app, "Row bearing") == "158.0°"
+    assert metric(app, "Row direction") == "158.0°"
     laid = len(plants(app, "plants"))
     assert 1500 < laid < 2000
     go(app, "today")

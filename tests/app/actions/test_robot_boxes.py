@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import pytest
 
+from app.words import texts
 from fieldmon.plot.robot import Robot
 from tests.app.driving import apart, go, press, row_box
+
+TIMES = texts.ROBOT_TIMES_LABEL
 
 
 def test_a_robot_too_wide_for_the_aisles_is_said_and_a_narrow_one_planned(app):
@@ -35,7 +38,7 @@ def test_the_thesis_s_times_inspect_other_plants_than_those_of_simulated_drives(
 def test_a_season_keeps_the_width_and_the_times(season_app, season):
     width = next(one for one in season_app.number_input if one.label.startswith("Width"))
     width.set_value(0.7)
-    next(one for one in season_app.selectbox if one.label == "Times charged").set_value("thesis")
+    next(one for one in season_app.selectbox if one.label == TIMES).set_value("thesis")
     season_app.run()
     press(season_app, "Use from now on")
     assert not season_app.exception
@@ -48,7 +51,7 @@ def test_times_set_by_a_command_stay_unless_they_are_changed(season_app, season)
     own = replace(settings.robot, row_change_s=11.0, width_m=0.5812)
     open_season.change(replace(settings, robot=own), settings)
     season_app.run()
-    times = next(one for one in season_app.selectbox if one.label == "Times charged")
+    times = next(one for one in season_app.selectbox if one.label == TIMES)
     assert times.value == "own"
     assert not [one for one in season_app.button if one.key == "change_setup"]
     assert season().settings.robot.width_m == pytest.approx(0.5812)

@@ -35,11 +35,11 @@ def square(app):
 
 def test_both_ways_of_a_square_planting_are_drawn_and_the_one_chosen_is_kept(square):
     assert bearings(square) == ["20°", "110°"]
-    assert metric(square, "Row bearing") == "20.0°"
+    assert metric(square, "Row direction") == "20.0°"
     assert len(layer(square, "direction-1")["data"]) == 10
     assert len(layer(square, "direction-2")["data"]) > 2 * 24, "its rows are broken lines"
     press(square, "2 · 110° · 24 rows, 3.0 m apart")
-    assert metric(square, "Row bearing") == "110.0°"
+    assert metric(square, "Row direction") == "110.0°"
     assert row_box(square, "row_bearing").value == pytest.approx(110.0, abs=0.2)
     # what was, in its own colour, beside what is
     assert len(layer(square, "rows-before")["data"]) == 10
@@ -47,9 +47,9 @@ def test_both_ways_of_a_square_planting_are_drawn_and_the_one_chosen_is_kept(squ
     assert len(layer(square, "row-lines")["data"]) == 24
     go(square, "today")
     go(square, "plot")
-    assert metric(square, "Row bearing") == "110.0°", "it is kept from page to page"
+    assert metric(square, "Row direction") == "110.0°", "it is kept from page to page"
     press(square, "Show every way again")
-    assert metric(square, "Row bearing") == "20.0°"
+    assert metric(square, "Row direction") == "20.0°"
     assert len(layer(square, "direction-2")["data"]) > 2 * 24
 
 

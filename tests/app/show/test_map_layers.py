@@ -90,12 +90,12 @@ def test_every_layer_of_plants_is_of_one_shade_so_that_one_of_them_shows(season)
     assert {name for name in drawn if name.startswith(("plants", "find", "found"))} == {*of_shades}
 
 
-def test_every_layer_but_the_ground_of_all_can_be_switched(season):
+def test_every_layer_but_the_ground_of_all_and_the_gate_can_be_switched(season):
     choices = in_season(season, BEGINS)
     content = map_layers.day_map(choices)
     switched = {name for one in (*content.switches, *content.shades) for name in one.layers}
     drawn = {layer.id for layer in content.layers}
-    assert drawn - switched == {"boundary"}
+    assert drawn - switched == {"boundary", "gate"}
     assert {part["of"].removeprefix("shade:") for part in content.legend} >= {
         one.key for one in content.switches if set(one.layers) & drawn
     }

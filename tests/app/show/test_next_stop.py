@@ -61,4 +61,4 @@ def test_compass_and_arrow_point_from_here_to_there(plot, at):
 def test_stops_done_and_left_and_hours_are_counted(plot):
     plan = planned(plot)
     said = apart(next_stop(plan, 17, UnitsInLanguage()).chance)
-    assert said == f"Chance 1.0 % · stop 17 done, {len(plan.route)} to go · 2:00 left"
+    assert said == f"Chance 1.0 % · 17 done, {len(plan.route)} to go · 2:00 left"

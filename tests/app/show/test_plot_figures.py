@@ -28,7 +28,7 @@ def test_figures_are_the_plot_s_in_the_units_chosen(metrics):
         "Area": f"{area_m2(plot.field.boundary) / 1e4:.2f} ha",
         "Plants": f"{len(plot.grid):,}",
         "Rows": plot.grid.n_rows,
-        "Row bearing": "20.0°",
+        "Row direction": "20.0°",
         "Rows / plants apart": "5.0 m / 2.0 m",
     }
     plot_figures.show(plot, UnitsInLanguage("ft", "dunam"))

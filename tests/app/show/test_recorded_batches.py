@@ -27,9 +27,9 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     lines = [one.value for one in season_app.markdown if "\u2068" in one.value]
     said = [line.replace("\u2068", "").replace("\u2069", "").split(" · ", 1)[1] for line in lines]
     # recorded today, and of a day that is not
-    assert said[0] == "day.csv · 4 plants, 2 found · Mon 16 Nov · undone"
-    assert said[1] == f"typed in · {second}: could not inspect · Mon 16 Nov · Ann"
-    assert said[2] == f"typed in · {first}: found · Mon 16 Nov"
+    assert said[0] == "day.csv · 4 plants, 2 found · inspected Mon 16 Nov · undone"
+    assert said[1] == f"typed in · {second}: could not inspect · inspected Mon 16 Nov · Ann"
+    assert said[2] == f"typed in · {first}: found · inspected Mon 16 Nov"
     assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:3]}
 
 

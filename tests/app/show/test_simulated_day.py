@@ -5,7 +5,7 @@ import pytest
 
 from app.show import field_map, simulated_day
 from app.show.maps import deck
-from app.state import cached
+from app.state import cached_simulations
 from fieldmon.simulation.worker import LaidPlot
 from tests.app.chosen import a_plot, chosen
 from tests.app.shown_plants import plants_in
@@ -16,7 +16,7 @@ def played():
     plot = a_plot()
     choices = chosen(plot)
     chance = np.full(len(plot.grid), 0.1)
-    days, _ = cached.simulated_season(
+    days, _ = cached_simulations.simulated_season(
         "shown", "dynamic", (4, 0.2, 0.1, 1), choices.robot, LaidPlot(plot, chance)
     )
     return choices, days

@@ -3,14 +3,11 @@
 import numpy as np
 
 from app.state import cached
-from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.observations import Observations
-from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.robot import Robot
-from fieldmon.simulation.worker import LaidPlot
 from tests.app.chosen import a_plot
 from tests.app.driving import go, metric, opened, tap
 from tests.monitoring.seasons import a_season
@@ -67,15 +64,3 @@ def test_layers_are_made_once_for_a_key():
     for key in ("a", "a", "b"):
         cached.layers(f"test {key}", lambda key=key: [*made, made.append(key)])
     assert made == ["a", "b"]
-
-
-def test_a_simulated_season_is_the_one_that_the_library_simulates():
-    plot, robot, seed = a_plot(), Robot(hours=1.0), 3
-    chance = np.full(len(plot.grid), 0.05)
-    days, figures = cached.simulated_season(
-        "test", "dynamic", (4, 0.05, 0.1, seed), robot, LaidPlot(plot, chance)
-    )
-    assert len(days) == len(figures.found) == 4
-    starts = start_infested(chance, 0.05, RandomStreams(seed).of("start"))
-    assert days[0].infested.tolist() == starts[plot.grid.vine].tolist()
-    assert [day.found for day in days] == figures.found.tolist()

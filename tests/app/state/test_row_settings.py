@@ -36,9 +36,9 @@ def test_rows_set_by_hand_are_those_of_one_plot(app):
     go(app, "plot")
     row_box(app, "row_bearing").set_value(10.0).run()
     other = app.selectbox(key="feature sample/paran_estate.zip").set_value(1).run()
-    assert metric(other, "Row bearing") != "10.0°"
+    assert metric(other, "Row direction") != "10.0°"
     app.selectbox(key="feature sample/paran_estate.zip").set_value(0).run()
-    assert metric(app, "Row bearing") == "10.0°"
+    assert metric(app, "Row direction") == "10.0°"
 
 
 @pytest.mark.usefixtures("session")

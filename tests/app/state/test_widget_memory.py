@@ -9,10 +9,10 @@ class Box:
     """Stands for a widget: shows what the session holds, or its own default."""
 
     def __init__(self, session):
-        self.session, self.given = session, None
+        self.session, self.given, self.form = session, None, None
 
-    def number_input(self, _label, *, key, value=None):
-        self.given = value
+    def number_input(self, _label, *_limits, key, value=None, step=1, format="%d"):  # noqa: A002, ARG002 - as Streamlit's
+        self.given, self.form = value, format
         self.session.setdefault(key, value)
         return self.session[key]
 
@@ -57,6 +57,13 @@ def test_a_widget_s_own_default_is_what_it_began_with_on_this_page(box, session)
     assert box.given == 8.0
     shown(box, "map", default=8.0)
     assert box.given == 3.0
+
+
+def test_a_box_writes_no_digits_that_nobody_needs(box):
+    for limits, step, written in (((0.0, 50.0), 0.5, ("2", "2.5", "0.05")), ((0, 50), 1, "220")):
+        for widget in (widget_memory.show, widget_memory.anew):
+            widget(box.number_input, "share", *limits, step=step, key="share")
+            assert [box.form % value for value in (2.0, 2.5, 0.05)] == list(written)
 
 
 def test_choices_are_given_by_their_place(box):

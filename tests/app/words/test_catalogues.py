@@ -91,7 +91,7 @@ def test_a_plain_sentence_is_noticed(tmp_path):
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_different_things_are_counted_in_different_words(code):
-    held, same = catalogue(code), {"{n} stations", "{n} pieces"}  # as stops and plots in some
+    held, same = catalogue(code), {"{n:,} stations", "{n:,} pieces"}  # as stops and plots in some
     counted = [e for e in entries() if e.one and e.context == LIBRARY and e.words not in same]
     assert len(counted) > 10
     assert len({held.get(e.id, e.context).string for e in counted}) == len(counted)

@@ -1,6 +1,7 @@
 """A ladder below a plot: no way on it is longer than the true one."""
 
 import gc
+from types import SimpleNamespace
 from weakref import ref
 
 import numpy as np
@@ -354,3 +355,20 @@ def test_a_rung_is_as_long_as_its_longest_lane_and_no_ends_are_nearer_than_nothi
         assert rungs.high[k] in (*last[[last.argmin(), last.argmax()]], rungs.low[k])
         longest += rungs.low[k] == first.min() and rungs.high[k] == last.max()
     assert longest > 0
+
+
+@pytest.mark.parametrize("lanes", [[(0.0, 10.0), (30.0, 50.0)], [(30.0, 50.0), (0.0, 10.0)]])
+def test_an_aisle_of_lanes_without_a_metre_in_common_is_one_place_midway_between_them(
+    monkeypatch, lanes
+):
+    """Where its ends would be nearer to another's than nothing, they are the innermost ones."""
+    ends_m = np.array([*lanes, (0.0, 50.0)])
+    travel = SimpleNamespace(corridor=np.array([0, 0, 1]), end_x_m=ends_m)
+    aisles = SimpleNamespace(travel=travel, grid=SimpleNamespace(lane_y_m=np.array([0, 0, 4.0])))
+    near = np.full((2, 2, 3, 3), 5.0)
+    near[:, :, 0, 1] = near[:, :, 1, 0] = -1.0
+    apart_m = iter([near, np.full((2, 2, 3, 3), 5.0)])
+    monkeypatch.setattr(relaxation, "_between_aisles", lambda *_: next(apart_m))
+    rungs = relaxation.rungs_of(aisles)
+    assert rungs.low.tolist() == [20.0, 0.0]
+    assert rungs.high.tolist() == [20.0, 50.0]

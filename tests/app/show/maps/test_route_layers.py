@@ -28,13 +28,10 @@ def route(plot):
 
 def test_the_line_is_the_one_that_is_driven_and_arrows_point_along_it(route):
     layers = {layer.id: layer for layer in route_layers.route(route)}
-    assert list(layers) == ["casing", "route", "arrows", "gate"]
+    assert list(layers) == ["casing", "route", "arrows"]
     for name in ("casing", "route"):
         drawn = np.array(layers[name].data[0]["path"])
         assert drawn == pytest.approx(route.line_lonlat(), abs=1e-7)
-    assert layers["gate"].data[0]["p"] == pytest.approx((35.15, 30.36), abs=1e-6)
-    # a gate 3 m wide would cover a plot of one plant
-    assert layers["gate"].radius_max_pixels <= 16
     frame, arrows = route.aisles.grid.frame, layers["arrows"].data
     step = np.diff(route.line_m, axis=0)
     before = np.cumsum(np.hypot(*step.T))
@@ -47,9 +44,16 @@ def test_the_line_is_the_one_that_is_driven_and_arrows_point_along_it(route):
         assert along == pytest.approx(1.0, abs=0.05)
 
 
-def test_only_the_gate_says_what_it_is_so_that_no_arrow_hides_a_plant(route):
-    said = {layer.id for layer in route_layers.route(route) if "t" in layer.data[0]}
-    assert said == {"gate"}
+def test_the_gate_is_where_the_plot_has_it_and_is_no_part_of_the_route(plot):
+    gate = route_layers.gate(plot.aisles)
+    assert gate.data[0]["p"] == pytest.approx((35.15, 30.36), abs=1e-6)
+    # a gate 3 m wide would cover a plot of one plant
+    assert gate.radius_max_pixels <= 16
+
+
+def test_only_the_gate_says_what_it_is_so_that_no_arrow_hides_a_plant(route, plot):
+    layers = [*route_layers.route(route), route_layers.gate(plot.aisles)]
+    assert {layer.id for layer in layers if "t" in layer.data[0]} == {"gate"}
 
 
 @pytest.mark.parametrize("dark", [False, True])

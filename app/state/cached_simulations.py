@@ -1,0 +1,91 @@
+"""Simulated and driven days, kept between clicks as `cached` keeps what a season comes to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.spread import Spread
+from fieldmon.samplers import sampler
+from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
+from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
+from fieldmon.simulation.start import season_start
+
+from .cached import FEW, WORKING
+from .comparison import Comparison
+from .driving import DayInTime, DriveRun
+from .live_drive import LiveDrive
+
+if TYPE_CHECKING:
+    from fieldmon.drive.simulated import MadeUp
+    from fieldmon.drive.vda5050.wire import Broker, RobotName
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
+    from fieldmon.samplers.base import Sampler, Scene
+    from fieldmon.simulation.worker import LaidPlot
+
+    from .comparison import ComparisonSettings
+
+
+@st.cache_resource(max_entries=8)
+def comparison(
+    key: str,
+    settings: ComparisonSettings,
+    robot: Robot,
+    _laid: LaidPlot,
+) -> Comparison:
+    """Return the comparison of these settings on this plot; it is at work or will be.
+
+    `key` stands for the plot, its chances and its pest.
+    """
+    return Comparison(settings, _laid, robot)
+
+
+@st.cache_resource(max_entries=8)
+def drive_run(
+    key: str,
+    kind: str,
+    made_up: MadeUp,
+    _plot: Plot,
+    _scene: Scene,
+    _sampler: Sampler,
+) -> DriveRun:
+    """Return a day driven by a simulated robot, done or to be; `key` stands for the scene."""
+    return DriveRun(kind, _plot, _scene, _sampler, made_up)
+
+
+@st.cache_resource(max_entries=8)
+def live_drive(key: str, broker: Broker, robot: RobotName, _scene: Scene) -> LiveDrive:
+    """Return a robot's day as it is driven; `key` stands for the plot and the day."""
+    return LiveDrive(broker, robot, _scene)
+
+
+@st.cache_resource(max_entries=8, show_spinner=WORKING)
+def recorded_drive(key: str, _data: bytes, _plot: Plot, _scene: Scene) -> DayInTime:
+    """Return a day that was driven; `key` stands for the scene and the file."""
+    return DayInTime.of_file(_data, _plot, _scene)
+
+
+@st.cache_resource(max_entries=FEW, show_spinner=WORKING)
+def simulated_season(
+    key: str,
+    sampler_name: str,
+    numbers: tuple[int, float, float, int],
+    robot: Robot,
+    _laid: LaidPlot,
+) -> tuple[list[SimulatedDay], SeasonMetrics]:
+    """Return a simulated season and its figures; `key` stands for plot, records, day and pest.
+
+    `numbers` are days, share infested at the start, spread a night, and seed.
+    """
+    n_days, share, rate, seed = numbers
+    streams = RandomStreams(seed)
+    plot, chance, pest_in_weather = _laid
+    robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
+    start = season_start(plot.grid, chance, share, streams)
+    settings = SeasonSettings(n_days=n_days, spread=Spread(rate), pest=pest_in_weather)
+    decides = sampler(sampler_name)
+    walk = list(simulated_days(plot.aisles, robot, decides, start, settings, streams))
+    return walk, season_metrics(walk)

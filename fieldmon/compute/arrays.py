@@ -18,6 +18,15 @@ def read_only(array: A) -> A:
     return array
 
 
+def as_compiled(array: A) -> A:
+    """Return the array, or a copy, as loops are compiled for it: without gaps, to be written to.
+
+    Numba compiles a loop once more for a slice with steps, and for an array nobody may change.
+    """
+    made: A = np.require(array, requirements=["C_CONTIGUOUS", "WRITEABLE"])
+    return made
+
+
 def offsets(count: NDArray[np.integer]) -> NDArray[np.int64]:
     """Return where each of k lists starts, and the last one ends, ``(k + 1,)``.
 

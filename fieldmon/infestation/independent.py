@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
 from fieldmon.compute.jit import loop
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE
 
@@ -63,7 +64,8 @@ def learn(
     after = chance.copy()
     rule = (learning.detects(len(plants)), learning.beside_find, learning.treated)
     inspected = np.zeros(after.size, np.bool_)
-    _learn((after, inspected), grid.adjacent, plants, found, rule)
+    inspections = as_compiled(plants), as_compiled(found)
+    _learn((after, inspected), grid.adjacent, *inspections, rule)
     return after
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.infestation.chance_bounds import (
     LEAST_CHANCE,
@@ -68,7 +69,8 @@ class PairApproximation:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
         n, linked = len(self.chance), self.grid.linked
         believed = self.chance.copy(), self.pair_chance.copy()
-        inspections = plants, found, learning.detects(len(plants))
+        detects = as_compiled(learning.detects(len(plants)))
+        inspections = as_compiled(plants), as_compiled(found), detects
         learn_clustering(believed, linked, inspections, ClusterEstimate.none(n), 0.0)
         _learn_pairs(believed, linked, inspections, learning.treated, Neighbourhood.of(n))
         return PairApproximation(self.grid, *believed)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
@@ -218,7 +219,7 @@ class TracedPairs:
         none = np.zeros((2, n))
         told = self.counts.detects(learning.detects(len(plants)))
         shown = self._shown(plants, told)
-        inspections = plants, found, shown
+        inspections = as_compiled(plants), as_compiled(found), shown
         lean = leaning(self.evidence)
         clusters = ClusterEstimate.none(n, self.evidence, lean)
         believed = self.chance.copy(), self.pair_chance.copy()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 import numpy as np
 import shapely
 
-from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.arrays import as_compiled, offsets, read_only, runs
 from fieldmon.compute.jit import inlined, routine
 
 if TYPE_CHECKING:
@@ -95,7 +95,8 @@ class Polylines(NamedTuple):
     def points(self, line: NDArray[np.integer], place_m: Float) -> Float:
         """Return where places on lines are, ``(m, 2)``; beyond an end, straight on."""
         xy_m = np.empty((len(place_m), 2))
-        _points(self, np.asarray(line, np.int64), np.asarray(place_m, np.float64), xy_m)
+        places = as_compiled(np.asarray(line, np.int64)), as_compiled(np.asarray(place_m, float))
+        _points(self._fixed(), *places, xy_m)
         return xy_m
 
     def ahead(self, line: NDArray[np.integer], place_m: Float) -> Float:
@@ -136,14 +137,21 @@ class Polylines(NamedTuple):
         places go on, below 0 or above the length.
         """
         place, left = np.empty(len(xy_m)), np.empty(len(xy_m))
-        _project(self, np.ascontiguousarray(xy_m), np.asarray(line, np.int64), place, left)
+        of = as_compiled(np.asarray(line, np.int64))
+        _project(self._fixed(), as_compiled(xy_m), of, place, left)
         return place, left
 
     def corner_before(self, line: NDArray[np.integer], place_m: Float) -> Int:
         """Return the corner before each place, numbered through all lines."""
         at = np.empty(len(place_m), np.int64)
-        _corner_before(self, np.asarray(line, np.int64), np.asarray(place_m, np.float64), at)
+        places = as_compiled(np.asarray(line, np.int64)), as_compiled(np.asarray(place_m, float))
+        _corner_before(self._fixed(), *places, at)
         return at
+
+    def _fixed(self) -> Self:
+        """Return the same lines as loops are compiled for them, whoever may change them."""
+        start, xy_m, at_m = self.start.view(), self.xy_m.view(), self.at_m.view()
+        return type(self)(read_only(start), read_only(xy_m), read_only(at_m))
 
 
 def sampled(lines: Polylines, step_m: float) -> tuple[Int, Float]:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.compute.arrays import offsets, read_only, runs
+from fieldmon.compute.arrays import as_compiled, offsets, read_only, runs
 
 COUNTS = st.lists(st.integers(0, 9), max_size=30)
 
@@ -34,3 +34,15 @@ def test_what_is_read_only_is_the_same_array_and_cannot_be_written_to():
     assert read_only(array) is array
     with pytest.raises(ValueError, match="read-only"):
         array[0] = 1
+
+
+@pytest.mark.parametrize(
+    "array", [np.arange(5), np.arange(10)[::2], read_only(np.arange(5)), np.arange(0)]
+)
+def test_loops_are_compiled_once_for_slices_and_for_what_nobody_may_change(array):
+    same = as_compiled(array)
+    np.testing.assert_array_equal(same, array)
+    assert same.dtype == array.dtype
+    assert same.flags.c_contiguous
+    assert same.flags.writeable
+    assert (same is array) == (array.flags.c_contiguous and array.flags.writeable)

@@ -17,6 +17,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from importlib.abc import MetaPathFinder
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
@@ -279,12 +280,27 @@ def stop() -> None:
     _IDLE.stop()
 
 
+class _WithoutTables(MetaPathFinder):
+    """Hides GeoPandas and pandas from pyogrio, which loads them for tables that nobody reads here.
+
+    They take as long as all else that it loads. Others, as pyarrow for nanoseconds, find them.
+    """
+
+    def find_spec(self, name: str, *_: object) -> None:
+        """Refuse both while pyogrio looks for what is installed."""
+        looking = sys.modules.get("pyogrio._compat")
+        is_looking = looking is not None and not hasattr(looking, "HAS_GEOPANDAS")
+        if is_looking and name in {"geopandas", "pandas"}:
+            raise ModuleNotFoundError(f"{name} is not needed to read files", name=name)
+
+
 def _serve() -> None:
     """Answer calls on standard input until it is closed."""
     calls = sys.stdin.buffer
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # whatever a library prints must not end up among the answers
     _limit_memory()
+    sys.meta_path.insert(0, _WithoutTables())
     for module in sys.argv[1:]:
         importlib.import_module(module)
     while True:

@@ -7,6 +7,7 @@ import time
 
 import geopandas as gpd
 import numpy as np
+import pandas as pd
 import pytest
 from shapely import LineString, Point, box
 
@@ -60,25 +61,29 @@ def test_a_crash_is_said_to_be_one_and_not_a_slow_file(reader):
 
 def test_nesting_beyond_reason_is_a_sentence_and_the_process_goes_on(reader):
     with pytest.raises(FileProblem, match="nested beyond reason"):
-        reader.call("tests.io.sandbox.test_process:endless", (1,), 10.0)
+        reader.call("tests.io.sandbox.harm:endless", (1,), 10.0)
     assert reader.call("math:sqrt", (9,), 10.0) == 3.0
-
-
-def endless(n):
-    """Call itself for ever."""
-    return endless(n + 1)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there the clock holds alone")
 def test_more_memory_than_allowed_is_a_sentence_and_the_process_goes_on(reader):
     with pytest.raises(FileProblem, match="may take 1 GB of memory at most"):
-        reader.call("tests.io.sandbox.test_process:hungry", (limits.MEMORY_BYTES,), 10.0)
-    assert reader.call("tests.io.sandbox.test_process:hungry", (10,), 10.0) == 10
+        reader.call("tests.io.sandbox.harm:hungry", (limits.MEMORY_BYTES,), 10.0)
+    assert reader.call("tests.io.sandbox.harm:hungry", (10,), 10.0) == 10
 
 
-def hungry(n):
-    """Ask for so many bytes; the system gives them only when they are written to."""
-    return len(bytearray(n))
+def test_gdal_loads_without_pandas_which_is_there_for_nanoseconds(reader, tmp_path):
+    gpd.GeoSeries([Point(35, 30)], crs=4326).to_file(tmp_path / "p.gpkg")
+    task = "fieldmon.io.formats.gdal:list_layers"
+    (layer,) = reader.call(task, (tmp_path / "p.gpkg", "p.gpkg"), 60.0)
+    assert layer.geometry_type == "Point"
+    assert reader.call("tests.io.sandbox.harm:loaded", (), 10.0) == []
+    when = pd.Timestamp("2026-11-18 06:30:00.123456789")
+    frame = gpd.GeoDataFrame({"date": [when]}, geometry=[Point(35, 30)], crs=4326)
+    frame.astype({"date": "datetime64[ns]"}).to_parquet(tmp_path / "p.parquet")
+    task = "fieldmon.io.formats.geoparquet:read_parquet"
+    read = reader.call(task, (tmp_path / "p.parquet", "p.parquet"), 60.0)
+    assert read.columns["date"].tolist() == [str(when)]
 
 
 def test_it_is_kept_for_the_next_file_and_replaced_after_its_last():

@@ -84,9 +84,9 @@ CHANCE = AllowedRange(0.0, 1.0, said=worded("a chance in 0..1"))
 SHARE = AllowedRange(0.0, 1.0, above=True, below=True, said=worded("a share between 0 and 1"))
 SURE = AllowedRange(0.5, 1.0, above=True, below=True, said=worded("a chance between 0.5 and 1"))
 #: what a season file can hold, and a generator of random numbers takes
-SEED = AllowedRange(0, 2**63 - 1)
+SEED = AllowedRange(0, 2**63 - 1, said="a whole number from 0 to 2^63 - 1")
 #: numbers of batches and rows in a season file
-NUMBER = AllowedRange(1, 2**63 - 1)
+NUMBER = AllowedRange(1, 2**63 - 1, said="a whole number from 1 to 2^63 - 1")
 #: nobody simulates more
 SEASONS = AllowedRange(1, 1_000_000)
 #: of which differences have an interval

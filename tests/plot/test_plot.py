@@ -95,7 +95,7 @@ def test_a_plot_and_all_that_is_worked_out_on_it_say_themselves_in_a_line():
     for thing in things:
         assert len(repr(thing)) < 80
         assert "array" not in repr(thing)
-    assert repr(grid.adjacent) == f"<Csr: {len(grid.adjacent.plant)} plants in lists of {n}>"
+    assert repr(grid.adjacent) == f"<Csr: {len(grid.adjacent.plant):,} plants in lists of {n}>"
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,13 @@ def test_a_free_drive_takes_every_plant(priced):
     assert priced.best(1e-9).reward == pytest.approx(priced.reward.sum())
 
 
+def test_the_best_of_all_kinds_is_the_best_drive(priced):
+    for price in PRICES[::8]:
+        best, (worth, reward) = priced.best(price), priced.kinds(price)
+        at = np.unravel_index(worth.argmax(), worth.shape)
+        assert (worth[at], reward[at]) == pytest.approx((best.worth, best.reward))
+
+
 def test_bounds_are_a_valley_over_the_price(priced):
     bounds = [
         priced.bound(priced.best(price), price, 3600.0) for price in np.linspace(1e-5, 0.02, 40)

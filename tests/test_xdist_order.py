@@ -12,7 +12,7 @@ TESTS = [f"{file}::{k}" for file, n in FILES.items() for k in range(n)]
 
 
 @pytest.mark.parametrize(
-    ("cores", "free_gb", "n"), [(2, 20, 4), (2, 4, 2), (1, 0.5, 1), (16, 100, 18), (16, 12, 8)]
+    ("cores", "free_gb", "n"), [(2, 20, 3), (2, 4, 2), (1, 0.5, 1), (16, 100, 17), (16, 12, 8)]
 )
 def test_there_are_more_workers_than_cores_where_memory_allows(cores, free_gb, n):
     assert workers(cores, free_gb * 1e9) == n

@@ -15,12 +15,12 @@ WORKER_BYTES = 1.5e9
 
 
 def workers(cores, free_bytes):
-    """Return how many workers there should be: two more than cores, where memory allows.
+    """Return how many workers there should be: one more than cores, where memory allows.
 
     One waits for its browser, others for servers or the disk. Each further worker imports and
     loads what the others have, too.
     """
-    return max(1, min(cores + 2, int(free_bytes // WORKER_BYTES)))
+    return max(1, min(cores + 1, int(free_bytes // WORKER_BYTES)))
 
 
 def in_order(items):

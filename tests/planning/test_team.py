@@ -257,6 +257,19 @@ def test_routes_are_looked_for_where_the_others_are_not_and_never_get_worse():
     assert np.flatnonzero(~untaken).tolist() == sorted(shared[0].tolist())
 
 
+def test_an_aisle_in_which_nobody_else_stops_is_free_the_first_one_too():
+    plot = plot_of(8, 8)
+    aisle = plot.grid.corridor[plot.grid.row]
+    first = np.flatnonzero(aisle == aisle[0])
+    sees = (np.zeros(64), np.where(aisle == aisle[0], 0.5, 0.0))  # one sees nothing at all
+    tasks = [MemberTask(plot.aisles, Robot(hours=3.0), value, 0.0) for value in sees]
+    nothing = np.empty(0, np.int64)
+    search = _StopSearch(plot, tasks, lambda *_: None)
+    of_one, of_other = search.aisle_by_aisle([nothing, first[:3]])
+    assert len(of_one) == 0
+    assert sorted(of_other.tolist()) == first.tolist()
+
+
 @pytest.mark.parametrize("returns", [True, False])
 def test_the_way_round_is_the_one_on_which_fewer_are_met_and_a_one_way_day_has_but_one(returns):
     plot = plot_of(8, 8)

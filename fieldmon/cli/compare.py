@@ -14,6 +14,7 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Contact,
     Feature,
+    InfestedAtStart,
     LeastGain,
     MaybePlotFile,
     Passing,
@@ -21,6 +22,7 @@ from fieldmon.cli.options import (
     Records,
     WorkDate,
     WorkerOptions,
+    WorkingDays,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
@@ -28,7 +30,7 @@ from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
-from fieldmon.compute.ranges import CHANCE, DAYS, PAIRED, SHARE
+from fieldmon.compute.ranges import CHANCE, PAIRED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -74,13 +76,11 @@ class CompareOptions:
     contact: Contact = 30.0
     least_gain: LeastGain = 0.5
     passing: Passing = None
-    days: Annotated[int, typer.Option(help="Working days.", callback=within(DAYS))] = 25
+    days: WorkingDays = 25
     seeds: Annotated[
         int, typer.Option(help="Simulated seasons of each.", callback=within(PAIRED))
     ] = 10
-    infested: Annotated[
-        float, typer.Option(help="Share of plants infested at the start.", callback=within(SHARE))
-    ] = 0.02
+    infested: InfestedAtStart = 0.02
     spread: Annotated[
         list[float] | None,
         typer.Option(

@@ -8,12 +8,22 @@ import typer  # noqa: TC002 - typer reads what a callback takes
 
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.errors import SettingError
-from fieldmon.plot.robot import broken_rule
+from fieldmon.plot.robot import KM_H, broken_rule
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 V = TypeVar("V")
+
+#: settings of `Robot` that a person says in a unit: how many of it make one of the setting's, and
+#: how it is said
+_UNITS = {
+    "hours": (1.0, " h"),
+    "look_s": (1.0, " s"),
+    "speed_m_s": (KM_H, " km/h"),
+    "row_change_s": (1.0, " s"),
+    "turn_180_s": (1.0, " s"),
+}
 
 
 def within(*told: float | AllowedRange, **how: bool | str) -> Callable[[typer.CallbackParam, V], V]:
@@ -25,8 +35,9 @@ def within(*told: float | AllowedRange, **how: bool | str) -> Callable[[typer.Ca
     return refusing(range_.broken)
 
 
-def of_robot(name: str, units: float = 1.0, unit: str = "") -> Callable[..., object]:
-    """Return what refuses an option for a setting of `Robot`, as `broken_rule` takes it."""
+def of_robot(name: str) -> Callable[..., object]:
+    """Return what refuses an option for a setting of `Robot`, said in the unit of the option."""
+    units, unit = _UNITS.get(name, (1.0, ""))
     return refusing(lambda value: broken_rule(name, value, units, unit))
 
 

@@ -12,6 +12,7 @@ from fieldmon.cli.named_values import Options, chosen, chosen_of_file
 from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.cli.sampler_names import SamplerName
+from fieldmon.compute.ranges import DAYS, SEED, SHARE
 from fieldmon.errors import SettingError
 from fieldmon.planning.members import TEAMWORK
 from fieldmon.plot.planting import PLANTED
@@ -151,29 +152,25 @@ NoRows = Annotated[
 Gate = Annotated[str | None, typer.Option(help="Where the day starts and ends: LON,LAT.")]
 Scout = Annotated[bool, typer.Option("--scout", help="A person on foot instead of the robot.")]
 Hours = Annotated[
-    float | None, typer.Option(help="Working hours per day.", callback=of_robot("hours", 1.0, " h"))
+    float | None, typer.Option(help="Working hours per day.", callback=of_robot("hours"))
 ]
 Look = Annotated[
     float | None,
-    typer.Option(
-        "--look", help="Seconds to inspect a plant.", callback=of_robot("look_s", 1.0, " s")
-    ),
+    typer.Option("--look", help="Seconds to inspect a plant.", callback=of_robot("look_s")),
 ]
 Speed = Annotated[
     float | None,
-    typer.Option(help="Driving speed, km/h.", callback=of_robot("speed_m_s", KM_H, " km/h")),
+    typer.Option(help="Driving speed, km/h.", callback=of_robot("speed_m_s")),
 ]
 RowChange = Annotated[
     float | None,
-    typer.Option(
-        help="Seconds added for changing rows.", callback=of_robot("row_change_s", 1.0, " s")
-    ),
+    typer.Option(help="Seconds added for changing rows.", callback=of_robot("row_change_s")),
 ]
 Turn = Annotated[
     float | None,
     typer.Option(
         help="Seconds to turn to the other side of the same aisle.",
-        callback=of_robot("turn_180_s", 1.0, " s"),
+        callback=of_robot("turn_180_s"),
     ),
 ]
 Robots = Annotated[
@@ -265,6 +262,13 @@ TheDate = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD
 LastDate = Annotated[
     str | None,
     typer.Option("--date", help="The day, YYYY-MM-DD; default: the last one planned or recorded."),
+]
+WorkingDays = Annotated[int, typer.Option(help="Working days.", callback=within(DAYS))]
+InfestedAtStart = Annotated[
+    float, typer.Option(help="Share of plants infested at the start.", callback=within(SHARE))
+]
+StudySeed = Annotated[
+    int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
 ]
 StartTime = Annotated[str, typer.Option(help="Local time at which work starts, HH:MM.")]
 

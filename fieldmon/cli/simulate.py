@@ -14,18 +14,20 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Every,
     Feature,
+    InfestedAtStart,
     MaybePlotFile,
     PlotFiles,
     Records,
     WorkDate,
     WorkerOptions,
+    WorkingDays,
     refuse_idle_every,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
 from fieldmon.cli.times import day, day_on
-from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
+from fieldmon.compute.ranges import CHANCE, SEED, SHARE
 from fieldmon.samplers import kind_of, sampler
 
 if TYPE_CHECKING:
@@ -38,7 +40,6 @@ if TYPE_CHECKING:
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.treating import TreatmentRule
 
-# ten years
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
 
 
@@ -59,13 +60,11 @@ class SimulateOptions:
         ),
     ] = None
     every: Every = None
-    days: Annotated[int, typer.Option(help="Working days.", callback=within(DAYS))] = 25
+    days: WorkingDays = 25
     seed: Annotated[
         int, typer.Option(help="Seed: the same seed, the same season.", callback=within(SEED))
     ] = 1
-    infested: Annotated[
-        float, typer.Option(help="Share of plants infested at the start.", callback=within(SHARE))
-    ] = 0.02
+    infested: InfestedAtStart = 0.02
     spread: Annotated[
         float | None,
         typer.Option(

@@ -27,7 +27,7 @@ class StandInOptions:
     vda: Version = "2.1"
     speed: Annotated[
         float,
-        typer.Option(help="Driving speed, km/h.", callback=of_robot("speed_m_s", KM_H, " km/h")),
+        typer.Option(help="Driving speed, km/h.", callback=of_robot("speed_m_s")),
     ] = 2.5
     faster: Annotated[
         float,

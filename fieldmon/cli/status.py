@@ -57,9 +57,10 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
         _show_rows(kept, now)
     if batches:
         _show_batches(kept)
-    for sentence in kept.verify(whole=kept.is_short):
+    whole = kept.is_short
+    for sentence in kept.verify(whole=whole):
         typer.echo(f"doubtful: {sentence}", err=True)
-    if not kept.is_short:
+    if not whole:
         typer.echo(
             "checked against their digests: the last mornings only; fieldmon log --mornings checks "
             "the rest",

@@ -10,10 +10,11 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import StudySeed
 from fieldmon.cli.pest_options import PestName, check_no_pest
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
-from fieldmon.compute.ranges import SEASONS, SEED
+from fieldmon.compute.ranges import SEASONS
 
 if TYPE_CHECKING:
     from fieldmon.studies.thesis.chapter5.calibrate import FittedChoices
@@ -38,9 +39,7 @@ class CalibrateOptions:
     seeds: Annotated[
         int, typer.Option(help="Paired seasons in the final comparison.", callback=within(SEASONS))
     ] = 20
-    seed: Annotated[
-        int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
-    ] = 1
+    seed: StudySeed = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for tables and report.")
     ] = Path()

@@ -10,10 +10,11 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import StudySeed
 from fieldmon.cli.pest_options import PestName, check_no_pest
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
-from fieldmon.compute.ranges import SEASONS, SEED
+from fieldmon.compute.ranges import SEASONS
 from fieldmon.errors import FileProblem
 
 
@@ -31,9 +32,7 @@ class NoPriorOptions:
     replicates: Annotated[
         int, typer.Option(help="Simulated seasons per row.", callback=within(SEASONS))
     ] = 400
-    seed: Annotated[
-        int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
-    ] = 1
+    seed: StudySeed = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
     ] = Path()

@@ -11,11 +11,12 @@ import typer
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import StudySeed
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.cli.waiting import counting
-from fieldmon.compute.ranges import SEASONS, SEED
+from fieldmon.compute.ranges import SEASONS
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -36,9 +37,7 @@ class PriorOptions:
     seeds: Annotated[
         int, typer.Option(help="Paired seasons of each configuration.", callback=within(SEASONS))
     ] = 100
-    seed: Annotated[
-        int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
-    ] = 1
+    seed: StudySeed = 1
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for tables and report.")
     ] = Path()

@@ -17,7 +17,7 @@ def replanning(
     ] = 100,
     hours: Annotated[
         float,
-        typer.Option(help="Working hours per day.", callback=of_robot("hours", 1.0, " h")),
+        typer.Option(help="Working hours per day.", callback=of_robot("hours")),
     ] = 4.0,
     spread: Annotated[
         float, typer.Option(help="Chance per night to infest a neighbour.", callback=within(CHANCE))

@@ -42,13 +42,11 @@ class StudyOptions:
     ] = None
     hours: Annotated[
         list[float] | None,
-        typer.Option(help="Working hours; repeat.", callback=of_robot("hours", 1.0, " h")),
+        typer.Option(help="Working hours; repeat.", callback=of_robot("hours")),
     ] = None
     look: Annotated[
         list[float] | None,
-        typer.Option(
-            help="Seconds to inspect a plant; repeat.", callback=of_robot("look_s", 1.0, " s")
-        ),
+        typer.Option(help="Seconds to inspect a plant; repeat.", callback=of_robot("look_s")),
     ] = None
     infested: Annotated[
         list[float] | None,

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 
 UNKNOWN, ABSENT, PRESENT = -1, 0, 1
-#: nobody counts more than that on a plant
 #: a record this close to a plot is taken for one of its own
 NEARBY_M = 100.0
 _DAY = np.timedelta64(1, "D")

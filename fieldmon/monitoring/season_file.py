@@ -26,7 +26,13 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.mornings import Mornings
-from fieldmon.monitoring.open_season import FileRevision, SeasonContents, nothing_yet, settings_of
+from fieldmon.monitoring.open_season import (
+    FileRevision,
+    SeasonContents,
+    newest_day,
+    nothing_yet,
+    settings_of,
+)
 from fieldmon.monitoring.season_estimates import SeasonEstimates
 from fieldmon.monitoring.season_plans import SeasonPlans
 from fieldmon.monitoring.season_records import SeasonRecords
@@ -300,7 +306,8 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     @property
     def is_short(self) -> bool:
         """Whether all its mornings can be worked out again whenever its state is asked for."""
-        days = (self.last_date() - self.settings.begins).days + 1
+        with self.store.reading() as db:
+            days = newest_day(db) + 1
         return len(self.plot.grid) * days <= SHORT
 
     def verify(self, *, whole: bool = True) -> tuple[str, ...]:

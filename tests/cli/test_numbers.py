@@ -177,6 +177,6 @@ def test_a_setting_of_the_robot_is_held_to_its_own_rule():
     class Option:
         opts = ("--speed",)
 
-    assert of_robot("speed_m_s", 3.6, " km/h")(Option, 108.0) == 108.0
+    assert of_robot("speed_m_s")(Option, 108.0) == 108.0
     with pytest.raises(SettingError, match=re.escape("--speed must be 108 km/h at most")):
-        of_robot("speed_m_s", 3.6, " km/h")(Option, 108.1)
+        of_robot("speed_m_s")(Option, 108.1)

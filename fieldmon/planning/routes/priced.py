@@ -268,11 +268,8 @@ def _sweep_kinds(
     for begin in range(low.size - 1):
         end = 0
         room.best[:] = IMPOSSIBLE
-        room.best[0, 0] = 0.0
-        room.held[0, 0] = 0.0
+        room.best[low[begin], 0] = room.held[low[begin], 0] = 0.0
         for k in range(low[begin], ladder.across_m.size):
-            if k == low[begin]:
-                room.best[k, 0] = room.held[k, 0] = 0.0
             while end + 1 < high.size - 1 and k >= high[end + 1]:
                 end += 1
             _take_element(ladder, tables, metre, room, k)

@@ -38,6 +38,21 @@ def test_the_best_of_all_kinds_is_the_best_drive(priced):
         assert (worth[at], reward[at]) == pytest.approx((best.worth, best.reward))
 
 
+def test_kinds_grant_what_the_best_drive_is_granted():
+    """Where turns are dear, plants on both sides of an aisle are granted more than can be driven."""
+    aisles = Aisles.of(rectangle(2, 11, Planting(faces=2)), gate_xy_m=(-2.0, -3.0))
+    ladder = ladder_below(aisles)
+    between = ladder.plant[ladder.start[2] : ladder.start[3]]
+    reward = np.zeros(len(aisles.grid))
+    reward[between] = np.random.default_rng(6).random(len(between))
+    priced = Priced(ladder, reward, Robot(turn_180_s=60.0, row_change_s=3.0))
+    for price in np.geomspace(1e-4, 1e-2, 7):
+        granted = priced.best(price)
+        worth, held = priced.kinds(price)
+        at = np.unravel_index(worth.argmax(), worth.shape)
+        assert (worth[at], held[at]) == pytest.approx((granted.worth, granted.reward))
+
+
 def test_bounds_are_a_valley_over_the_price(priced):
     bounds = [
         priced.bound(priced.best(price), price, 3600.0) for price in np.linspace(1e-5, 0.02, 40)

@@ -3,7 +3,15 @@
 
 const MOMENT_MS = 250;
 
-let heard = false, left = -Infinity;
+let heard = false, left = -Infinity, waiting = null;
+
+function turn() {
+  const { link, timer } = waiting;
+  clearTimeout(timer);
+  waiting = null;
+  left = -Infinity; // this click is not to wait
+  link.click();
+}
 
 // Let links wait a moment for the box that was left for them, from now on.
 export function waitForBoxes() {
@@ -18,6 +26,11 @@ export function waitForBoxes() {
     if (!link || asked || performance.now() - left >= MOMENT_MS) return;
     event.preventDefault();
     event.stopImmediatePropagation();
-    setTimeout(() => link.click(), MOMENT_MS);
+    clearTimeout(waiting?.timer);
+    waiting = { link, timer: setTimeout(turn, MOMENT_MS) };
+  }, true);
+  // what is pressed meanwhile comes after it: a page that turns then would drop that press
+  document.addEventListener("pointerdown", ({ target }) => {
+    if (waiting && target.closest?.("a[href]") !== waiting.link) turn();
   }, true);
 }

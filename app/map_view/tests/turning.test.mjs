@@ -12,7 +12,7 @@ test("a link waits for a box that was left for it, and only for that", (context)
   const heard = {};
   globalThis.document = { addEventListener: (kind, hear) => { heard[kind] = hear; } };
   waitForBoxes();
-  const turned = [], link = { click: () => turned.push(now) };
+  const turned = [], link = { click: () => press() || turned.push(now) };
   const press = (more = {}) => {
     let stopped = false;
     heard.click({ target: { closest: () => link }, preventDefault() {}, stopImmediatePropagation() { stopped = true; }, ...more });
@@ -30,4 +30,13 @@ test("a link waits for a box that was left for it, and only for that", (context)
   context.mock.timers.tick(250);
   assert.deepEqual(turned, [1250]);
   assert.equal(press(), false, "it is turned then");
+  heard.focusout({ target: { tagName: "INPUT" } });
+  press();
+  heard.pointerdown({ target: { closest: () => link } });
+  assert.equal(turned.length, 1, "the second press of two is the same link's");
+  heard.pointerdown({ target: { closest: () => null } });
+  assert.deepEqual(turned, [1250, 1250], "a press elsewhere comes after the link");
+  heard.pointerdown({ target: { closest: () => null } });
+  context.mock.timers.tick(500);
+  assert.equal(turned.length, 2, "and it is turned once");
 });

@@ -240,7 +240,6 @@ def _sweep(
     """
     room.best[:] = IMPOSSIBLE
     room.best[0, 0] = 0.0
-    room.held[0, 0] = 0.0
     for k in range(ladder.across_m.size):
         _take_element(ladder, tables, metre, room, k)
     way, passes = drawn

@@ -87,7 +87,7 @@ _SAID = {
     "advised": "{date}: {said}",
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",
-    "corrected": "{rows} changes of another program taken as corrections",
+    "corrected": "changes of another program taken as corrections: {rows}",
     "changed": "settings: {names}",
     "labels": "{labels} labels from {source}",
     "merged": "another copy of the season taken in: {new} inspections, {entries} entries",

@@ -295,7 +295,7 @@ class SeasonRecords(OpenSeason):
         """
         must_be("What is merged must be a Season", other, OpenSeason, "Open it with Season(path).")
         with self._lock, self.store.writing() as db:
-            before = inspection_table.n_counting(db)
+            before = inspection_table.counting(db)
             held = self._inspections(db)
             with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
@@ -305,13 +305,14 @@ class SeasonRecords(OpenSeason):
                 contradict = contradictions(other.inspections, held)
                 chosen = merging.merge(db, theirs)
             self._refresh(db)
-            new = inspection_table.n_counting(db) - before
+            now = inspection_table.counting(db)
+            new, gone = len(now - before), len(before - now)
             states = season_log.states(db)
             if states != was:
                 season_log.append(
                     db, "merged", states=states, new=new, entries=len(told), theirs=told
                 )
-        return Merged(new, (*contradict.sentences(self.label), *chosen))
+        return Merged(new, (*contradict.sentences(self.label), *chosen), gone)
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""

@@ -32,9 +32,10 @@ def log(
     """
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.season_log import lines
+    from fieldmon.plot.local_clock import local_clock
 
     kept = Season(season)
-    typer.echo("\n".join(lines(kept.log())))
+    typer.echo("\n".join(lines(kept.log(), local_clock(kept.plot.field))))
     wrong = kept.held_to_log()
     if wrong:
         raise FileProblem(

@@ -33,7 +33,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         copy = Path(folder) / "other.gpkg"
         copy_season(other, copy)  # an older one is brought up to date in the copy
         done = kept.merge(Season(copy))
-    typer.echo(f"{other.name}: {done.new} inspections were new")
+    gone = f", {done.taken_back} were taken back there" if done.taken_back else ""
+    typer.echo(f"{other.name}: {done.new} inspections were new{gone}")
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")
     typer.echo("\n".join(lines(kept, kept.status(kept.last_date()))))

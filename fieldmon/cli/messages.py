@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import time, timedelta
 from typing import TYPE_CHECKING
 
 import typer
@@ -165,6 +166,21 @@ def tell_clock_change(start: datetime, hours: float, field: Field) -> None:
         f"after that are {abs(moved_min):.0f} min too {shown}.",
         err=True,
     )
+
+
+def tell_past_midnight(start: datetime, hours: float) -> None:
+    """Print that a season's work goes past midnight, if so: what is found then is of the next day.
+
+    That day's own work begins with fewer hours.
+    """
+    ends = start + timedelta(hours=hours)
+    if ends.date() > start.date() and ends.time() != time():
+        typer.echo(
+            f"doubtful: The work goes past midnight, to {ends:%H:%M}: what is found after that "
+            f"counts for {ends.date()}, whose own work then has fewer hours left. Let it end by "
+            "midnight: fieldmon change --start HH:MM, or --hours.",
+            err=True,
+        )
 
 
 def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSettings) -> None:

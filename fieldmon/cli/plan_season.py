@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_drafts
+from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_drafts, tell_past_midnight
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
 from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
@@ -38,6 +38,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     settings, field = season.settings, season.plot.field
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, field)
+    tell_past_midnight(datetime.combine(on, settings.starts), hours)
     if season.settings.team:
         _plan_team(season, options, on)
         return

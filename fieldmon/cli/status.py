@@ -9,7 +9,7 @@ import typer
 
 from fieldmon.cli.messages import tell_drafts, tell_not_come
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.times import day
+from fieldmon.cli.times import day, day_on
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,8 +48,7 @@ def status(
 
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
-    if (last := kept.last_date()) > kept.settings.begins:
-        tell_not_come(last, kept.plot.field, "the last day recorded")
+    _tell_last_day(kept)
     typer.echo(f"  forecast               {kept.forecast(now.on).sentence()}")
     for line in of_treatments(kept, now):
         typer.echo(line)
@@ -64,6 +63,22 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
         typer.echo(
             "checked against their digests: the last mornings only; fieldmon log --mornings checks "
             "the rest",
+            err=True,
+        )
+
+
+def _tell_last_day(kept: Season) -> None:
+    """Print that the last day has not come yet, if so: in doubt if it was recorded."""
+    last, history = kept.last_date(), kept.history
+    if last <= kept.settings.begins:
+        return
+    day = kept.settings.day(last)
+    if len(history.on(day)) or any(one.day == day for one in history.treatments):
+        tell_not_come(last, kept.plot.field, "the last day recorded")
+    elif last > (today := day_on(kept.plot.field, None)):
+        typer.echo(
+            f"seen: {last} was planned, and it is {today} on the plot. For another day give --date "
+            "YYYY-MM-DD.",
             err=True,
         )
 

@@ -195,7 +195,7 @@ def not_what_they_say(db: sqlite3.Connection) -> list[int]:
     return sorted(wrong)
 
 
-def n_counting(db: sqlite3.Connection) -> int:
-    """Return how many inspections count."""
-    counts = "SELECT count(*) FROM inspections WHERE undone = 0 AND digest IS NOT NULL"
-    return int(db.execute(counts).fetchone()[0])
+def counting(db: sqlite3.Connection) -> set[str]:
+    """Return the digests of the inspections that count."""
+    counts = "SELECT digest FROM inspections WHERE undone = 0 AND digest IS NOT NULL"
+    return {mark for (mark,) in db.execute(counts)}

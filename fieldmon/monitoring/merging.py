@@ -9,6 +9,7 @@ that come out where they are, are left there: of a long season these are nearly 
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -56,10 +57,13 @@ class Merged:
         Inspections that count now and did not before.
     contradictions
         A sentence for each result that the copies tell differently, and for each setting.
+    taken_back
+        Inspections that counted before and do not now: the other copy undid or corrected them.
     """
 
     new: int
     contradictions: tuple[str, ...]
+    taken_back: int = 0
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
@@ -337,12 +341,26 @@ def _differing(copies: list[dict[str, list[Row]]]) -> tuple[str, ...]:
     for name in sorted(set(ours) & set(theirs)):
         one, other = ours[name], theirs[name]
         if one["value"] != other["value"]:
-            last = max(one, other, key=lambda row: str(row["changed"]))
+            here, there = _apart(one["value"], other["value"])
+            last = here if str(one["changed"]) >= str(other["changed"]) else there
             said.append(
-                f"The setting {name} differs: {one['value']} here, {other['value']} there. What "
-                f"was chosen last counts: {last['value']}."
+                f"The setting {name} differs: {here} here, {there} there. What was chosen last "
+                f"counts: {last}."
             )
     return tuple(said)
+
+
+def _apart(ours: str, theirs: str) -> tuple[str, str]:
+    """Return two values of a setting; of parts with names only those that differ."""
+    one, other = json.loads(ours), json.loads(theirs)
+    if not (isinstance(one, dict) and isinstance(other, dict)):
+        return ours, theirs
+    names = [name for name in {**one, **other} if one.get(name) != other.get(name)]
+    here, there = (
+        ", ".join(f"{name} {json.dumps(told.get(name), ensure_ascii=False)}" for name in names)
+        for told in (one, other)
+    )
+    return here, there
 
 
 def _key(row: Row, names: Iterable[str]) -> tuple[Any, ...]:

@@ -92,7 +92,7 @@ def in_words(settings: MonitoringSettings, today: DayPlan) -> dict[str, Any]:
         "date": str(settings.date(today.scene.day)),
         "stops": len(today.route),
         "sampler": settings.sampler,
-        "expected": round(today.route.expected_finds, 1),
+        "expected": today.route.expected_finds,
         "digest": _digest(today),
     }
 

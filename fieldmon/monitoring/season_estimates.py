@@ -10,6 +10,7 @@ from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.monitoring import day_figures
 from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.monitoring.day_figures import DayFigures, Progress
+from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status
 from fieldmon.pests.development import development
@@ -49,6 +50,11 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (_, morning, _):
             return morning.chance
 
+    def morning_in_sight(self, on: date) -> Floats:
+        """Return the same ``(n,)`` of what inspections can see: the day is planned by it."""
+        with self._asked(on) as (_, morning, _):
+            return in_sight(morning).chance
+
     def evening(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far."""
         with self._asked(on) as (contents, morning, day):
@@ -81,7 +87,7 @@ class SeasonEstimates(OpenSeason):
             evening = contents.history.evening(morning, day)
         return map_verdict(
             contents.history.grid, evening.chance, level, evening.pair_chance,
-            plants=plants, sure=sure, doubt=evening.doubt,
+            plants=plants, sure=sure, doubt=evening.doubt, named=evening.pest is not None,
         )  # fmt: skip
 
     def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:

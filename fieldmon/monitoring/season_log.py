@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from datetime import datetime
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,8 @@ from fieldmon.monitoring.tables import utc_now
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable, Iterator, Sequence
+
+    from fieldmon.plot.local_clock import LocalClock
 
 #: in `fieldmon`: how many entries the log has, and the last one's digest
 _HEAD = "log"
@@ -68,7 +71,7 @@ class LogEntry:
 
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""
-        return f"entry {self.number} ({self.at[:16]}, {self.kind})"
+        return f"entry {self.number} ({self.at[:16]} UTC, {self.kind})"
 
 
 class _Blank(dict[str, Any]):
@@ -84,7 +87,7 @@ _SAID = {
     "advised": "{date}: {said}",
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",
-    "corrected": "{rows} changes of another program taken as corrections",
+    "corrected": "changes of another program taken as corrections: {rows}",
     "changed": "settings: {names}",
     "labels": "{labels} labels from {source}",
     "merged": "another copy of the season taken in: {new} inspections, {entries} entries",
@@ -330,11 +333,12 @@ def _with_those_taken_in(db: sqlite3.Connection) -> Iterator[tuple[str, str]]:
         yield mark, content
 
 
-def lines(of: Sequence[LogEntry]) -> Iterator[str]:
-    """Yield entries as lines for people."""
+def lines(of: Sequence[LogEntry], clock: LocalClock) -> Iterator[str]:
+    """Yield entries as lines for people, with the times that a clock shows."""
     for entry in of:
-        who = entry.who or "-"
-        yield f"{entry.number:5d}  {entry.at[:16]}  {entry.kind:9}  {who:12}  {entry.sentence()}"
+        at, who = clock.at(datetime.fromisoformat(entry.at)), entry.who or "-"
+        head = f"{entry.number:5d}  {at:%Y-%m-%dT%H:%M}  {entry.kind:9}  {who:12}"
+        yield f"{head}  {entry.sentence()}"
     if of:
         n = "1 entry" if len(of) == 1 else f"{len(of)} entries"
         yield f"{n}, the chain holds; the last digest is {of[-1].digest}"

@@ -156,7 +156,8 @@ class SeasonRecords(OpenSeason):
         """Write inspections of one source, besides what is held; return batch and the new ones."""
         source, who, into = said
         news = inspections.take(~said_before(inspections, held))
-        batch = batches.begin(db, "findings", source, who) if into is None else into
+        by = who or ", ".join(sorted({str(name) for name in news.who} - {""}))
+        batch = batches.begin(db, "findings", source, by) if into is None else into
         if into is not None:
             batches.must_count(db, into)
         made = inspection_table.rows(
@@ -165,16 +166,15 @@ class SeasonRecords(OpenSeason):
         news = news.take(inspection_table.store(db, made))
         batches.end(db, batch, len(news), grows=into is not None)
         if len(news):
-            self._log_seen(db, news, (batch, source, who))
+            self._log_seen(db, news, (batch, source, by))
         return batch, news
 
     def _log_seen(
         self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str]
     ) -> None:
-        batch, source, who = said
-        names = {str(name) for name in news.who} - {""}
+        batch, source, by = said
         season_log.append(
-            db, "seen", who or ", ".join(sorted(names)), states=season_log.states(db, [batch]),
+            db, "seen", by, states=season_log.states(db, [batch]),
             batch=batch, source=source, **inspection_table.in_words(news.result, news.date),
         )  # fmt: skip
 
@@ -295,7 +295,7 @@ class SeasonRecords(OpenSeason):
         """
         must_be("What is merged must be a Season", other, OpenSeason, "Open it with Season(path).")
         with self._lock, self.store.writing() as db:
-            before = inspection_table.n_counting(db)
+            before = inspection_table.counting(db)
             held = self._inspections(db)
             with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
@@ -305,13 +305,14 @@ class SeasonRecords(OpenSeason):
                 contradict = contradictions(other.inspections, held)
                 chosen = merging.merge(db, theirs)
             self._refresh(db)
-            new = inspection_table.n_counting(db) - before
+            now = inspection_table.counting(db)
+            new, gone = len(now - before), len(before - now)
             states = season_log.states(db)
             if states != was:
                 season_log.append(
                     db, "merged", states=states, new=new, entries=len(told), theirs=told
                 )
-        return Merged(new, (*contradict.sentences(self.label), *chosen))
+        return Merged(new, (*contradict.sentences(self.label), *chosen), gone)
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""

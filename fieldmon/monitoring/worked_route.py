@@ -34,8 +34,9 @@ def day_was_worked(season: Season, on: date, ahead: Route) -> bool:
 def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     """Return the way from plant to plant as a day was worked, at the times noted.
 
-    Where a time is missing, all are those that driving and inspecting cost. Empty if nothing was
-    recorded. Of a team it is the way of the one named; None: that of all results in turn.
+    Where a time is missing, all are those that driving and inspecting cost. Chances are those by
+    which the day's first route is planned. Empty if nothing was recorded. Of a team it is the way
+    of the one named; None: that of all results in turn.
     """
     settings, aisles = season.settings, season.plot.aisles
     robot, starts_s = settings.robot, seconds(settings.starts)
@@ -45,16 +46,17 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
         starts_s += member.starts_s
     done = _in_order(made_by(season.history.on(settings.day(on)), who))
     scene = Scene(
-        aisles=aisles, robot=robot, chance=season.morning(on), seconds_left=robot.day_s,
+        aisles=aisles, robot=robot, chance=season.morning_in_sight(on),
+        seconds_left=robot.day_s,
         last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
     )  # fmt: skip
     n, drive_s = len(done), _drive_s(scene, done.plant)
-    leave_s = np.maximum(done.second - starts_s, 0.0)
-    if not np.isfinite(leave_s).all():
-        leave_s = np.cumsum(drive_s[:n] + robot.visit_s)
     # a find is noted while standing there: the time of arrival is not known, and not needed
+    leave_s, stop_s = np.maximum(done.second - starts_s, 0.0), np.zeros(n)
+    if not np.isfinite(leave_s).all():
+        leave_s, stop_s = np.cumsum(drive_s[:n] + robot.visit_s), np.full(n, robot.visit_s)
     work = Workday(
-        plant=done.plant, arrive_s=leave_s, found=done.result == FOUND, stop_s=np.zeros(n),
+        plant=done.plant, arrive_s=leave_s - stop_s, found=done.result == FOUND, stop_s=stop_s,
         detects=np.full(n, robot.detects),
         end_s=float(leave_s[-1] + drive_s[n:].sum()) if n else 0.0,
     )  # fmt: skip

@@ -3,7 +3,7 @@
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import Season, season_file
+from fieldmon.monitoring import Season, batches, season_file, season_log
 from tests.cli.estate import BEGINS
 from tests.monitoring.test_season_log import by_hand
 
@@ -23,6 +23,14 @@ def test_the_log_is_shown_and_a_changed_past_is_refused(run, season):
     code, out, err, _ = run("log", season)
     assert (code, out) == (2, "")
     assert "entry 2 is not what was written" in err
+
+
+def test_the_log_shows_the_times_of_the_plot_as_batches_do(run, season, monkeypatch):
+    monkeypatch.setattr(season_log, "utc_now", lambda: "2026-12-31T22:30:00.000000Z")
+    monkeypatch.setattr(batches, "utc_now", lambda: "2026-12-31T22:30:00.000000Z")
+    run("treat", season, "--efficacy", "0.5", "--date", BEGINS)
+    assert "2027-01-01T00:30  treated" in run("log", season)[1]
+    assert "2027-01-01 00:30      1 treatment" in run("status", season, "--batches")[1]
 
 
 def test_entries_are_shown_before_any_morning_is_worked_out_again(run, season, monkeypatch):

@@ -1,9 +1,11 @@
 """What imports say and ask, at a terminal."""
 
+from datetime import datetime
+
 import numpy as np
 import pytest
 
-from fieldmon.cli.messages import Terminal, tell_unusable
+from fieldmon.cli.messages import Terminal, tell_past_midnight, tell_unusable
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
@@ -92,3 +94,12 @@ def test_records_that_say_nothing_about_a_day_are_named(capsys):
     assert "1 of the records are of a later day" in capsys.readouterr().err
     tell_unusable(records.take(np.array([1])), day, PriorSettings())
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("start", "hours", "said"), [(20, 4.0, False), (20, 4.5, True), (6, 12.0, False), (23, 2, True)]
+)
+def test_work_past_midnight_is_doubted(capsys, start, hours, said):
+    tell_past_midnight(datetime(2026, 12, 31, start), hours)
+    err = capsys.readouterr().err
+    assert ("counts for 2027-01-01" in err) == said == bool(err)

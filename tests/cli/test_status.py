@@ -41,3 +41,15 @@ def test_a_day_recorded_that_has_not_come_is_doubted(run, season, ahead, doubted
     assert code == 0
     assert out.startswith(f"Nursery, {on} ")
     assert (f"the last day recorded, {on}, has not come" in err) == doubted
+
+
+def test_a_day_ahead_that_was_only_planned_is_not_to_be_undone(run, season):
+    kept = Season(season)
+    on = max(local_clock(kept.plot.field).today(), kept.settings.begins) + timedelta(days=40)
+    kept.plan(on)
+    code, out, err, _ = run("status", season)
+    assert code == 0, err
+    assert out.startswith(f"Nursery, {on} ")
+    assert f"seen: {on} was planned, and it is " in err
+    assert "fieldmon undo" not in err
+    assert run("undo", season)[0] == 2

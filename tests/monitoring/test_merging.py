@@ -206,6 +206,21 @@ def result(plant, what, day=1, **columns):
     return Inspections.of(np.array([plant]), np.array([what]), on, **columns)
 
 
+def test_what_is_new_and_what_was_taken_back_are_counted_apart(path, other):
+    counted = len(Season(path).history.inspections)
+    theirs = Season(other)
+    theirs.undo()
+    gone = counted - len(theirs.history.inspections)
+    theirs.record(result(9, FOUND), "taps", "Ben")
+    season = Season(path)
+    done = season.merge(theirs)
+    assert gone > 1
+    assert (done.new, done.taken_back) == (1, gone)
+    assert season.log()[-1].what["new"] == 1
+    again = season.merge(theirs)
+    assert (again.new, again.taken_back) == (0, 0)
+
+
 def test_two_people_who_worked_apart_find_both_days_in_one_season(path, other):
     Season(path).record(result(3, FOUND), "taps", "Ann")
     Season(other).record(result(9, FOUND), "taps", "Ben")
@@ -232,7 +247,8 @@ def test_what_the_copies_tell_differently_is_listed_and_both_are_kept(path, othe
     there.change(MonitoringSettings(**(vars(there.settings) | {"seed": 7})), there.settings)
     done = season.merge(Season(other))
     assert "recorded as found, now clean" in done.contradictions[0]
-    assert any("The setting season differs" in said for said in done.contradictions)
+    (said,) = (said for said in done.contradictions if "The setting season differs" in said)
+    assert said.endswith("seed 1 here, seed 7 there. What was chosen last counts: seed 7.")
     assert season.settings.seed == 7
     assert sorted(season.history.on(1).result.tolist()) == [CLEAN, FOUND]
 

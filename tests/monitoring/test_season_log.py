@@ -9,19 +9,23 @@ from dataclasses import replace
 from datetime import timedelta
 from hashlib import sha256
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Application, Season, schema, season_log
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.scouts import let_in
+from fieldmon.plot.local_clock import LocalClock
 from tests.monitoring.phone import NOW, a_finding, without_records
-from tests.monitoring.seasons import BEGINS, state, three_results
+from tests.monitoring.seasons import BEGINS, on, state, three_results
 
 N = 7
+CLOCK = LocalClock("UTC")
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +148,7 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     assert said[5] == "Batch 2 was undone: 1 treatment from soap."
     assert season.held_to_log() == ()
     assert [one.number for one in log] == list(range(1, 9))
-    assert list(season_log.lines(log))[-1].endswith(log[-1].digest)
+    assert list(season_log.lines(log, CLOCK))[-1].endswith(log[-1].digest)
 
 
 @pytest.mark.parametrize(
@@ -244,7 +248,7 @@ def test_a_copy_that_is_brought_back_is_taken_as_it_is(path, tmp_path):
 
 def test_a_log_is_told_line_by_line_and_how_many_entries_it_has(path):
     said = Season(path).log()
-    told = list(season_log.lines(said))
+    told = list(season_log.lines(said, CLOCK))
     assert len(told) == len(said) + 1
     for line, one in zip(told, said, strict=False):
         assert line.split()[:3] == [str(one.number), one.at[:16], one.kind]
@@ -252,9 +256,9 @@ def test_a_log_is_told_line_by_line_and_how_many_entries_it_has(path):
     assert told[-1] == (
         f"{len(said)} entries, the chain holds; the last digest is {said[-1].digest}"
     )
-    (_, alone) = season_log.lines(said[:1])
+    (_, alone) = season_log.lines(said[:1], CLOCK)
     assert alone.startswith("1 entry, the chain")
-    assert list(season_log.lines(())) == []
+    assert list(season_log.lines((), CLOCK)) == []
 
 
 SAYS = st.tuples(
@@ -282,3 +286,23 @@ def test_the_digest_of_a_batch_is_of_all_that_its_rows_say_in_order(inspected, t
     own = ("2026", "findings", "x.csv", "Ann")
     content = repr(own) + repr(tuple(in_order))
     assert state == sha256(content.encode()).hexdigest()[:32]
+
+
+def test_what_was_planned_is_told_as_the_plan_told_it(path):
+    season = Season(path)
+    for k in range(1, 6):
+        route = season.plan(on(k)).route
+        said = season.log()[-1].sentence()
+        assert said.endswith(f"about {estimate(route.expected_finds)} of them infested")
+    # half a plant is not rounded twice
+    entry = replace(season.log()[-1], what={**season.log()[-1].what, "expected": 14.509})
+    assert "about 15 of them" in entry.sentence()
+
+
+def test_a_batch_is_of_whom_its_entry_names(path):
+    season, given = Season(path), three_results()
+    season.record(replace(given, who=np.array(["Ben", "Ann", "Ben"], object)), "file")
+    season.record(three_results(1), "more", "Dan")
+    told, seen = season.batches(), [one for one in season.log() if one.kind == "seen"]
+    assert [one.who for one in told][::-1][-2:] == [one.who for one in seen][-2:]
+    assert [one.who for one in told][:2] == ["Dan", "Ann, Ben"]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import worked_route
 from fieldmon.monitoring.settings import seconds
 from fieldmon.monitoring.worked_route import day_was_worked
@@ -78,3 +79,16 @@ def test_a_day_is_over_when_nothing_is_left_or_a_later_one_was_worked_and_never_
     assert not day_was_worked(season, on(1), ahead)
     assert not day_was_worked(season, on(2), ahead)
     assert day_was_worked(season, on(2), nothing)
+
+
+@pytest.mark.parametrize("pest", [None, "spider-mite"])
+def test_a_day_worked_as_planned_has_the_plans_times_and_chances(tmp_path, pest):
+    chosen = {} if pest is None else {"pest": shipped_pest(pest)}
+    season = a_season(tmp_path / "s.gpkg", **chosen)
+    route = season.plan(BEGINS).route
+    clean = np.zeros(len(route), np.int8)
+    season.record(Inspections.of(route.plant, clean, np.datetime64(BEGINS)), "test")
+    done = worked_route(season, BEGINS)
+    assert done.plant.tolist() == route.plant.tolist()
+    for name in ("arrive_s", "leave_s", "chance", "end_s"):
+        assert getattr(done, name) == pytest.approx(getattr(route, name)), name

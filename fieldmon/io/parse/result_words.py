@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -122,6 +122,19 @@ def about_minus(cells: Iterable[str], words: ResultWords) -> list[ImportMessage]
         n=n,
     )
     return [doubtful(said, remedy=Remedy("clean", "-", worded("Take a minus as clean")))]
+
+
+def about_mark(unsure: str | None, column: str) -> list[ImportMessage]:
+    """Return what was guessed of a count whose comma or point could be either; None: of none."""
+    if unsure is None:
+        return []
+    if "," in unsure:
+        said = worded("Counts such as {unsure} were read as thousands.", unsure=unsure)
+        remedy = Remedy("decimal", ",", worded("Read the comma as decimal"))
+    else:
+        said = worded("Counts such as {unsure} were read as decimals.", unsure=unsure)
+        remedy = Remedy("decimal", ",", worded("Read them as thousands"))
+    return [guessed(said, column, remedy)]
 
 
 def _own(words: str | None) -> list[str]:

@@ -52,6 +52,19 @@ def decimal_mark(cells: Iterable[str]) -> str | None:
     return None if commas == points == 0 else "," if commas > points else "."
 
 
+def mark_of_counts(cells: Iterable[str], others: Iterable[str]) -> tuple[str, str | None]:
+    """Return the decimal mark of counts, and a cell for which it was guessed; None: for none.
+
+    1,234 and 1.234 alone are told by the `others` of their table.
+    """
+    each = list(cells)
+    own = decimal_mark(cell for cell in each if not could_be_thousands(cell))
+    mark = own or decimal_mark(others)
+    if mark is not None:
+        return mark, None
+    return ".", next((cell for cell in each if could_be_thousands(cell)), None)
+
+
 def number(cell: str, decimal: str = ".") -> float:
     """Return a number from a cell, NaN where it is none; thousands may be set apart."""
     bare = re.sub(r"[\s\u00a0\u202f'’_]", "", cell).replace("\u2212", "-")

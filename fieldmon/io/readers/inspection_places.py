@@ -20,6 +20,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import worded
+from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
 from fieldmon.plot.grid import block_label, row_label
 
@@ -109,7 +110,9 @@ def _away_m(
 
 def _is_near(lonlat: NDArray[np.float64], grid: PlantGrid) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
-        off = np.abs(lonlat - (grid.frame.lon, grid.frame.lat))
+        off = lonlat - (grid.frame.lon, grid.frame.lat)
+        off[:, 0] = (off[:, 0] + 180.0) % 360.0 - 180.0  # across the date line it is near, too
+        off = np.abs(off)
         return np.asarray((off < _FARTHEST_DEG).all(axis=1), dtype=bool)
 
 
@@ -252,12 +255,18 @@ def by_position(
             plant=_label(grid, first[k]),
             other=_label(grid, rival[k]),
         )
+    away_m = np.hypot(*step.T)
     for k in np.flatnonzero((step > half).any(axis=1)).tolist():
         doubts[int(records[k])] = worded(
             "it lies {away_m:.1f} m from the nearest plant, {plant}, which is more than half the "
             "spacing",
-            away_m=np.hypot(*step[k]),
+            away_m=away_m[k],
             plant=_label(grid, first[k]),
+        )
+    # as far as records of pests are kept apart, no plant is meant
+    for k in np.flatnonzero(away_m > np.maximum(NEARBY_M, 2 * accuracy_m)).tolist():
+        problems[int(records[k])] = worded(
+            "it lies {away_m:.0f} m from the nearest plant", away_m=away_m[k]
         )
     return PlantsFound(plant, problems, doubts)
 

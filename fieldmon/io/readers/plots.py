@@ -52,6 +52,7 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     fields, shape_messages = _fields(placed, [names[i] for i in chosen], known)
     if number:
         fields, shape_messages = _numbered(fields, shape_messages, number)
+    name_messages += _named_by_number(names, options.feature)
     found = (*layer.messages, *messages, *name_messages, *place_messages, *shape_messages)
     return Imported(fields, gathered((*found, *row_messages)))
 
@@ -119,6 +120,25 @@ def _number(names: list[str], feature: str | int | None) -> int:
     """Return the number of the plot that is wanted, 0 where it is named or all are."""
     wanted = "" if feature is None else str(feature).strip()
     return int(wanted) if re.fullmatch(r"[0-9]{1,9}", wanted) and wanted not in names else 0
+
+
+def _named_by_number(names: list[str], feature: str | int | None) -> list[ImportMessage]:
+    """Return what to say of a plot that was chosen by a name which is another one's number."""
+    wanted = "" if feature is None else str(feature).strip()
+    if wanted not in names or not re.fullmatch(r"[0-9]{1,9}", wanted):
+        return []
+    number = int(wanted)
+    if not 0 < number <= len(names) or names[number - 1] == wanted:
+        return []
+    return [
+        seen(
+            worded(
+                "{wanted} was taken as the plot's name; number {wanted} of the list is {other!r}.",
+                wanted=wanted,
+                other=names[number - 1],
+            )
+        )
+    ]
 
 
 def _numbered(

@@ -23,14 +23,13 @@ from fieldmon.io.import_report import (
 from fieldmon.io.parse.clock import clock_time, local_time, zone_of
 from fieldmon.io.parse.columns import find, is_id, recognised
 from fieldmon.io.parse.positions import located
-from fieldmon.io.parse.result_words import ResultWords, about_minus
+from fieldmon.io.parse.result_words import ResultWords, about_mark, about_minus
 from fieldmon.io.parse.values import (
-    could_be_thousands,
     counted,
     dates,
     dates_of_parts,
-    decimal_mark,
     is_missing,
+    mark_of_counts,
     numbers,
     presence,
 )
@@ -376,14 +375,10 @@ def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportM
     """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
     if table.options.decimal is not None:
         return table.options.decimal, []
-    own = decimal_mark(cell for cell in cells if not could_be_thousands(cell))
     others = (values for column, values in table.layer.columns.items() if column != name)
-    mark = own or decimal_mark(text(v) for values in others for v in values[:_LOOKED_AT])
-    unsure = next((c for c in cells if "," in c and could_be_thousands(c)), None)
-    if mark is not None or unsure is None:
-        return mark or ".", []
-    said = worded("Counts such as {unsure} were read as thousands.", unsure=unsure)
-    return ".", [guessed(said, name, Remedy("decimal", ",", worded("Read the comma as decimal")))]
+    looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
+    mark, unsure = mark_of_counts(cells, looked_at)
+    return mark, about_mark(unsure, name)
 
 
 def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:

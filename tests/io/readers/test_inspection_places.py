@@ -15,6 +15,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
 from tests.io.readers.test_inspections import GRID, read
+from tests.io.tables_of_cells import sentences
 
 
 def two_faced():
@@ -157,3 +158,29 @@ def test_rows_or_plants_counted_from_zero_put_nobody_next_door(below, other):
     assert "counted from 1, but it says 0 or less" in dropped
     assert "Add 1 where they were counted from 0" in doubted
     assert len(read(text, InspectionOptions(take_doubtful=True)).value) == 1
+
+
+@pytest.mark.parametrize(
+    ("away_m", "accuracy_m", "taken"),
+    [(90.0, "", True), (110.0, "", False), (110.0, 60.0, True), (9000.0, 60.0, False)],
+)
+def test_no_plant_is_meant_farther_off_than_records_are_kept_apart(away_m, accuracy_m, taken):
+    (lon, lat) = GRID.frame.lonlat(GRID.xy_m[[0]] - (away_m, 0.0))[0]
+    text = f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},{accuracy_m},yes\n"
+    told = read(text, InspectionOptions(take_doubtful=True))
+    assert told.value.plant.tolist() == ([0] if taken else [])
+    assert ("cannot be placed: it lies" in sentences(told)) != taken
+
+
+def test_a_plot_on_the_date_line_takes_positions_of_both_sides():
+    corners = np.array([(-60, 0), (-60, 30), (60, 30), (60, 0)]) / 111_320
+    field = Field("date line", MultiPolygon([Polygon(corners + np.array([180.0, -17.0]))]))
+    grid = lay(field, Planting(row_spacing_m=3.0, plant_spacing_m=2.0))
+    lonlat = grid.lonlat()
+    assert (lonlat[:, 0] > 0).any()
+    assert (lonlat[:, 0] < 0).any()
+    named = "".join(f"{k},{lon:.9f},{lat:.9f},no\n" for k, (lon, lat) in enumerate(lonlat))
+    for head, cut in (("plant,lon,lat,found", 0), ("lon,lat,found", 1)):
+        lines = [",".join(line.split(",")[cut:]) for line in named.splitlines()]
+        found = read("\n".join([head, *lines]), grid=grid)
+        assert found.value.plant.tolist() == list(range(len(grid)))

@@ -71,7 +71,12 @@ def test_a_name_that_fits_none_or_several_is_asked_back(wanted, offered):
 
 def test_a_plot_called_by_a_number_goes_before_the_number():
     layer = layer_of([ONE, TWO], name=["2", "1"])
-    assert names_of(plots_of(layer, PlotOptions(feature=2))) == ["2"]
+    read = plots_of(layer, PlotOptions(feature=2))
+    assert names_of(read) == ["2"]
+    said = "2 was taken as the plot's name; number 2 of the list is '1'."
+    assert said in sentences(read)
+    in_order = layer_of([ONE, TWO], name=["1", "2"])
+    assert "taken as the plot's name" not in sentences(plots_of(in_order, PlotOptions(feature=2)))
 
 
 def test_what_is_no_area_is_left_out_and_counted():

@@ -11,8 +11,14 @@ from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
-from fieldmon.io.parse.result_words import MINUS, NOT_INSPECTED, ResultWords, about_minus
-from fieldmon.io.parse.values import counted, decimal_mark, is_missing, number, presence
+from fieldmon.io.parse.result_words import (
+    MINUS,
+    NOT_INSPECTED,
+    ResultWords,
+    about_mark,
+    about_minus,
+)
+from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, number, presence
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
 
 if TYPE_CHECKING:
@@ -21,6 +27,8 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_file.columns import InspectionColumns
     from fieldmon.io.readers.inspection_options import InspectionOptions
 
+# cells of each other column that may tell the decimal mark
+_LOOKED_AT = 200
 _PLUS = re.compile(r"^\+\s*(\d*)$")
 
 
@@ -57,26 +65,40 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     if columns.result is not None:
         cells = [text(v) for v in layer.column(columns.result)]
         words = ResultWords(cells, options)
-        mark = options.decimal or decimal_mark(cells) or "."
+        mark, guess = _mark(layer, columns.result, cells, options)
         known = {cell: _of_word(cell, mark, words) for cell in set(cells)}
         by_result = [known[cell] for cell in cells]
         messages += [
             seen(worded("Results are in column {result!r}.", result=columns.result)),
+            *guess,
             *_unread(cells, known),
         ]
         messages += about_minus(cells, words)
     if columns.number_found is not None:
         cells = [text(v) for v in layer.column(columns.number_found)]
-        mark = options.decimal or decimal_mark(cells) or "."
+        mark, guess = _mark(layer, columns.number_found, cells, options)
         known = {cell: _of_count(cell, mark) for cell in set(cells)}
         by_count = [known[cell] for cell in cells]
         messages += [
             seen(
                 worded("Counts are in column {number_found!r}.", number_found=columns.number_found)
             ),
+            *guess,
             *_unread(cells, known),
         ]
     return _put_together(by_result, by_count, messages)
+
+
+def _mark(
+    layer: Layer, name: str, cells: list[str], options: InspectionOptions
+) -> tuple[str, list[ImportMessage]]:
+    """Return the decimal mark of a column's counts, and what was guessed of it."""
+    if options.decimal is not None:
+        return options.decimal, []
+    others = (values for column, values in layer.columns.items() if column != name)
+    looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
+    mark, unsure = mark_of_counts(cells, looked_at)
+    return mark, about_mark(unsure, name)
 
 
 def _put_together(

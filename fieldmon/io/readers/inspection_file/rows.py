@@ -15,7 +15,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
-from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
+from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.readers.inspection_file.columns import columns_of, notes_in, texts_in, who_in
 from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
@@ -71,7 +71,7 @@ def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
 
 def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows]:
     """Return what one layer or table says of plants that were inspected."""
-    layer, messages = _without_lines(layer)
+    layer, messages = _each_point(*_without_lines(layer))
     layer = by_day(_without_undone(layer), options)
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
@@ -136,6 +136,29 @@ def _without_lines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
         worded("{n} {n:line|lines} beside the points {n:was|were} passed over.", n=int(lines.sum()))
     )
     return layer.take(np.flatnonzero(~lines)), [said]
+
+
+def _each_point(layer: Layer, messages: list[ImportMessage]) -> tuple[Layer, list[ImportMessage]]:
+    """Return the layer with a record for each point of those that hold several."""
+    if layer.geometry is None:
+        return layer, messages
+    parts = np.where(
+        shapely.get_type_id(layer.geometry) == shapely.GeometryType.MULTIPOINT,
+        shapely.get_num_geometries(layer.geometry), 1,
+    )  # fmt: skip
+    many = parts > 1
+    if not many.any():
+        return layer, messages
+    which = np.repeat(np.arange(len(layer)), np.where(many, parts, 1))
+    each = layer.geometry[which]
+    each[many[which]] = shapely.get_parts(layer.geometry[many])
+    said = guessed(
+        worded(
+            "{n} {n:record holds|records hold} several points: each was taken as a record.",
+            n=int(many.sum()),
+        )
+    )
+    return replace(layer.take(which), geometry=each), [*messages, said]
 
 
 def _without_undone(layer: Layer) -> Layer:

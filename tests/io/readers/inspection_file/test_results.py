@@ -124,3 +124,28 @@ def test_where_results_and_counts_were_found_is_said():
 def test_a_decimal_mark_told_by_hand_is_taken():
     options = InspectionOptions(decimal=",")
     assert read(options, plant=[1], count=["1,5"]).how_many[0] == 1.5
+
+
+@pytest.mark.parametrize(
+    ("cells", "more", "first", "said"),
+    [
+        (["1.250", "2.000"], {}, 1.25, "1.250 were read as decimals"),
+        (["1,250", "7"], {}, 1250.0, "1,250 were read as thousands"),
+        (["1.250", "2,5"], {}, 1250.0, None),
+        (["1.250", "7"], {"lat": ["30,35", "30,36"]}, 1250.0, None),
+        (["1,250", "7"], {"lat": ["30.35", "30.36"]}, 1250.0, None),
+    ],
+)
+@pytest.mark.parametrize("column", ["found", "count"])
+def test_a_count_that_could_be_thousands_is_told_by_its_table_or_said_to_be_guessed(
+    column, cells, more, first, said
+):
+    seen = read(plant=[7, 8], **{column: cells}, **more)
+    assert seen.how_many[0] == first
+    guesses = [m for m in seen.messages if m.severity == Severity.GUESSED]
+    assert len(guesses) == (said is not None)
+    for guess in guesses:
+        assert said in guess.sentence
+        options = InspectionOptions().choose(guess.remedy.option, guess.remedy.value)
+        other = read(options, plant=[7, 8], **{column: cells}, **more)
+        assert other.how_many[0] == {1.25: 1250.0, 1250.0: 1.25}[first]

@@ -3,7 +3,7 @@
 import geopandas as gpd
 import numpy as np
 import pytest
-from shapely import LineString, Point
+from shapely import LineString, MultiPoint, Point
 
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import ABSENT, PRESENT
@@ -46,6 +46,15 @@ def test_the_driven_line_of_a_file_given_out_is_passed_over():
     read = rows_in(Layer("route", cells.columns, shapes, "OGC:CRS84"), NOTHING)
     assert read.value.plant.tolist() == [7]
     assert "1 line beside the points" in sentences(read)
+
+
+def test_each_of_several_points_in_one_record_is_a_record_and_that_is_said():
+    shapes = column([MultiPoint([(35, 30), (35.1, 30.1)]), Point(35, 30.2), MultiPoint([(36, 31)])])
+    cells = table(found=["x", "no", "no"])
+    read = rows_in(Layer("q", cells.columns, shapes, "OGC:CRS84"), NOTHING)
+    assert read.value.lonlat.tolist() == [[35, 30], [35.1, 30.1], [35, 30.2], [36, 31]]
+    assert read.value.result.tolist() == [PRESENT, PRESENT, ABSENT, ABSENT]
+    assert "1 record holds several points: each was taken as a record." in sentences(read)
 
 
 @pytest.fixture

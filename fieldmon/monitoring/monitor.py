@@ -6,13 +6,13 @@ Nothing is kept on disk; see `fieldmon.monitoring.season_file` for a season that
 from __future__ import annotations
 
 from dataclasses import replace
-from numbers import Real
 from types import NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
 from fieldmon.compute.arguments import array_of, must_be, shown
+from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
@@ -134,7 +134,7 @@ class Monitor:
             "What insects are taken to do must be BeliefSettings", belief_settings,
             (BeliefSettings, NoneType), "Give BeliefSettings(spread=Spread(0.3)).",
         )  # fmt: skip
-        must_be("A seed must be a whole number", seed, (int, np.integer), "Give seed=1.")
+        must_be("A seed must be a whole number", seed, (int, np.integer), "Give seed=1.", (bool,))
         self.plot = plot
         self.robot = robot or Robot()
         self.belief_settings = belief_settings or BeliefSettings()
@@ -181,6 +181,7 @@ class Monitor:
         self._day = MonitorDay(self, self._scene(), self._sampler)
         return self._day
 
+    @checked
     def day_in(self, scene: Scene) -> MonitorDay:
         """Begin the day, or the rest of it, that a scene stands in: as of a season on disk."""
         self.day_number, self._last_inspected = scene.day, scene.last_inspected
@@ -247,8 +248,9 @@ class MonitorDay:
     (True, [True])
     """
 
+    @checked
     def __init__(self, monitor: Monitor, scene: Scene, sampler: Sampler) -> None:
-        self.ended = False
+        self.ended, sampler = False, sampler_or_name(sampler)
         self._monitor, self._sampler = monitor, sampler
         self._times = sampler.inspection_times(scene.robot)
         self._told: list[tuple[PlantToInspect, bool | None]] = []
@@ -302,6 +304,7 @@ class MonitorDay:
         """Seconds of the day that are gone, as charged or as told."""
         return self._gone_s
 
+    @checked
     def ahead(self, n: int) -> list[int]:
         """Return up to n plants that follow the one asked for if nothing is found."""
         if self._stops is None or self._asked is None:
@@ -356,7 +359,7 @@ class MonitorDay:
             )
         done_s = stop.arrive_s + stop.inspect_s
         if at_s is not None:
-            must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.")
+            must_be_of("A day's clock (at_s)", "float", at_s)
             if not self._gone_s <= at_s < np.inf:
                 raise ObservationError(
                     f"The day's clock must go on, but it was {self._gone_s:.0f} s and is "

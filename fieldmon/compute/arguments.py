@@ -10,7 +10,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
-from fieldmon.compute.ranges import MOST_COUNTED, AllowedRange
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 
@@ -81,7 +81,15 @@ def of_kind(kind: type) -> str:
 
 
 def with_article(name: str) -> str:
-    """Return a word behind its article: ``"an Observations"``."""
+    """Return a word behind its article; one of many things has none.
+
+    Examples
+    --------
+    >>> with_article("Robot"), with_article("Observations")
+    ('a Robot', 'Observations')
+    """
+    if name.endswith("s"):
+        return name
     return f"{'an' if name[:1] in 'AEIOUaeiou' else 'a'} {name}"
 
 
@@ -217,15 +225,6 @@ def must_be_zone(what: str, name: str) -> None:
         raise SettingError(
             f"{what} must be a time zone as Asia/Jerusalem, but it is {name!r}."
         ) from error
-
-
-def must_be_counts(what: str, counts: NDArray[np.float64]) -> None:
-    """Raise `ObservationError` unless all are counts of pests that somebody can make, or NaN."""
-    wrong = (counts < 0.0) | (counts > MOST_COUNTED)
-    if wrong.any():
-        raise ObservationError(
-            f"{what} must be 0 to {MOST_COUNTED:.12g}, but one is {counts[wrong][0]:g}."
-        )
 
 
 def days_of(given: object) -> NDArray[np.datetime64] | None:

@@ -274,7 +274,7 @@ def _several(kind: Kind) -> str:
     if kind.words == _ANYTHING:
         return "things"
     first, of, rest = kind.words.removeprefix("an ").removeprefix("a ").partition(" of ")
-    return f"{first}s{of}{rest}"
+    return f"{first.removesuffix('s')}s{of}{rest}"
 
 
 def _all_of_it(kind: Kind, given: Any) -> bool:  # noqa: ANN401 - anything

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import days_of, entries_of, must_be_counts, must_be_known, shown
+from fieldmon.compute.arguments import days_of, entries_of, must_be_known, shown
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
@@ -116,13 +116,6 @@ class Inspections:
                 )
             column.setflags(write=False)
             object.__setattr__(self, name, column)
-        wrong = (self.result < CLEAN) | (self.result > SKIPPED)
-        if wrong.any():
-            raise ObservationError(
-                "The result of inspections must be 0 (clean), 1 (found) or 2 (skipped), but one is "
-                f"{self.result[wrong][0]}."
-            )
-        must_be_counts("The count of inspections", self.count)
 
     def __repr__(self) -> str:
         finds = int(np.count_nonzero(self.result == FOUND))

@@ -6,13 +6,14 @@ Nothing is kept on disk; see `fieldmon.monitoring.season_file` for a season that
 from __future__ import annotations
 
 from dataclasses import replace
+from numbers import Real
 from types import NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
 from fieldmon.compute.arguments import array_of, must_be, shown
-from fieldmon.compute.kinds import checked, must_be_of
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler, Stops, WouldFind
 
+# no working day has so many seconds
+_NO_DAY_S = 1e9
 # told clocks are compared with charged ones to a millisecond
 _SAME_S = 1e-3
 
@@ -359,11 +362,11 @@ class MonitorDay:
             )
         done_s = stop.arrive_s + stop.inspect_s
         if at_s is not None:
-            must_be_of("A day's clock (at_s)", "float", at_s)
-            if not self._gone_s <= at_s < np.inf:
+            must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.", (bool,))
+            if not self._gone_s <= at_s < _NO_DAY_S:
                 raise ObservationError(
                     f"The day's clock must go on, but it was {self._gone_s:.0f} s and is "
-                    f"{at_s:.0f} s."
+                    f"{shown(at_s)} s."
                 )
         self._told.append((stop, found))
         self._asked = None

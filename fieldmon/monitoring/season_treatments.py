@@ -52,7 +52,7 @@ class SeasonTreatments(OpenSeason):
     def treat(
         self, on: date, efficacy: float | None = None, area: MultiPolygon | None = None,
         product: str = "", *, application: Application | None = None,
-        plants: NDArray[np.bool_] | Sequence[Any] | None = None,
+        plants: NDArray[np.generic] | Sequence[Any] | None = None,
     ) -> Recorded:  # fmt: skip
         """Note that a part of the plot was treated, after the day's work.
 

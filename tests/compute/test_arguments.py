@@ -15,7 +15,6 @@ from fieldmon.compute.arguments import (
     entries_of,
     lonlat_of,
     must_be,
-    must_be_counts,
     must_be_in,
     must_be_known,
     must_be_name_of_file,
@@ -131,13 +130,6 @@ def test_a_file_has_a_name_and_a_zone_too():
     for bad in ("soon", "../UTC", "a\0b"):
         with pytest.raises(SettingError, match=r"^A zone must be a time zone as Asia/Jerusalem"):
             must_be_zone("A zone", bad)
-
-
-def test_counts_are_none_or_what_somebody_can_count():
-    must_be_counts("The count", np.array([0.0, np.nan, 1e9]))
-    for bad in (-1.0, 2e9, np.inf):
-        with pytest.raises(ObservationError, match=r"^The count must be 0 to 1000000000, but one"):
-            must_be_counts("The count", np.array([1.0, bad]))
 
 
 def test_an_array_of_true_and_false_takes_no_numbers():

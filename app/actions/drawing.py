@@ -151,10 +151,7 @@ def content(
         *marks.blocks(field, dark=choices.dark), *marks.paths(field),
         *marks.records(records, dark=choices.dark),
     ]  # fmt: skip
-    if field.gate is None:
-        layers.append(map_layers.gate(choices))
-    else:
-        layers.append(marks.places([list(field.gate)], "gate", colours.GATE, texts.TIP_GATE))
+    layers.append(map_layers.gate(choices))
     typed = _points(choices)
     if typed:
         layers += marks.drawing(typed)

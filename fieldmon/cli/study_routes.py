@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from fieldmon.studies.routes.study import MethodOutcome
 
 _ALWAYS = ("GR", "GPR", "GFR", "OFR", "HPR")
+# steps of the bar for each walk or team
+_PARTS = 100
 
 
 def routes(  # noqa: PLR0913 - one a command-line option
@@ -91,18 +93,24 @@ def routes(  # noqa: PLR0913 - one a command-line option
     made: list[MethodOutcome] = []
     teams: list[MethodOutcome] = []
     each = len(shares) * (1 + len(methods) + len(team or []))
-    with progress("Walks", each * len(instances)) as bar:
+    with progress("Walks", _PARTS * each * len(instances)) as bar:
+
+        def partly(share: float) -> None:
+            """Show how much of a team's search is done: it takes longer than all others."""
+            bar.update(int((_PARTS - 1) * share) - bar.pos % _PARTS)
+
         try:
             for done, instance in enumerate(instances, start=1):
                 walks = run(instance, shares, methods, solver_seconds)
                 for kept, outcomes in (
                     (made, walks),
-                    (teams, run_teams(instance, shares, team or [])),
+                    (teams, run_teams(instance, shares, team or [], partly)),
                 ):
                     for one in outcomes:
                         kept.append(one)
-                        bar.update(1)
-                bar.update(done * each - bar.pos)  # not every method plays every matrix
+                        bar.update(_PARTS - bar.pos % _PARTS)
+                # not every method plays every matrix
+                bar.update(_PARTS * done * each - bar.pos)
         except KeyboardInterrupt:
             if not made:
                 raise

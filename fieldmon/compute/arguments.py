@@ -5,17 +5,17 @@ Pages and commands hand over what they made themselves; a program of one's own m
 
 from __future__ import annotations
 
-from dataclasses import fields
 from datetime import date, datetime
 from numbers import Real
 from typing import TYPE_CHECKING, Any
+from zoneinfo import ZoneInfo
 
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
-from fieldmon.errors import SettingError
+from fieldmon.errors import ObservationError, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
     from typing import TypeVar
 
     import numpy as np
@@ -24,10 +24,8 @@ if TYPE_CHECKING:
     K = TypeVar("K", np.float64, np.bool_)
 
 _LONGEST = 40
+_FARTHEST_DEG = (360.0, 90.0)
 RATE_L_HA = AllowedRange(0.0, 100_000.0, above=True, below=True, unit=" litres per hectare")
-_NUMBERS = {"float", "int"}
-# beyond it, whole numbers of Python become no others
-_MOST = 10**300
 
 
 def must_be(
@@ -79,32 +77,20 @@ def shown(given: object) -> str:
 
 def of_kind(kind: type) -> str:
     """Return the name of a kind with its article: ``"a Robot"``."""
-    return f"{'an' if kind.__name__[:1] in 'AEIOUaeiou' else 'a'} {kind.__name__}"
+    return with_article(kind.__name__)
 
 
-def must_hold_numbers(settings: Any, whose: str) -> None:  # noqa: ANN401 - any dataclass
-    """Raise `SettingError` unless fields of a dataclass that are numbers hold numbers.
+def with_article(name: str) -> str:
+    """Return a word behind its article; one of many things has none.
 
-    Parameters
-    ----------
-    settings
-        A dataclass, of which fields annotated as ``float`` or ``int``, or one of them
-        ``| None``, are looked at.
-    whose
-        Who has them, in the sentence: ``"The robot's"``.
+    Examples
+    --------
+    >>> with_article("Robot"), with_article("Observations")
+    ('a Robot', 'Observations')
     """
-    for field in fields(settings):
-        kind, _, empty = str(field.type).partition(" | ")
-        value = getattr(settings, field.name)
-        if kind not in _NUMBERS or (value is None and empty == "None"):
-            continue
-        if not isinstance(value, Real):
-            raise SettingError(f"{whose} {field.name} must be a number, but it is {shown(value)}.")
-        if isinstance(value, int) and abs(value) > _MOST:
-            raise SettingError(
-                f"{whose} {field.name} must be a number of less than 300 digits, "
-                f"but it is {shown(value)}."
-            )
+    if name.endswith("s"):
+        return name
+    return f"{'an' if name[:1] in 'AEIOUaeiou' else 'a'} {name}"
 
 
 def is_one_of(given: object, known: Collection[str]) -> bool:
@@ -145,14 +131,168 @@ def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDAr
     held = "True or False" if kind is np.bool_ else "numbers"
     try:
         array = np.asarray(given)
-        if kind is not np.bool_:
+        if kind is not np.bool_ and array.dtype.kind in "biufO":
             array = array.astype(kind)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = None
     if array is None or array.dtype != kind:
         sentence = f"{what} must hold {held}, but {shown(given)} does not. {instead}"
         raise SettingError(sentence.rstrip())
     return array
+
+
+def entries_of(what: str, which: Any, n: int) -> Any:  # noqa: ANN401 - an array or a slice
+    """Return what picks some of n entries; raise `SettingError` for anything else.
+
+    Parameters
+    ----------
+    what
+        What is picked: ``"Records"``.
+    which
+        Numbers of entries, a mask ``(n,)`` or a slice.
+    n
+        How many entries there are.
+
+    Examples
+    --------
+    >>> entries_of("Records", [True, False], 2)
+    array([ True, False])
+    """
+    import numpy as np  # noqa: PLC0415 - as above
+
+    if isinstance(which, slice):
+        return which
+    try:
+        picked = np.asarray(which)
+    except ValueError:
+        picked = np.empty(())
+    if picked.ndim == 1 and not picked.size:
+        return picked.astype(np.int64)
+    if picked.dtype == bool and picked.shape == (n,):
+        return picked
+    if picked.ndim == 1 and picked.dtype.kind in "iu" and -n <= picked.min() <= picked.max() < n:
+        return picked
+    raise SettingError(
+        f"{what} must be picked by their numbers below {n}, or by True and False for each, but "
+        f"'which' is {shown(which)}."
+    )
+
+
+def must_be_shaped(whose: str, arrays: Mapping[str, tuple[Any, tuple[int, ...]]]) -> None:
+    """Raise `SettingError` unless arrays have their shapes.
+
+    Parameters
+    ----------
+    whose
+        Who has them, in the sentence: ``"A route's"``.
+    arrays
+        By name: the array, and the shape that it must have.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> must_be_shaped("A start's", {"chance": (np.zeros(3), (2,))})
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A start's chance must have the shape (2,), but it has (3,).
+    """
+    for name, (array, shape) in arrays.items():
+        if array.shape != shape:
+            raise SettingError(
+                f"{whose} {name} must have the shape {shape}, but it has {array.shape}."
+            )
+
+
+def must_be_in(what: str, allowed: AllowedRange, given: float) -> None:
+    """Raise `SettingError` unless a number is in a range."""
+    if rule := allowed.broken(given):
+        raise SettingError(f"{what} must be {rule}, but it is {shown(given)}.")
+
+
+def must_be_name_of_file(what: str, path: object) -> None:
+    """Raise `SettingError` where a text names no file, whatever there is on the disk."""
+    if not str(path) or "\0" in str(path):
+        raise SettingError(
+            f"{what} must be given by its path, but it is {str(path)!r}. Name the file."
+        )
+
+
+def must_be_zone(what: str, name: str) -> None:
+    """Raise `SettingError` unless a time zone has this name; empty: UTC."""
+    try:
+        ZoneInfo(name or "UTC")
+    except (KeyError, ValueError, OSError) as error:
+        raise SettingError(
+            f"{what} must be a time zone as Asia/Jerusalem, but it is {name!r}."
+        ) from error
+
+
+def days_of(given: object) -> NDArray[np.datetime64] | None:
+    """Return days, whatever they were given as; None: they are none.
+
+    Examples
+    --------
+    >>> days_of("2026-11-18"), days_of(20_000)
+    (array('2026-11-18', dtype='datetime64[D]'), None)
+    """
+    import numpy as np  # noqa: PLC0415 - as above
+
+    if isinstance(given, datetime):
+        given = given.date()  # as the clock there says
+    try:
+        array = np.asarray(given)
+        if array.size and array.dtype.kind not in "MUO":
+            return None
+        days = array.astype("datetime64[D]", copy=False)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    said = days.ndim or not np.isnat(days) or isinstance(given, np.datetime64 | np.ndarray)
+    return days if said else None
+
+
+def lonlat_of(
+    what: str, given: object, instead: str = "", *, nowhere: bool = False
+) -> NDArray[np.float64]:
+    """Return positions ``(m, 2)`` in degrees, longitude first; raise an error for anything else.
+
+    Parameters
+    ----------
+    what
+        Whose they are, in the sentence: ``"Positions of records"``.
+    given
+        What was handed over.
+    instead
+        What else to do.
+    nowhere
+        Whether NaN will do: of what nobody says where it was.
+
+    Examples
+    --------
+    >>> lonlat_of("Plants", [[30.0, 135.0]])
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.ObservationError: Plants must be longitude and latitude in degrees, but one is 30, 135. Give longitude first.
+    """  # noqa: E501 - a sentence
+    import numpy as np  # noqa: PLC0415 - as above
+
+    points = array_of(np.float64, what, given)
+    if points.size == 0 and points.ndim:
+        return points.reshape(-1, 2)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ObservationError(
+            f"{what} must be pairs of longitude and latitude, but they have the shape "
+            f"{points.shape}."
+        )
+    wrong = (np.abs(points) > _FARTHEST_DEG).any(axis=1)
+    if not nowhere:
+        wrong |= np.isnan(points).any(axis=1)
+    if wrong.any():
+        lon, lat = points[wrong][0]
+        raise ObservationError(
+            f"{what} must be longitude and latitude in degrees, but one is {lon:g}, {lat:g}. "
+            f"Give longitude first{instead}."
+        )
+    return points
 
 
 def must_be_rate(rate_l_ha: float) -> None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.jit import inlined, loop, routine
+from fieldmon.compute.kinds import must_be_of
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ class RandomStreams:
     seed: int
 
     def __post_init__(self) -> None:
+        must_be_of("A seed", "int", self.seed)
         if self.seed < 0:
             raise SettingError(f"A seed must be 0 or more, but it is {self.seed}.")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from fieldmon.compute.arguments import must_be, must_hold_numbers
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
@@ -25,6 +25,7 @@ _OF = {
 }  # fmt: skip
 
 
+@checked
 @dataclass(frozen=True)
 class Dose:
     """So much of a product on an area, or in water.
@@ -54,8 +55,7 @@ class Dose:
     unit: str
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A dose's")
-        must_be("The unit of a dose must be text", self.unit, str, 'Give "l/ha", for instance.')
+        must_hold_kinds(self, "A dose's")
         if not 0.0 < self.value < 1e6:
             raise SettingError(
                 worded(

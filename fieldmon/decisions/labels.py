@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_be, must_hold_numbers
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 WAITS_DAYS, WAITS_HOURS = AllowedRange(0, 3650, unit=" days"), AllowedRange(0, 10_000, unit=" h")
 
 
+@checked
 @dataclass(frozen=True)
 class ProductLabel:
     """What a label allows for a product; None: it does not say.
@@ -62,8 +63,7 @@ class ProductLabel:
     source: str = ""
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A label's")
-        must_be("A label's product must be text", self.product, str, "Name it.")
+        must_hold_kinds(self, "A label's")
         if not self.product.strip():
             raise SettingError(worded("A label must name its product, but this one names none."))
         checked_waits(self.waiting_days, self.reentry_hours)

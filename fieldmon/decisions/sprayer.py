@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import MONEY, AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
@@ -55,7 +55,7 @@ class Sprayer:
     ring: int = 0
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A sprayer's")
+        must_hold_kinds(self, "A sprayer's")
         if broken := broken_setting(self, SWITCHED):
             raise SettingError(
                 worded("A sprayer's {name} must be {rule}, but it is {value:g}.", **broken)
@@ -124,7 +124,7 @@ class TreatmentCosts:
     reserve: float = 0.0
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "The treatment's")
+        must_hold_kinds(self, "The treatment's")
         if broken := broken_setting(self, COSTS):
             raise SettingError(
                 worded("The treatment's {name} must be {rule}, but it is {value:g}.", **broken)

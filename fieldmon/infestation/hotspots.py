@@ -21,8 +21,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.arguments import array_of, must_be, must_hold_numbers
+from fieldmon.compute.arguments import array_of, must_be, must_be_shaped
 from fieldmon.compute.jit import routine
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.nearby_plants import outside_m
@@ -70,7 +71,7 @@ class HotSpotSettings:
     least_finds: int = 3
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A hot spot's")
+        must_hold_kinds(self, "A hot spot's")
         if self.radius_m is not None and not 0.0 < self.radius_m <= _MOST_M:
             raise SettingError(
                 f"The radius of a hot spot's window must be above 0 m and {_MOST_M:g} m at most, "
@@ -131,6 +132,11 @@ class HotSpots:
     radius_m: float
 
     def __post_init__(self) -> None:
+        must_hold_kinds(self, "Hot spots'")
+        h = self.found.size
+        counted_ = ("found", "inspected", "plants", "expected", "p", "q")
+        shapes = dict.fromkeys(counted_, (h,)) | {"centre_m": (h, 2)}
+        must_be_shaped("Hot spots'", {name: (getattr(self, name), s) for name, s in shapes.items()})
         for value in vars(self).values():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import shown
+from fieldmon.compute.arguments import days_of, entries_of, must_be_known, shown
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 
@@ -30,7 +31,43 @@ _TYPES: dict[str, Any] = {
     "who": object,
     "notes": object,
 }
-_WHOLE = frozenset({"plant", "result"})
+#: what a caller's array of each may be to numpy, and how a sentence calls it
+_GIVEN = {
+    "plant": ("iuf", "whole numbers of int32"),
+    "result": ("biuf", "whole numbers of int8"),
+    "date": ("M", "dates"),
+    "second": ("iufO", "numbers"),
+    "count": ("iufO", "numbers"),
+    "who": ("UO", "texts"),
+    "notes": ("UO", "texts"),
+}
+
+
+def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
+    """Return a column as it is kept, a view: the caller's own array stays as it is."""
+    letters, words = _GIVEN[name]
+    wrong = ObservationError(
+        f"The {name} of inspections must be {words}, but {shown(given)} does not hold them."
+    )
+    if name == "date":
+        given = days_of(given)
+    try:
+        values = np.atleast_1d(given)
+        if values.ndim != 1 or (values.size and values.dtype.kind not in letters):
+            raise wrong
+        with np.errstate(invalid="ignore"):
+            column: NDArray[Any] = values.astype(_TYPES[name], copy=False).view()
+    except (ValueError, TypeError, OverflowError) as error:
+        raise wrong from error
+    if words.startswith("whole") and not np.array_equal(column, values):
+        raise wrong
+    return column
+
+
+def _no_date(given: object) -> ObservationError:
+    return ObservationError(
+        f"The date of inspections must be as 2026-11-18, but it is {shown(given)}."
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,25 +106,13 @@ class Inspections:
     notes: NDArray[np.object_]
 
     def __post_init__(self) -> None:
-        k = np.size(self.plant)
-        for name, type_ in _TYPES.items():
-            values = np.atleast_1d(getattr(self, name))
-            if len(values) != k:
+        columns = {name: _column(name, getattr(self, name)) for name in _TYPES}
+        k = len(columns["plant"])
+        for name, column in columns.items():
+            if len(column) != k:
                 raise ObservationError(
                     f"All columns of the inspections must have {k} entries, "
-                    f"but {name} has {len(values)}."
-                )
-            # a view: the caller's own array stays as it is
-            try:
-                column = values.astype(type_, copy=False).view()
-            except (ValueError, TypeError) as error:
-                raise ObservationError(
-                    f"The {name} of inspections must be of type {type_} each, but they are not "
-                    f"({error})."
-                ) from error
-            if name in _WHOLE and not np.array_equal(column, values):
-                raise ObservationError(
-                    f"The {name} of inspections must be whole numbers of {type_}."
+                    f"but {name} has {len(column)}."
                 )
             column.setflags(write=False)
             object.__setattr__(self, name, column)
@@ -126,13 +151,10 @@ class Inspections:
         ObservationError
             If plants or results are no whole numbers of their type, or dates no dates.
         """
-        k = np.size(plant)
-        try:
-            dates = np.asarray(on, "datetime64[D]")
-        except ValueError as error:
-            raise ObservationError(
-                f"The date of inspections must be as 2026-11-18, but it is {shown(on)}."
-            ) from error
+        k, dates = len(_column("plant", plant)), days_of(on)
+        if dates is None:
+            raise _no_date(on)
+        must_be_known("Columns of inspections", columns, list(_TYPES))
         known: dict[str, Any] = {
             "plant": plant,
             "result": result,
@@ -150,9 +172,14 @@ class Inspections:
         return cls.of(np.empty(0, np.int32), np.empty(0, np.int8), np.datetime64("NaT"))
 
     def take(self, which: NDArray[np.generic] | slice) -> Inspections:
-        """Return those at `which` indices, or of a mask ``(k,)`` or a slice."""
-        return Inspections(**{name: getattr(self, name)[which] for name in _TYPES})
+        """Return those at `which` indices, or of a mask ``(k,)`` or a slice.
 
+        Raise `SettingError` if `which` is none of them.
+        """
+        picked = entries_of("Inspections", which, len(self))
+        return Inspections(**{name: getattr(self, name)[picked] for name in _TYPES})
+
+    @checked
     def and_those(self, others: Inspections) -> Inspections:
         """Return these and then others."""
         both = {
@@ -161,8 +188,11 @@ class Inspections:
         return Inspections(**both)
 
     def on(self, date: dt.date | np.datetime64) -> Inspections:
-        """Return those of one date."""
-        return self.take(self.date == np.asarray(date, "datetime64[D]"))
+        """Return those of one date; raise `ObservationError` if it is none."""
+        day = days_of(date)
+        if day is None or day.ndim:
+            raise _no_date(date)
+        return self.take(self.date == day)
 
     @property
     def inspected(self) -> Inspections:

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of, must_be, shown
+from fieldmon.compute.arguments import (
+    array_of,
+    days_of,
+    entries_of,
+    lonlat_of,
+    must_be,
+    must_be_known,
+    shown,
+)
+from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ObservationError
 
@@ -20,29 +29,20 @@ UNKNOWN, ABSENT, PRESENT = -1, 0, 1
 #: a record this close to a plot is taken for one of its own
 NEARBY_M = 100.0
 _DAY = np.timedelta64(1, "D")
-_FARTHEST_DEG = np.array([360.0, 90.0])
+_READ = ", or read the file with read_records"
+_TEXTS = frozenset({"species", "stage"})
 #: a record of the usual half-life, 14 days, counts a thirtieth after so many
 HARDLY_DAYS = 70.0
 
 
-def _positions(lonlat: object) -> NDArray[np.float64]:
-    """Return positions ``(m, 2)``; refuse what is none, by which latitude and longitude show."""
-    points = array_of(np.float64, "Positions of records", lonlat)
-    if points.size == 0:
-        return points.reshape(-1, 2)
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise ObservationError(
-            "Positions of records must be pairs of longitude and latitude, but they have the shape "
-            f"{points.shape}."
-        )
-    wrong = (np.abs(points) > _FARTHEST_DEG).any(axis=1)
-    if wrong.any():
-        lon, lat = points[wrong][0]
-        raise ObservationError(
-            "Positions of records must be longitude and latitude in degrees, but one is "
-            f"{lon:g}, {lat:g}. Give longitude first, or read the file with read_records."
-        )
-    return points
+def _column(name: str, given: object) -> NDArray[np.generic]:
+    """Return a column of records as it is kept."""
+    if name not in _TEXTS and getattr(given, "dtype", None) != np.bool_:
+        return np.atleast_1d(array_of(np.float64, f"The {name} of records", given))
+    kind = "NDArray[np.str_]" if name in _TEXTS else "NDArray[np.float64]"
+    is_array = isinstance(given, np.ndarray)
+    must_be_of(f"The {name} of records", kind if is_array else "Sequence[str]", given)
+    return np.asarray(given)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +85,8 @@ class Observations:
     leaves_sampled: NDArray[np.float64]
 
     def __post_init__(self) -> None:
+        must_hold_kinds(self, "The observations'")
+        lonlat_of("Positions of records", self.lonlat, _READ, nowhere=True)
         m = len(self.lonlat)
         for name, values in vars(self).items():
             if len(values) != m:
@@ -135,8 +137,8 @@ class Observations:
             If columns have different lengths, a position is none on earth, or a result is not 1,
             0 or -1.
         """
-        points = _positions(lonlat)
-        results = array_of(np.float64, "Results of records", present)
+        points = lonlat_of("Positions of records", lonlat, _READ, nowhere=True)
+        results = np.atleast_1d(array_of(np.float64, "Results of records", present))
         if not np.isin(results, (UNKNOWN, ABSENT, PRESENT)).all():
             raise ObservationError(
                 "Results of records must be 1 (infested), 0 (clean) or -1 (not said), but one is "
@@ -150,17 +152,22 @@ class Observations:
             "stage": np.full(m, "", dtype=np.str_),
             "leaves_sampled": np.full(m, np.nan),
         }
-        try:
-            days = np.asarray(np.full(m, "NaT") if day is None else day, "datetime64[D]")
-        except (TypeError, ValueError) as error:
+        days = days_of(np.full(m, np.datetime64("NaT")) if day is None else day)
+        if days is None or not days.ndim:
             raise ObservationError(
                 f"Days of records must be as 2026-11-18, but they are {shown(day)}."
-            ) from error
-        return cls(points, results.astype(np.int8), days, **(unknown | columns))  # type: ignore[arg-type]
+            )
+        must_be_known("Columns of records", columns, list(unknown))
+        given = {name: _column(name, values) for name, values in columns.items()}
+        return cls(points, results.astype(np.int8), days, **(unknown | given))  # type: ignore[arg-type]
 
     def take(self, which: NDArray[np.generic]) -> Observations:
-        """Return the records at `which` indices, or of a mask ``(k,)``."""
-        return Observations(**{name: values[which].copy() for name, values in vars(self).items()})
+        """Return the records at `which` indices, or of a mask ``(k,)``.
+
+        Raise `SettingError` if `which` is neither.
+        """
+        picked = entries_of("Records", which, len(self))
+        return Observations(**{name: values[picked].copy() for name, values in vars(self).items()})
 
     @classmethod
     def none(cls) -> Observations:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -81,7 +81,7 @@ class PriorSettings:
         return _HARDLY * self.half_life_days
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "The prior's")
+        must_hold_kinds(self, "The prior's")
         above_0 = {"edge_depth_m", "path_depth_m", "half_count", "reach_m", "half_life_days"}
         from_0 = {"accuracy_m", "undated_days"}
         for name in (each.name for each in fields(self)):

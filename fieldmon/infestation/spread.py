@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fieldmon.compute.arguments import is_one_of, must_hold_numbers
+from fieldmon.compute.arguments import is_one_of
 from fieldmon.compute.jit import loop
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.random_streams import coin, coin_bits, coin_limit
 from fieldmon.errors import SettingError
 
@@ -50,17 +51,17 @@ class Spread:
     arrivals_per_day: float = 0.0
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "The spread's")
+        if not is_one_of(self.to, _TO):
+            raise SettingError(
+                f"Spread goes to 'each', 'one' or 'all' of the neighbours, but it is {self.to!r}."
+            )
+        must_hold_kinds(self, "The spread's")
         for name in ("rate_per_day", "arrivals_per_day"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise SettingError(
                     f"The spread's {name} must be a chance in 0..1, "
                     f"but it is {getattr(self, name)}."
                 )
-        if not is_one_of(self.to, _TO):
-            raise SettingError(
-                f"Spread goes to 'each', 'one' or 'all' of the neighbours, but it is {self.to!r}."
-            )
 
 
 def night(

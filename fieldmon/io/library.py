@@ -9,7 +9,8 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.arguments import must_be, must_be_name_of_file
+from fieldmon.compute.kinds import must_be_of
 from fieldmon.errors import ImportDoubt
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
@@ -98,6 +99,11 @@ def read_plot(
     (3825, 45)
     """
     _must_be_file(source)
+    if plants is not None:
+        _must_be_file(plants, "A file of plants")
+    must_be_of("A plot's name or number", "str | int | None", feature)
+    must_be_of("A plot's planting", "PlantingChoices | None", planting)
+    must_be_of("A plot's gate", "tuple[float, float] | None", gate)
     drawn: dict[str, Any] = {name: options.pop(name) for name in _DRAWN if name in options}
     drawn["guess_blocks"] = options.pop("guess_blocks", "no") in {"yes", "true", "1"}
     chosen = _chosen(PlotOptions(), options)
@@ -294,12 +300,16 @@ def read_weather(source: Source, plot: Plot, **options: str) -> Weather:
     return read.value
 
 
-def _must_be_file(source: object) -> None:
+def _must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - anything
     """Raise `SettingError` unless this is a file: its path, or what was uploaded."""
-    must_be(
-        "A file must be given by its path", source, (str, Path, Upload, tuple),
-        'Give "estate.zip", or Path("estate.zip").',
-    )  # fmt: skip
+    uploads = isinstance(source, tuple) and len(source)
+    for one in source if uploads else (source,):
+        must_be(
+            f"{what} must be given by its path", one, Upload if uploads else (str, Path, Upload),
+            'Give "estate.zip", or Path("estate.zip").',
+        )  # fmt: skip
+    if not uploads:
+        must_be_name_of_file(what, source)
 
 
 def _chosen(options: Any, more: dict[str, str]) -> Any:  # noqa: ANN401 - options of any kind

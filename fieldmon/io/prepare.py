@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from fieldmon.compute.wording import first_few, worded
-from fieldmon.errors import ChoiceNeeded, SettingError
+from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
 from fieldmon.io.import_report import ImportMessage, gathered, guessed
@@ -30,7 +30,7 @@ from fieldmon.io.read import (
 )
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
-from fieldmon.plot.planting import Planting
+from fieldmon.plot.planting import PLANTED, Planting
 from fieldmon.plot.plot import Plot, planting_of
 
 if TYPE_CHECKING:
@@ -108,10 +108,28 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     if sources.plants is not None:
         measured = _measured(sources, hearing)
         field = with_plants(field, measured)
+    _refuse_wrong_rows(field, request.planting, hearing)
     field = with_rows((field,), sources, request.planting, hearing)[0]
     field = _with_paths((field,), sources, hearing)[0]
     gate = field.gate if sources.gate is None else sources.gate
     return lay(replace(field, gate=gate), request.planting), measured
+
+
+def _refuse_wrong_rows(field: Field, by_hand: PlantingChoices, hearing: _Hearing) -> None:
+    """Raise `FileProblem` where a column says what no rows are, unless it is said by hand."""
+    for said in hearing.messages:
+        values = getattr(said.message.sentence, "values", {})
+        setting, of_plot = values.get("setting"), (said.message.feature or "").split(" / ")[0]
+        if setting in PLANTED and setting not in by_hand.given() and of_plot == field.name:
+            raise FileProblem(
+                worded(
+                    "{file}: of plot {name!r}, column {column!r} must be {rule}, but it is "
+                    "{value:g}. Correct it, or say it by hand.",
+                    file=said.source,
+                    name=field.name,
+                    **values,
+                )
+            )
 
 
 def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Estate:

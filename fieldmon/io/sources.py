@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.plot.planting import Planting
 
 if TYPE_CHECKING:
     from fieldmon.infestation.raster_risk import RiskSettings
@@ -95,6 +97,10 @@ class PlantingChoices:
     faces: int | None = None
     half_canopy_m: float | None = None
     in_rows: bool = True
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "Planting choices'")
+        Planting(**self.given())  # type: ignore[arg-type]
 
     def given(self) -> dict[str, float]:
         """Return what is said of a planting in rows, by name."""

@@ -7,24 +7,25 @@ quantity, machinery, weather.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields, replace
-from datetime import time
-from types import NoneType
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import must_be, must_hold_numbers
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.doses import WATER_L_HA
 from fieldmon.decisions.labels import checked_waits
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from datetime import time
+
     from fieldmon.decisions.doses import Dose
     from fieldmon.decisions.labels import ProductLabel
 
 _MOST_LETTERS = 2000
 
 
+@checked
 @dataclass(frozen=True)
 class Application:
     """What was applied, and how; what nobody said is empty or None.
@@ -90,14 +91,7 @@ class Application:
     weather: str = ""
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A treatment's")
-        for field in fields(self):
-            if field.type == "str":
-                what = f"A treatment's {field.name} must be text"
-                must_be(what, getattr(self, field.name), str, "Put it in quotes.")
-        for name in ("began", "ended"):
-            what = f"A treatment's {name} must be a time"
-            must_be(what, getattr(self, name), (time, NoneType), "Give time(8, 30), or None.")
+        must_hold_kinds(self, "A treatment's")
         checked_waits(self.waiting_days, self.reentry_hours)
         if self.water_l_ha is not None and WATER_L_HA.broken(self.water_l_ha):
             raise SettingError(

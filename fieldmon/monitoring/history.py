@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.arguments import must_be, must_be_shaped
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.travel import Aisles
 
 
+@checked
 @dataclass(frozen=True)
 class BeliefSettings:
     """How the chance map follows from what is done and found on a real plot.
@@ -77,6 +79,9 @@ class BeliefSettings:
     treated: bool = True
     traces: bool = True
 
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "The belief's")
+
     def first_morning(
         self, grid: PlantGrid, chance: NDArray[np.float64], pest: Pest | None = None
     ) -> Belief:
@@ -84,6 +89,7 @@ class BeliefSettings:
 
         Only where finds are traced is anything made of a `pest`.
         """
+        must_be_shaped("The first morning's", {"chance": (chance, (len(grid),))})
         if not self.traces:
             return PairApproximation.of(grid, chance)
         traced = TracedPairs.of(grid, chance)

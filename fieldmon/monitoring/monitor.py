@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from fieldmon.compute.arguments import array_of, must_be, shown
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler, Stops, WouldFind
 
+# no working day has so many seconds
+_NO_DAY_S = 1e9
 # told clocks are compared with charged ones to a millisecond
 _SAME_S = 1e-3
 
@@ -134,7 +137,7 @@ class Monitor:
             "What insects are taken to do must be BeliefSettings", belief_settings,
             (BeliefSettings, NoneType), "Give BeliefSettings(spread=Spread(0.3)).",
         )  # fmt: skip
-        must_be("A seed must be a whole number", seed, (int, np.integer), "Give seed=1.")
+        must_be("A seed must be a whole number", seed, (int, np.integer), "Give seed=1.", (bool,))
         self.plot = plot
         self.robot = robot or Robot()
         self.belief_settings = belief_settings or BeliefSettings()
@@ -181,6 +184,7 @@ class Monitor:
         self._day = MonitorDay(self, self._scene(), self._sampler)
         return self._day
 
+    @checked
     def day_in(self, scene: Scene) -> MonitorDay:
         """Begin the day, or the rest of it, that a scene stands in: as of a season on disk."""
         self.day_number, self._last_inspected = scene.day, scene.last_inspected
@@ -247,8 +251,9 @@ class MonitorDay:
     (True, [True])
     """
 
+    @checked
     def __init__(self, monitor: Monitor, scene: Scene, sampler: Sampler) -> None:
-        self.ended = False
+        self.ended, sampler = False, sampler_or_name(sampler)
         self._monitor, self._sampler = monitor, sampler
         self._times = sampler.inspection_times(scene.robot)
         self._told: list[tuple[PlantToInspect, bool | None]] = []
@@ -302,6 +307,7 @@ class MonitorDay:
         """Seconds of the day that are gone, as charged or as told."""
         return self._gone_s
 
+    @checked
     def ahead(self, n: int) -> list[int]:
         """Return up to n plants that follow the one asked for if nothing is found."""
         if self._stops is None or self._asked is None:
@@ -356,11 +362,11 @@ class MonitorDay:
             )
         done_s = stop.arrive_s + stop.inspect_s
         if at_s is not None:
-            must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.")
-            if not self._gone_s <= at_s < np.inf:
+            must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.", (bool,))
+            if not self._gone_s <= at_s < _NO_DAY_S:
                 raise ObservationError(
                     f"The day's clock must go on, but it was {self._gone_s:.0f} s and is "
-                    f"{at_s:.0f} s."
+                    f"{shown(at_s)} s."
                 )
         self._told.append((stop, found))
         self._asked = None

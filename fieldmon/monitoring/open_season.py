@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import record_states
 from fieldmon.infestation.observations import Observations, usable
@@ -109,6 +110,7 @@ class _Prior(NamedTuple):
     chance: Floats
 
 
+@checked
 class OpenSeason:
     """A season's file, read anew whenever it changed; see `fieldmon.monitoring.Season`."""
 
@@ -203,6 +205,7 @@ class OpenSeason:
         """Return the ways on the plot with another gate; None: its own."""
         if gate is None:
             return self.plot.aisles
+        gate = (gate[0], gate[1])  # a list is none that can be remembered
         if gate not in self._aisles:
             self._aisles[gate] = self.plot.with_gate(gate).aisles
         return self._aisles[gate]

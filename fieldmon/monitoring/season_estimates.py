@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.kinds import checked
 from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.monitoring import day_figures
 from fieldmon.monitoring.advice import AdviceSettings, advice
@@ -42,6 +43,7 @@ class _MorningAsked(NamedTuple):
     day: int
 
 
+@checked
 class SeasonEstimates(OpenSeason):
     """What follows on each day from all that was recorded before."""
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from pathlib import Path
-from types import NoneType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.arguments import array_of
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.observations import Observations, must_be_records
+from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     derived_layers,
@@ -42,11 +42,10 @@ from fieldmon.monitoring.transactions import Store, set_meta
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import local_clock
-from fieldmon.plot.plot import must_be_plot
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
@@ -80,6 +79,7 @@ class SeasonChange:
         self.since = day if self.since is None else min(self.since, day)
 
 
+@checked
 class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     """A season on disk. Begin one with `create`, come back to it with ``Season(path)``.
 
@@ -122,7 +122,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         observations: Observations | None = None,
         settings: MonitoringSettings | None = None,
         messages: Iterable[KeptMessage] = (),
-        risk: Floats | None = None,
+        risk: Floats | Sequence[Any] | None = None,
         **chosen: Any,  # noqa: ANN401 - fields of the settings
     ) -> Season:
         """Begin a season in a new file, whole or not at all.
@@ -153,18 +153,14 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         SettingError
             If what is handed over is something else.
         """
-        must_be_plot(plot)
-        must_be_records(observations)
-        must_be(
-            "A season's settings must be MonitoringSettings", settings,
-            (MonitoringSettings, NoneType), "Or give them one by one, as robot=Robot(hours=4).",
-        )  # fmt: skip
         if settings is None:
             today = local_clock(plot.field).today()
             settings = settings_from({"begins": today} | chosen)
         if observations is None:
             observations = Observations.none()
         begins = np.datetime64(settings.begins, "D")
+        if risk is not None:
+            risk = array_of(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
         history = nothing_yet(plot, settings, prior, observations)
         first = SeasonContents(FileRevision(0, 0), settings, history, Mornings(history))

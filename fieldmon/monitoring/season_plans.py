@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes, season_log
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
 
 
+@checked
 class SeasonPlans(OpenSeason):
     """The days of a season as they are planned, and the routes that are kept of them."""
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import (
     batches,
     copy_corrections,
@@ -35,11 +34,13 @@ if TYPE_CHECKING:
     from datetime import date
     from pathlib import Path
 
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
 
 
+@checked
 class SeasonRecords(OpenSeason):
     """The inspections of a season, whoever brings them; each batch can be undone."""
 
@@ -126,9 +127,6 @@ class SeasonRecords(OpenSeason):
         SettingError
             If a date is not of this season.
         """
-        how = "Make them with Inspections.of, or read them with read_inspections."
-        for inspections, _ in brought:
-            must_be("What is recorded must be Inspections", inspections, Inspections, how)
         done = []
         with self._writing() as db:
             before = self._read(db)
@@ -293,7 +291,6 @@ class SeasonRecords(OpenSeason):
 
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
-        must_be("What is merged must be a Season", other, OpenSeason, "Open it with Season(path).")
         with self._lock, self.store.writing() as db:
             before = inspection_table.counting(db)
             held = self._inspections(db)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
 from fieldmon.compute.arguments import array_of
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.labels import label_for
 from fieldmon.decisions.zones import outline_of
@@ -31,7 +32,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
@@ -44,13 +45,14 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.treatments import KeptTreatment
 
 
+@checked
 class SeasonTreatments(OpenSeason):
     """The treatments of a season, and the labels of what was used."""
 
     def treat(
         self, on: date, efficacy: float | None = None, area: MultiPolygon | None = None,
         product: str = "", *, application: Application | None = None,
-        plants: NDArray[np.bool_] | None = None,
+        plants: NDArray[np.generic] | Sequence[Any] | None = None,
     ) -> Recorded:  # fmt: skip
         """Note that a part of the plot was treated, after the day's work.
 
@@ -118,10 +120,10 @@ class SeasonTreatments(OpenSeason):
         on_plot = shapely.intersection(frame.geometry_m(ground), frame.geometry_m(boundary))
         return TreatedPlace(ground, self._inside(ground), float(on_plot.area) / 1e4)
 
-    def _treated_one_by_one(self, plants: NDArray[np.bool_]) -> TreatedPlace:
+    def _treated_one_by_one(self, given: object) -> TreatedPlace:
         grid = self.plot.grid
         plants = array_of(
-            np.bool_, "The mask of treated plants", plants,
+            np.bool_, "The mask of treated plants", given,
             f"Of plants by their numbers give np.isin(np.arange({len(grid)}), numbers).",
         )  # fmt: skip
         if plants.shape != (len(grid),):

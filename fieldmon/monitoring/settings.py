@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field, fields
-from datetime import date, datetime, time
+from datetime import date, time
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import day_of, must_be, must_be_known, of_kind
+from fieldmon.compute.arguments import day_of, must_be_in, must_be_known
+from fieldmon.compute.kinds import checked, must_hold_kinds
+from fieldmon.compute.ranges import SEED, AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
@@ -33,6 +35,7 @@ MOST_DAYS = 800
 MOST_WEATHER = 36_000
 
 
+@checked
 @dataclass(frozen=True)
 class MonitoringSettings:
     """What is chosen for a season.
@@ -92,10 +95,8 @@ class MonitoringSettings:
     language: str = ""
 
     def __post_init__(self) -> None:
-        for name, (kind, instead) in _KINDS.items():
-            must_be(
-                f"A season's {name} must be {of_kind(kind)}", getattr(self, name), kind, instead
-            )
+        must_hold_kinds(self, "A season's")
+        must_be_in("A season's seed", SEED, self.seed)
         if self.harvest is not None and self.harvest < self.begins:
             raise SettingError(
                 worded(
@@ -155,8 +156,6 @@ class MonitoringSettings:
 
     def day(self, on: date) -> int:
         """Return the number of the day `on`, from 0; raise `SettingError` outside the season."""
-        what = "A day of a season must be a date"
-        must_be(what, on, date, "Give date(2026, 11, 18).", but_no=(datetime,))
         number = (on - self.begins).days
         if number < 0:
             raise SettingError(
@@ -182,7 +181,8 @@ class MonitoringSettings:
         return number
 
     def date(self, day: int) -> date:
-        """Return the date of a day."""
+        """Return the date of a `day`, from 0; raise `SettingError` outside a season."""
+        must_be_in("A season's day", AllowedRange(0, MOST_DAYS), day)
         return (np.datetime64(self.begins, "D") + day).astype(date)  # type: ignore[no-any-return]
 
 
@@ -195,18 +195,6 @@ def _pest_in_weather(pest: Pest, weather: Weather | None, begins: date) -> PestI
 def seconds(at: time) -> float:
     """Return the seconds since midnight."""
     return at.hour * 3600.0 + at.minute * 60.0 + at.second
-
-
-#: of what kind settings are that a caller's program may hand over, and what to give
-_KINDS: dict[str, tuple[type, str]] = {
-    "begins": (date, "Give date(2026, 11, 18)."),
-    "starts": (time, "Give time(6)."),
-    "robot": (Robot, "Give Robot(hours=4), or scout()."),
-    "sampler": (str, 'Give its name, as "adaptive".'),
-    "prior": (PriorSettings, "Give PriorSettings(background_chance=0.01)."),
-    "belief": (BeliefSettings, "Give BeliefSettings(spread=Spread(0.3))."),
-    "seed": (int, "Give seed=1."),
-}
 
 
 def settings_from(chosen: dict[str, Any]) -> MonitoringSettings:

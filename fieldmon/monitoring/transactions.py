@@ -11,7 +11,7 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import require_folder
@@ -130,6 +130,7 @@ class Store:
     @contextmanager
     def new(cls, path: str | Path) -> Iterator[sqlite3.Connection]:
         """Make a new file: it appears with all that is written inside this block, or not at all."""
+        must_be_name_of_file("A season", path)
         target = Path(path).absolute()
         _refuse_old(target, path)
         with _draft_folder(target) as folder:

@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from types import NoneType
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from fieldmon.compute.arguments import is_one_of, must_be, must_hold_numbers, of_kind, shown
+from fieldmon.compute.arguments import is_one_of, shown
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
-from fieldmon.plot.robot import Viewpoints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.robot import Robot
+    from fieldmon.plot.robot import Robot, Viewpoints
 
     Floats = NDArray[np.float64]
 
@@ -78,7 +77,7 @@ class Stage:
     mobile: bool = True
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A stage's")
+        must_hold_kinds(self, "A stage's")
         low, high = _THRESHOLDS_C
         _must(
             self.name, "threshold_c", self.threshold_c, f"{low:g} to {high:g} °C",
@@ -179,7 +178,6 @@ class Movement:
     least_rain_mm: float = 0.0
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A movement's")
         if not is_one_of(self.kernel, get_args(KernelName)):
             raise SettingError(
                 worded(
@@ -192,6 +190,7 @@ class Movement:
             raise SettingError(
                 worded("The wind must be 'none' or 'with', but it is {wind!r}.", wind=self.wind)
             )
+        must_hold_kinds(self, "A movement's")
         adjacent = self.kernel == "adjacent"
         if not adjacent and self.reach_m is None:
             raise SettingError(
@@ -240,7 +239,7 @@ class Entry:
     depth_m: float = 10.0
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "An entry's")
+        must_hold_kinds(self, "An entry's")
         for name in ("edge_per_day", "paths_per_day", "anywhere_per_day"):
             value = getattr(self, name)
             _must("entry", name, value, "a chance in 0..1", 0 <= value <= 1)
@@ -248,6 +247,7 @@ class Entry:
         _at_most("entry", "depth_m", self.depth_m, _MOST_M)
 
 
+@checked
 @dataclass(frozen=True)
 class Pest:
     """A pest: what was published of it, and what we had to choose.
@@ -314,16 +314,9 @@ class Pest:
     citations: tuple[Citation, ...] = ()
 
     def __post_init__(self) -> None:
-        for name, kind in _TEXTS_AND_PARTS.items():
-            must_be(
-                f"A pest's {name} must be {of_kind(kind[0])}", getattr(self, name), kind,
-                "See the reference of Pest.",
-            )  # fmt: skip
-        for one in self.stages:
-            must_be("A pest's stages must be Stages", one, Stage, "See the reference of Pest.")
+        must_hold_kinds(self, "A pest's")
         if not self.name:
             raise SettingError(worded("A pest must have a name, but it is empty."))
-        must_hold_numbers(self, "A pest's")
         if not is_one_of(self.cutoff, get_args(Cutoff)):
             raise SettingError(
                 worded(
@@ -367,17 +360,6 @@ class Pest:
     def source(self, part: str) -> Citation | None:
         """Return where a part comes from; None: the file does not speak of it."""
         return next((one for one in self.citations if one.part == part), None)
-
-
-_TEXTS_AND_PARTS: dict[str, tuple[type, ...]] = {
-    **dict.fromkeys(("name", "title", "species", "count_means", "not_found"), (str,)),
-    **dict.fromkeys(("stages", "citations"), (tuple,)),
-    "increase": (Increase, NoneType),
-    "movement": (Movement,),
-    "entry": (Entry,),
-    "viewpoints": (Viewpoints, NoneType),
-    "generation": (Stage, NoneType),
-}
 
 
 def _at_most(of: str, name: str, value: float, most: float) -> None:

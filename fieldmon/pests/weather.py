@@ -10,7 +10,9 @@ from zoneinfo import ZoneInfo
 
 import numpy as np
 
+from fieldmon.compute.arguments import entries_of, must_be_zone
 from fieldmon.compute.arrays import read_only
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -35,6 +37,7 @@ MEASURED = {
 }
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Weather:
     """Hours or days of weather, one entry each, in the order of time; NaN: not measured.
@@ -83,6 +86,7 @@ class Weather:
     zone: str = ""
 
     def __post_init__(self) -> None:
+        must_hold_kinds(self, "Weather's")
         for each in fields(self):
             value = getattr(self, each.name)
             if isinstance(value, np.ndarray):
@@ -104,6 +108,8 @@ class Weather:
                     step_s=self.step_s,
                 )
             )
+
+        must_be_zone("Weather's zone", self.zone)
 
     def __len__(self) -> int:
         return len(self.at)
@@ -133,9 +139,10 @@ class Weather:
         return self.chosen((self.at >= first) & (self.at < end))
 
     def chosen(self, which: NDArray[np.bool_]) -> Weather:
-        """Return the entries of the mask `which` ``(n,)``."""
+        """Return the entries of the mask `which` ``(n,)``; raise `SettingError` if it is none."""
+        picked = entries_of("Entries of weather", which, len(self))
         parts: dict[str, Any] = {
-            each.name: getattr(self, each.name)[which]
+            each.name: getattr(self, each.name)[picked]
             for each in fields(self)
             if isinstance(getattr(self, each.name), np.ndarray)
         }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_hold_numbers
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
@@ -83,7 +83,7 @@ class Teamwork:
     passing_m: float = 0.0
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A team's")
+        must_hold_kinds(self, "A team's")
         if broken := broken_setting(self, TEAMWORK):
             raise SettingError(
                 worded("A team's {name} must be {rule}, but it is {value:g}.", **broken)

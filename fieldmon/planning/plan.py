@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations, must_be_records
@@ -81,6 +82,9 @@ class DayPlan:
     scene: Scene
     work: Workday
     route: Route
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A day's")
 
     def __repr__(self) -> str:
         length_km, hours = self.route.drive_m / 1000, self.route.end_s / 3600

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be_shaped
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.planning.bound_wording import bound_sentence
 from fieldmon.plot.passing import legs_of
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Route:
     """A day's route, as it is driven.
@@ -77,6 +80,13 @@ class Route:
     end_s: float
     notes: RouteNotes | None = None
     found_bound: float | None = None
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A route's")
+        k, m = self.plant.size, len(self.line_m)
+        stops = ("plant", "arrive_s", "leave_s", "chance", "detects", "line_stop")
+        shapes = dict.fromkeys(stops, (k,)) | {"line_m": (m, 2), "line_s": (m,)}
+        must_be_shaped("A route's", {name: (getattr(self, name), s) for name, s in shapes.items()})
 
     def __repr__(self) -> str:
         length_km, hours = self.drive_m / 1000, self.end_s / 3600

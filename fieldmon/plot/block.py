@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import shapely
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.arguments import must_be, must_hold_numbers
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 
@@ -41,12 +41,9 @@ class Block:
     plant_spacing_m: float | None = None
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "The block's")
-        must_be("A block's name must be text", self.name, str, "Put it in quotes.")
-        must_be(
-            "A block's area must be a MultiPolygon", self.area, (MultiPolygon, Polygon),
-            "Give shapely.MultiPolygon([polygon]), in degrees.",
-        )  # fmt: skip
+        if isinstance(self.area, Polygon):
+            object.__setattr__(self, "area", MultiPolygon([self.area]))
+        must_hold_kinds(self, "A block's")
         if self.area.is_empty or not self.area.is_valid:
             raise PlotError(
                 worded(

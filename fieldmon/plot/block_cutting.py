@@ -9,6 +9,7 @@ import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 from shapely.ops import split
 
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.block import Block
@@ -33,6 +34,7 @@ _COARSE_M, _CORNER_DEG, _MOST_CORNERS = 1.0, 10.0, 24
 _NEAR_M = 0.01
 
 
+@checked
 def cut_blocks(field: Field, line: LineString | MultiLineString) -> tuple[Block, ...]:
     """Return the blocks of a plot, those that a line ``(lon, lat)`` passes through in two.
 

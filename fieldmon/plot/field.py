@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiLineString, MultiPolygon, Polygon
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.arguments import lonlat_of
 from fieldmon.compute.arrays import read_only
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.projection import Frame
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.block import Block
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Field:
     """A plot: where it is, where its rows are if that is known, and how one gets in.
@@ -79,10 +81,9 @@ class Field:
     in_rows: bool = True
 
     def __post_init__(self) -> None:
-        must_be(
-            "A plot's boundary must be a MultiPolygon in degrees", self.boundary,
-            (MultiPolygon, Polygon), "Read it with read_plot, or Plot.from_geopandas.",
-        )  # fmt: skip
+        if isinstance(self.boundary, Polygon):
+            object.__setattr__(self, "boundary", MultiPolygon([self.boundary]))
+        must_hold_kinds(self, "A plot's")
         if self.boundary.is_empty or not self.boundary.is_valid:
             raise PlotError(
                 worded(
@@ -95,7 +96,10 @@ class Field:
                     else shapely.is_valid_reason(self.boundary),
                 )
             )
+        if self.gate is not None:
+            lonlat_of("A gate", [self.gate])
         if self.plants is not None:
+            lonlat_of("Plants", self.plants)
             read_only(self.plants)
 
     def __repr__(self) -> str:

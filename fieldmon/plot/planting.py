@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fieldmon.compute.arguments import must_hold_numbers
-from fieldmon.compute.ranges import AllowedRange
+from fieldmon.compute.kinds import must_hold_kinds
+from fieldmon.compute.ranges import AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
-_SPACING = AllowedRange(0.05, 1000.0, said="0.05 to 1000 metres")
+_SPACING = AllowedRange(0.05, 1000.0, said=worded("0.05 to 1000 metres"))
 #: what settings of `Planting` may be
 PLANTED = {
-    "row_bearing_deg": AllowedRange(-720.0, 720.0, said="-720 to 720 degrees"),
+    "row_bearing_deg": AllowedRange(-720.0, 720.0, said=worded("-720 to 720 degrees")),
     "row_spacing_m": _SPACING,
     "plant_spacing_m": _SPACING,
     "headland_m": _SPACING,
-    "half_canopy_m": AllowedRange(0.0, 10.0, said="0 to 10 metres"),
+    "half_canopy_m": AllowedRange(0.0, 10.0, said=worded("0 to 10 metres")),
 }
 
 
@@ -59,34 +59,10 @@ class Planting:
     half_canopy_m: float | None = None
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "The planting's")
-        broken = {
-            name: range_.broken(value)
-            for name, range_ in PLANTED.items()
-            if (value := getattr(self, name)) is not None
-        }
-        if broken.get("half_canopy_m"):
+        must_hold_kinds(self, "The planting's")
+        if broken := broken_setting(self, PLANTED):
             raise SettingError(
-                worded(
-                    "A planting's half_canopy_m must be 0 to 10 metres, but it is {half_canopy_m}.",
-                    half_canopy_m=self.half_canopy_m,
-                )
-            )
-        for name in ("row_spacing_m", "plant_spacing_m", "headland_m"):
-            if broken[name]:
-                raise SettingError(
-                    worded(
-                        "A planting's {name} must be 0.05 to 1000 metres, but it is {value}.",
-                        name=name,
-                        value=getattr(self, name),
-                    )
-                )
-        if broken.get("row_bearing_deg"):
-            raise SettingError(
-                worded(
-                    "A row bearing must be -720 to 720 degrees, but it is {row_bearing_deg}.",
-                    row_bearing_deg=self.row_bearing_deg,
-                )
+                worded("The planting's {name} must be {rule}, but it is {value}.", **broken)
             )
         if self.faces not in (1, 2):
             raise SettingError(

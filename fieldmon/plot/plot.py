@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.compute.arguments import must_be
+from fieldmon.compute.arguments import lonlat_of, must_be, must_be_shaped
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
@@ -26,7 +27,7 @@ from fieldmon.plot.trees import trees_grid
 
 if TYPE_CHECKING:
     import numpy as np
-    from geopandas import GeoDataFrame
+    from geopandas import GeoDataFrame, GeoSeries
     from numpy.typing import NDArray
     from shapely import MultiLineString
 
@@ -72,6 +73,7 @@ def _in_rows(
     return grid, row_report(grid, rows, said)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Plot:
     """A field with its plants and the ways between them.
@@ -97,6 +99,9 @@ class Plot:
     aisles: Aisles
     assumed: tuple[Assumed, ...] = ()
     rows: RowReport | None = None
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A plot's")
 
     def __repr__(self) -> str:
         return f"<Plot {self.field.name}: {self.grid.counts}>"
@@ -159,7 +164,7 @@ class Plot:
         PlotError
             If two plants are in one place, or no rows can be found.
         """
-        names = names or PlantNames()
+        names, plants = names or PlantNames(), lonlat_of("Plants", plants)
         grid, rows = _in_rows(plants, names, None, planting)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
         row, block = names
@@ -192,6 +197,7 @@ class Plot:
         `plants` are ``(n, 2)`` degrees, `gate` is ``(lon, lat)``. Raise `PlotError` where two
         plants are in one place.
         """
+        plants = lonlat_of("Plants", plants)
         check_apart(plants)
         grid = trees_grid(plants)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
@@ -242,7 +248,7 @@ class Plot:
     @classmethod
     def from_geopandas(
         cls,
-        frame: GeoDataFrame,
+        frame: GeoDataFrame | GeoSeries,
         planting: Planting | None = None,
         name: str = "plot",
         gate: tuple[float, float] | None = None,
@@ -305,7 +311,11 @@ class Plot:
         return len(self.grid)
 
     def without(self, missing: NDArray[np.bool_]) -> Plot:
-        """Return the plot without the plants marked `missing` ``(n,)``, which are not there."""
+        """Return the plot without the plants marked `missing` ``(n,)``, which are not there.
+
+        Raise `SettingError` unless each plant is marked or not.
+        """
+        must_be_shaped("A plot's", {"missing": (missing, (len(self.grid),))})
         if not missing.any():
             return self
         return replace(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeVar
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from pyproj import Transformer
 from pyproj.enums import TransformDirection
 
+from fieldmon.compute.kinds import must_be_of
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 
@@ -62,7 +64,8 @@ class Frame:
                     lat=self.lat,
                 )
             )
-        if not np.isfinite(self.bearing_deg):
+        must_be_of("A row bearing", "float", self.bearing_deg)
+        if not math.isfinite(self.bearing_deg):
             raise SettingError(
                 worded(
                     "A row bearing must be a number, but it is {bearing_deg}.",

@@ -8,7 +8,9 @@ from itertools import pairwise
 from types import NoneType
 from typing import NamedTuple
 
-from fieldmon.compute.arguments import must_be, must_hold_numbers
+from fieldmon.compute.arguments import must_be
+from fieldmon.compute.kinds import checked, must_hold_kinds
+from fieldmon.compute.ranges import CHANCE, AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 
@@ -16,8 +18,28 @@ from fieldmon.errors import SettingError
 KM_H = 3.6
 THESIS_VIEWPOINTS = ((20.0, 0.50), (25.0, 0.60), (30.0, 0.69), (35.0, 0.77), (40.0, 0.84))
 THESIS_LONGER = 0.90
+# a day has 86 400 s
+_SECONDS, _SIZE = (
+    AllowedRange(0.0, 86_400.0),
+    AllowedRange(0.05, 10.0, said=worded("0.05 to 10 metres")),
+)
+# a study of what driving costs has a robot that is everywhere at once
+_ALLOWED = {
+    "speed_m_s": AllowedRange(0.0, 1e6, above=True),
+    "look_s": replace(_SECONDS, above=True),
+    "row_change_s": _SECONDS,
+    "turn_180_s": _SECONDS,
+    "stop_s": _SECONDS,
+    "hours": AllowedRange(0.0, 24.0, above=True),
+    "detection": CHANCE,
+    "width_m": _SIZE,
+    "length_m": _SIZE,
+}
+#: at 30 m/s (108 km/h) nobody drives along plants
+_DRIVEN_MOST = {"speed_m_s": 30.0}
 
 
+@checked
 @dataclass(frozen=True)
 class Viewpoints:
     """How likely an infested plant is seen to be infested, by seconds spent looking at it.
@@ -44,7 +66,7 @@ class Viewpoints:
     longer: float = THESIS_LONGER
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "Viewpoints'")
+        must_hold_kinds(self, "Viewpoints'")
         ladder = (*self.steps, (math.inf, self.longer))
         rising = all(low[0] < high[0] and low[1] <= high[1] for low, high in pairwise(ladder))
         if not (self.steps and rising and self.steps[0][0] > 0 and self.steps[0][1] >= 0):
@@ -93,6 +115,7 @@ USUAL_TIMES = "measured"
 SCOUT_TIMES = RobotTimes(3.0, 2.0, 5.0)
 
 
+@checked
 @dataclass(frozen=True)
 class Robot:
     """Speed, turning, looking and working time of whoever inspects.
@@ -148,20 +171,11 @@ class Robot:
     length_m: float | None = None
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "The robot's")
-        must_be("The robot's viewpoints must be Viewpoints", self.viewpoints, Viewpoints,
-                "Give Viewpoints(steps, longer).")  # fmt: skip
-        for name, limits in _LIMITS.items():
-            value = getattr(self, name)
-            if value is not None and (rule := _broken(name, value, limits)):
-                raise SettingError(
-                    worded(
-                        "The robot's {name} must be {rule}, but it is {value}.",
-                        name=name,
-                        rule=rule,
-                        value=value,
-                    )
-                )
+        must_hold_kinds(self, "The robot's")
+        if broken := broken_setting(self, _ALLOWED):
+            raise SettingError(
+                worded("The robot's {name} must be {rule}, but it is {value}.", **broken)
+            )
         if self.length_m is not None and self.width_m is None:
             raise SettingError(
                 worded("A robot whose length is known must have a width too. Give both.")
@@ -295,34 +309,6 @@ def broken_rule(name: str, value: float, units: float = 1.0, unit: str = "") -> 
     >>> broken_rule("look_s", 40.0)
     ''
     """
-    least, most = _LIMITS[name]
-    return _broken(name, value, (least, _DRIVEN_MOST.get(name, most) * units), unit)
-
-
-def _broken(name: str, value: float, limits: tuple[float, float], unit: str = "") -> str:
-    least, most = limits
-    if name in _BOTH_SAID:
-        return "" if least <= value <= most else _BOTH_SAID[name]
-    if name in _ABOVE and not value > least:
-        return f"above {least:g}{unit}"
-    if not value >= least:
-        return f"{least:g}{unit} or more"
-    return "" if value <= most else f"{most:g}{unit} at most"
-
-
-# a day has 86 400 s; a study of what driving costs has a robot that is everywhere at once
-_LIMITS = {
-    "speed_m_s": (0.0, 1e6),
-    "look_s": (0.0, 86_400.0),
-    "row_change_s": (0.0, 86_400.0),
-    "turn_180_s": (0.0, 86_400.0),
-    "stop_s": (0.0, 86_400.0),
-    "hours": (0.0, 24.0),
-    "detection": (0.0, 1.0),
-    "width_m": (0.05, 10.0),
-    "length_m": (0.05, 10.0),
-}
-#: at 30 m/s (108 km/h) nobody drives along plants
-_DRIVEN_MOST = {"speed_m_s": 30.0}
-_ABOVE = frozenset({"speed_m_s", "look_s", "hours"})
-_BOTH_SAID = {"detection": "in 0..1", **dict.fromkeys(("width_m", "length_m"), "0.05 to 10 metres")}
+    allowed = _ALLOWED[name]
+    most = _DRIVEN_MOST.get(name, allowed.most) * units
+    return replace(allowed, most=most, unit=unit).broken(value)

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from importlib import import_module
+from inspect import signature
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import must_be, shown
+from fieldmon.compute.arguments import must_be, must_be_known, shown
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.errors import SettingError
 
@@ -137,7 +138,9 @@ def sampler(name: str, **settings: Any) -> Sampler:  # noqa: ANN401 - each sampl
         As its class takes them, see its docstring.
     """
     kind = kind_of(name)
-    return kind.load()(**{**kind.settings, **settings})
+    made = kind.load()
+    must_be_known(f"Settings of {name}", settings, list(signature(made).parameters))
+    return made(**{**kind.settings, **settings})
 
 
 def sampler_or_name(given: str | Sampler) -> Sampler:
@@ -147,10 +150,11 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
     """
     if isinstance(given, str):
         return sampler(given)
-    if isinstance(given, type) or not callable(getattr(given, "walk", None)):
+    own = all(callable(getattr(given, name, None)) for name in ("walk", "inspection_times"))
+    if isinstance(given, type) or not own:
         raise SettingError(
             f"A sampler must be one of {', '.join(SAMPLERS)}, or one of your own with a method "
-            f"walk, but it is {shown(given)}."
+            f"walk, but it is {shown(given)}. Derive your own from samplers.base.Sampler."
         )
     return given
 

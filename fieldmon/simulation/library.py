@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from types import NoneType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of, must_be
+from fieldmon.compute.arguments import array_of
+from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.plot.plot import must_be_plot
-from fieldmon.plot.robot import Robot, must_be_robot
+from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
@@ -61,9 +61,11 @@ def draw_start(
             f"A chance map must have a chance in 0..1 for each of {len(plot.grid)} plants. Give "
             "DayPlan.chance, for instance."
         )
+    must_be_of("The share infested at the start", "float", share)
     return season_start(plot.grid, chance, share, RandomStreams(seed))
 
 
+@checked
 def simulate(
     plot: Plot,
     start: Start,
@@ -112,13 +114,6 @@ def simulate(
     >>> season.left.shape
     (3,)
     """
-    must_be_plot(plot)
-    must_be_robot(robot)
-    must_be("A season's start must be a Start", start, Start, "Draw one with draw_start.")
-    must_be(
-        "How a season is simulated must be SeasonSettings", settings, (SeasonSettings, NoneType),
-        "Give SeasonSettings(n_days=25).",
-    )  # fmt: skip
     decides = sampler_or_name(sampler)
     chosen, streams = settings or SeasonSettings(), RandomStreams(seed)
     return season_metrics(

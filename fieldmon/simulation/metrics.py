@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be_shaped
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 
 if TYPE_CHECKING:
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 DETECTION_LEVELS_PCT = (30.0, 50.0, 80.0, 100.0)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class SeasonMetrics:
     """The days of one season as columns, ``(d,)`` each, and what they add up to.
@@ -61,6 +64,11 @@ class SeasonMetrics:
     worked_h: NDArray[np.float64]
     sprayed_m2: NDArray[np.float64]
     spent: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A season's")
+        days = (self.found.size,)
+        must_be_shaped("A season's", {name: (column, days) for name, column in vars(self).items()})
 
     def __repr__(self) -> str:
         days, finds = counted(len(self.left), "day"), counted(int(self.found.sum()), "find")

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_hold_numbers
-from fieldmon.errors import PlotError, SettingError
+from fieldmon.compute.arguments import must_be_in
+from fieldmon.compute.kinds import checked, must_hold_kinds
+from fieldmon.compute.ranges import DAYS, AllowedRange
+from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.infestation.traced_pairs import TracedPairs
@@ -41,7 +43,11 @@ if TYPE_CHECKING:
 
 _HOUR_S, _DAY_S = 3600.0, 86400.0
 
+#: longer than any season
+_HIDDEN = AllowedRange(0, 3650)
 
+
+@checked
 @dataclass(frozen=True)
 class SeasonSettings:
     """What happens in a simulated season, beside the plot, the robot and the sampler.
@@ -90,9 +96,9 @@ class SeasonSettings:
     treating: TreatmentRule | None = None
 
     def __post_init__(self) -> None:
-        must_hold_numbers(self, "A season's")
-        if self.n_days < 1:
-            raise SettingError(f"A season must have 1 day or more, but n_days is {self.n_days}.")
+        must_hold_kinds(self, "A season's")
+        must_be_in("A season's n_days", DAYS, self.n_days)
+        must_be_in("A season's hidden_nights", _HIDDEN, self.hidden_nights)
 
     def night(
         self, grid: PlantGrid, infested: NDArray[np.bool_], key: np.uint64

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import must_be_shaped
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.infestation.prior import start_infested
@@ -37,6 +39,13 @@ class Start:
 
     infested: NDArray[np.bool_]
     chance: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A start's")
+        plants = (self.infested.size,)
+        must_be_shaped(
+            "A start's", {"infested": (self.infested, plants), "chance": (self.chance, plants)}
+        )
 
     def __repr__(self) -> str:
         plants = counted(len(self.infested), "plant")

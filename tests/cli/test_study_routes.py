@@ -1,6 +1,10 @@
 """`fieldmon study routes`: a table of methods on reward matrices."""
 
 import csv
+from contextlib import contextmanager
+
+from fieldmon.cli import study_routes, waiting
+from fieldmon.studies.routes.team_walks import team_walks
 
 
 def test_a_matrix_is_played_by_all_methods(run, tmp_path):
@@ -41,6 +45,33 @@ def test_a_team_has_its_lines_and_its_bound(run, tmp_path):
         rows = {row["method"]: row for row in csv.DictReader(file)}
     assert float(rows["ladder"]["reward"]) <= float(rows["team of 2"]["reward"])
     assert float(rows["team of 3"]["reward"]) <= float(rows["team of 3"]["bound"]) <= 13
+
+
+def test_a_teams_search_moves_the_bar_before_it_ends(run, tmp_path, monkeypatch):
+    (tmp_path / "plot.csv").write_text("1,0,3\n0,2,2\n5,0,0\n")
+    bars, moved = [], []
+
+    @contextmanager
+    def watched(label, length):
+        with waiting.progress(label, length) as bar:
+            bars.append(bar)
+            yield bar
+
+    def searched(reward, budget, size, tell):
+        before = bars[0].pos
+        for share in (0.0, 0.5, 1.0):
+            tell(share)
+            moved.append(bars[0].pos - before)
+        return team_walks(reward, budget, size)
+
+    monkeypatch.setattr(study_routes, "progress", watched)
+    monkeypatch.setattr("fieldmon.studies.routes.study.team_walks", searched)
+    code, _, err, _ = run(
+        *("study", "routes", tmp_path / "plot.csv", "--budget", 0.3, "--team", 2, "--team", 3)
+    )
+    assert code == 0, err
+    assert moved == [0, 49, 99] * 2
+    assert bars[0].pos == bars[0].length
 
 
 def test_a_study_that_is_stopped_keeps_what_was_done(run, tmp_path, monkeypatch):

@@ -1,35 +1,31 @@
 """What a program hands over: refused in a sentence where it is something else."""
 
-from dataclasses import dataclass
 from datetime import date, datetime
-from fractions import Fraction
 from functools import partial
 
 import numpy as np
+import pandas as pd
 import pytest
 from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import (
     array_of,
     day_of,
+    days_of,
+    entries_of,
+    lonlat_of,
     must_be,
+    must_be_in,
     must_be_known,
-    must_hold_numbers,
+    must_be_name_of_file,
+    must_be_shaped,
+    must_be_zone,
     shown,
 )
-from fieldmon.errors import SettingError
+from fieldmon.compute.ranges import AllowedRange
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.io.writers.treatment_map import TreatmentMap
 from fieldmon.monitoring.advice import AdviceSettings
-
-
-@dataclass(frozen=True)
-class _Settings:
-    hours: "float" = 4.0
-    rows: "int | None" = None
-    name: "str" = ""
-
-    def __post_init__(self):
-        must_hold_numbers(self, "The robot's")
 
 
 def test_what_is_of_its_kind_passes_and_anything_else_is_said_with_what_to_do():
@@ -57,31 +53,83 @@ def test_a_long_text_is_cut():
     assert shown("x" * 1000) == "'" + "x" * 39 + "..."
 
 
-@pytest.mark.parametrize("good", [4, 4.5, np.float32(4), np.int16(3), Fraction(7, 2)])
-def test_numbers_of_any_make_are_numbers(good):
-    assert _Settings(hours=good, rows=3).hours == good
-
-
-@pytest.mark.parametrize(
-    ("bad", "said"),
-    [({"hours": "4"}, "hours must be a number, but it is '4'"),
-     ({"hours": None}, "hours must be a number, but it is None"),
-     ({"rows": [1]}, "rows must be a number, but it is a list")],
-)  # fmt: skip
-def test_a_setting_that_is_no_number_is_named(bad, said):
-    with pytest.raises(SettingError, match=f"The robot's {said}"):
-        _Settings(**bad)
-
-
-def test_other_settings_are_left_to_their_own_checks():
-    assert _Settings(name=3).name == 3
-
-
 def test_an_array_holds_numbers_or_is_refused():
     assert array_of(np.float64, "A risk map", [1, 0.5]).tolist() == [1.0, 0.5]
-    for bad in (["a", "b"], "x", [[1], [1, 2]], [object()]):
+    days = np.zeros(2, "datetime64[D]")
+    for bad in (["a", "b"], "x", b"12", [[1], [1, 2]], [object()], 1j, 10**400, days):
         with pytest.raises(SettingError, match=r"^A risk map must hold numbers, but"):
             array_of(np.float64, "A risk map", bad)
+
+
+def test_entries_are_picked_by_numbers_a_mask_or_a_slice():
+    mask = np.array([True, False, True])
+    for which, kept in (([0, -1], [0, 2]), ([], []), (mask, [0, 2]), (slice(1, None), [1, 2])):
+        assert np.arange(3)[entries_of("Records", which, 3)].tolist() == kept
+    for bad in ([3], [-4], 1, None, "a", [0.0], [True], np.zeros((3, 1), int), [[0], [1, 2]]):
+        with pytest.raises(SettingError, match=r"^Records must be picked by .* 'which' is"):
+            entries_of("Records", bad, 3)
+
+
+def test_days_are_dates_texts_or_numpys_and_no_numbers():
+    for good in ("2026-11-18", date(2026, 11, 18), datetime(2026, 11, 18, 5), np.datetime64("NaT")):
+        assert days_of(good) is not None
+    assert days_of([date(2026, 11, 18), None]).astype(str).tolist() == ["2026-11-18", "NaT"]
+    for bad in (
+        None,
+        "",
+        "soon",
+        20_000,
+        1e30,
+        10**30,
+        [10**30],
+        [1, 2],
+        pd.NaT,
+        [[1], [1, 2]],
+        True,
+    ):
+        assert days_of(bad) is None
+
+
+def test_positions_are_in_degrees_longitude_first():
+    assert lonlat_of("Plants", [[35.1, 30.3]]).tolist() == [[35.1, 30.3]]
+    assert lonlat_of("Plants", []).shape == (0, 2)
+    for bad in (
+        [[30.0, 135.0]],
+        [[np.nan, 30.0]],
+        [[1e30, 0]],
+        [35.1, 30.3],
+        3.0,
+        np.zeros((2, 3)),
+    ):
+        with pytest.raises(ObservationError, match=r"^Plants must be"):
+            lonlat_of("Plants", bad)
+    assert np.isnan(lonlat_of("Records", [[np.nan, np.nan]], nowhere=True)).all()
+
+
+def test_arrays_have_their_shapes():
+    must_be_shaped(
+        "A route's", {"plant": (np.zeros(3), (3,)), "line_m": (np.zeros((4, 2)), (4, 2))}
+    )
+    with pytest.raises(SettingError, match=r"A route's line_m must have the shape \(4, 2\), but"):
+        must_be_shaped("A route's", {"line_m": (np.zeros(4), (4, 2))})
+
+
+def test_a_number_is_in_its_range():
+    must_be_in("A seed", AllowedRange(0, 9), 9)
+    with pytest.raises(SettingError, match=r"^A seed must be 0 or more, but it is -1\.$"):
+        must_be_in("A seed", AllowedRange(0, 9), -1)
+
+
+def test_a_file_has_a_name_and_a_zone_too():
+    must_be_name_of_file("A file", "a.zip")
+    must_be_zone("A zone", "Asia/Jerusalem")
+    must_be_zone("A zone", "")
+    for bad in ("", "a\0b"):
+        with pytest.raises(SettingError, match=r"^A file must be given by its path, but it is '"):
+            must_be_name_of_file("A file", bad)
+    for bad in ("soon", "../UTC", "a\0b"):
+        with pytest.raises(SettingError, match=r"^A zone must be a time zone as Asia/Jerusalem"):
+            must_be_zone("A zone", bad)
 
 
 def test_an_array_of_true_and_false_takes_no_numbers():

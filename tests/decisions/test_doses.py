@@ -42,7 +42,7 @@ def test_a_dose_is_so_much_of_another_as_that_is_the_inverse_of_it(one, other, w
     [
         (0, "l/ha", "must be above 0"),
         (-1, "l/ha", "must be above 0"),
-        (float("nan"), "l/ha", "must be above 0"),
+        (float("nan"), "l/ha", "must be a number"),
         (1, "l", "must be an amount by what it is for"),
         (1, "spoons/ha", "'spoons/ha'"),
         (1, "", "must be an amount"),

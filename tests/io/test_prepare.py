@@ -1,5 +1,6 @@
 """From files to a prepared plot."""
 
+import geopandas
 import numpy as np
 import pytest
 import rasterio
@@ -47,6 +48,19 @@ def test_what_is_said_by_hand_goes_before_what_the_file_states():
     assert told.row_spacing_m == pytest.approx(6.0)
     assert (told.twin >= 0).any()
     assert choices.given() == {"row_spacing_m": 6.0, "faces": 2}
+
+
+def test_a_spacing_that_no_rows_have_is_refused_with_file_column_and_value(tmp_path):
+    file = tmp_path / "wrong.gpkg"
+    areas = [shapely.box(x, 30.36, x + 1e-3, 30.361) for x in (35.15, 35.16)]
+    columns = {"name": ["wide", "usual"], "row_dist": [5000, 4]}
+    geopandas.GeoDataFrame(columns, geometry=areas, crs=4326).to_file(file)
+    said = "wrong.gpkg: of plot 'wide', column 'row_dist' must be 0.05 to 1000 metres, but it is"
+    with pytest.raises(FileProblem, match=f"^{said} 5000[.] Correct it, or say it by hand[.]$"):
+        prepare(one(file, "wide"))
+    assert prepare(one(file, "usual")).plot.grid.row_spacing_m == 4.0
+    by_hand = PlantingChoices(row_spacing_m=5.0)
+    assert prepare(one(file, "wide", planting=by_hand)).plot.grid.row_spacing_m == 5.0
 
 
 def test_paths_and_gate_belong_to_the_plot():

@@ -126,7 +126,7 @@ def test_results_that_do_not_fit_are_a_sentence_and_leave_no_trace(
 
 @pytest.mark.parametrize("results", [None, [1, 2], "day.csv"])
 def test_what_are_no_inspections_is_refused_in_a_sentence(season, results):
-    with pytest.raises(SettingError, match="What is recorded must be Inspections"):
+    with pytest.raises(SettingError, match="must be Inspections, but it is"):
         season.record(results)
 
 

@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, seen
+from fieldmon.io.import_report import ImportMessage, doubtful, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
+from fieldmon.plot.planting import PLANTED
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.io.formats.layer import Layer
 
 
@@ -45,6 +48,7 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
     called = {plain(column): column for column in layer.columns}
     values: list[list[float | None]] = []
     used = []
+    wrong: list[ImportMessage] = []
     for setting, columns in _COLUMNS.items():
         column = next((called[plain(c)] for c in columns if plain(c) in called), None)
         if column is None:
@@ -52,6 +56,7 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
             continue
         used.append(f"{column!r}")
         stated = numbers(layer.column(column))
+        wrong += _out_of_range(setting, column, stated, names)
         usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
         values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
     if not used:
@@ -63,4 +68,27 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
             names=", ".join(used),
         )
     )
-    return dict(zip(names, rows, strict=True)), [said]
+    return dict(zip(names, rows, strict=True)), [said, *wrong]
+
+
+def _out_of_range(
+    setting: str, column: str, stated: NDArray[np.float64], names: list[str]
+) -> list[ImportMessage]:
+    """Return a doubt for each plot of which a column says what no rows are."""
+    allowed = PLANTED[setting]
+    return [
+        doubtful(
+            worded(
+                "Column {column!r} must be {rule}, but it is {value:g}.",
+                column=column,
+                rule=rule,
+                value=value,
+                setting=setting,
+            ),
+            name,
+        )
+        for name, value in zip(names, stated.tolist(), strict=True)
+        # 0 and less stand for what nobody knows
+        if np.isfinite(value) and (value > 0 or setting == "row_bearing_deg")
+        and (rule := allowed.broken(value))
+    ]  # fmt: skip

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arguments import array_of, shown
 from fieldmon.compute.jit_progress import FIRST_USE
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.planning.bound_wording import FINDS, PROVED, bound_sentence, share_above
@@ -54,6 +56,7 @@ _CONSIDERED = 0.5
 _RUINS = (0.97, 0.93, 0.9, 0.97, 0.85)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class BestRoute:
     """A route, and a bound on every other.
@@ -77,6 +80,9 @@ class BestRoute:
     seconds: float
     bound: float
     how: str
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A route's")
 
     def __repr__(self) -> str:
         held = f"{counted(len(self.plant), 'stop')}, {self.reward:.2f} of at most {self.bound:.2f}"
@@ -116,6 +122,7 @@ class PriceBound:
     met: tuple[tuple[Any, float], ...]
 
 
+@checked
 def best(
     plot: Plot | Aisles,
     reward: ArrayLike,
@@ -160,10 +167,10 @@ def best(
     """
     posed = _posed(plot, reward, robot, seconds)
     aisles, robot, clock, values = posed
+    starts = [_known(other, len(values)) for other in others]
     if not values.any():
         return BestRoute(np.empty(0, np.int32), 0.0, 0.0, 0.0, "nothing can be reached")
     bounds = sorted(_bounds(posed), key=lambda found: found.value)
-    starts = [np.asarray(other, np.int64) for other in others]
     for found in bounds[:_STARTED_FROM]:
         starts += list(_starts(found, robot, clock.seconds_left))
     starts.append(_walked(aisles, values, robot, clock.seconds_left))
@@ -179,6 +186,7 @@ def best(
     )
 
 
+@checked
 def bound(
     plot: Plot | Aisles,
     reward: ArrayLike,
@@ -413,13 +421,30 @@ def _seconds(aisles: Aisles, clock: Clock, stops: Int) -> float:
     return float(driven_s(aisles.travel, clock, places)) + len(stops) * clock.visit_s
 
 
+def _known(other: ArrayLike, n: int) -> Int:
+    """Return a route from elsewhere; raise `SettingError` unless it is one of n plants."""
+    try:
+        plants = np.asarray(other)
+    except ValueError:
+        plants = np.empty((1, 1))
+    if plants.size and not (
+        plants.ndim == 1 and plants.dtype.kind in "iu" and 0 <= plants.min() <= plants.max() < n
+    ):
+        raise SettingError(
+            f"Other routes must be numbers of plants from 0, below {n}, but one is {shown(other)}."
+        )
+    return plants.astype(np.int64)
+
+
 def _checked(reward: ArrayLike, n: int, seconds: float) -> Float:
-    values = np.ascontiguousarray(reward, np.float64)
+    values = array_of(np.float64, "Rewards", reward)
     if values.shape != (n,) or not (np.isfinite(values).all() and (values >= 0).all()):
         raise SettingError(
             f"Rewards must be {n} numbers of 0 or more, one a plant, but they are "
             f"{values.size} with a least value of {values.min() if values.size else 'none'}."
         )
-    if not seconds > 0:
-        raise SettingError(f"The time for a route must be above 0 s, but it is {seconds}.")
+    if not 0 < seconds < np.inf:
+        raise SettingError(
+            f"The time for a route must be above 0 s, and end, but it is {seconds} s."
+        )
     return values

@@ -16,7 +16,7 @@ from fieldmon.studies.routes.instances import full_budget
 from fieldmon.studies.routes.team_walks import meetings, team_walks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from fieldmon.studies.routes.instances import Instance
 
@@ -77,18 +77,21 @@ def _by_ladder(instance: Instance, share: float) -> MethodOutcome:
 
 
 def run_teams(
-    instance: Instance, shares: Sequence[float], sizes: Sequence[int]
+    instance: Instance,
+    shares: Sequence[float],
+    sizes: Sequence[int],
+    tell: Callable[[float], object] | None = None,
 ) -> Iterator[MethodOutcome]:
     """Yield an outcome for each share of the full budget, which each has, and size of a team.
 
-    The cost is that of the longest walk.
+    The cost is that of the longest walk. `tell` hears which share of a team's search is done.
     """
     reward = instance.reward
     total = float(reward.sum())
     for share, size in product(shares, sizes):
         budget = int(full_budget(*reward.shape) * share)
         began = time.process_time()
-        team = team_walks(reward, budget, size)
+        team = team_walks(reward, budget, size, tell)
         took_s = time.process_time() - began
         steps = max(driven(places, reward).steps for places in team.places)
         if steps > budget or meetings(team.places, reward.shape[1]):

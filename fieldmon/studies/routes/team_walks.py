@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.planning.routes.exact_walk import best_walk
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -36,15 +36,21 @@ class TeamWalks(NamedTuple):
     bound: float
 
 
-def team_walks(reward: Float, budget: int, n_walks: int) -> TeamWalks:
-    """Return walks that hold much together, nobody meeting another in a row, and a bound."""
+def team_walks(
+    reward: Float, budget: int, n_walks: int, tell: Callable[[float], object] | None = None
+) -> TeamWalks:
+    """Return walks that hold much together, nobody meeting another in a row, and a bound.
+
+    `tell` hears again and again which share of the work is done at least, 0 to 1.
+    """
+    tell = tell or (lambda _: None)
     search = _TeamWalkSearch(reward, budget, n_walks)
     most = _all_steps(reward, budget, n_walks)
     search.improve()
-    search.shake(most)
+    search.shake(most, lambda share: tell(share / 2))
     search.keep_apart()
     held = search.held
-    most = min(most, _by_prices(reward, budget, n_walks, held))
+    most = min(most, _by_prices(reward, budget, n_walks, held, lambda done: tell((1 + done) / 2)))
     return TeamWalks(search.places, held, max(most, held))
 
 
@@ -102,15 +108,17 @@ class _TeamWalkSearch:
                 break
             held = self.held
 
-    def shake(self, most: float) -> None:
+    def shake(self, most: float, tell: Callable[[float], object]) -> None:
         """Give two walks other ways at random, and let them look again; keep the best.
 
-        It ends early where the walks hold the `most` that any can.
+        It ends early where the walks hold the `most` that any can. `tell` hears which share of the
+        shakes is done.
         """
         rng = np.random.default_rng(0)
         best, held, in_vain = [*self.places], self.held, 0
         now = held
-        for worse in np.maximum(_WORSE * np.linspace(1.0, -1.0, _SHAKES), 0.0):
+        for k, worse in enumerate(np.maximum(_WORSE * np.linspace(1.0, -1.0, _SHAKES), 0.0)):
+            tell(k / _SHAKES)
             if len(self.places) < 2 or held >= most or in_vain >= _SHAKES_IN_VAIN:
                 break
             if worse == 0.0 and now < held:
@@ -183,12 +191,19 @@ def _all_steps(reward: Float, budget: int, n_walks: int) -> float:
     return float(best_walk(reward, together).reward)
 
 
-def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
-    """Return a bound by prices of plants, as of a team's day: see `fieldmon.planning.team`."""
-    until = process_time() + _WITHIN_S
+def _by_prices(
+    reward: Float, budget: int, n_walks: int, held: float, tell: Callable[[float], object]
+) -> float:
+    """Return a bound by prices of plants, as of a team's day: see `fieldmon.planning.team`.
+
+    `tell` hears which share of the prices, or of the time for them, is gone.
+    """
+    began = process_time()
     price = direction = np.zeros(reward.shape)
     least, kept, step, in_vain = np.inf, price, 1.0, 0
-    for _ in range(_PRICES):
+    for k in range(_PRICES):
+        gone_s = process_time() - began
+        tell(max(k / _PRICES, min(gone_s / _WITHIN_S, 1.0)))
         walk = best_walk(np.maximum(reward - price, 0.0), budget)
         value = float(price.sum()) + n_walks * walk.reward
         if value < least:
@@ -201,7 +216,7 @@ def _by_prices(reward: Float, budget: int, n_walks: int, held: float) -> float:
         direction = 1.0 - n_walks * visits + _MEMORY * direction
         direction = np.where((price <= 0.0) & (direction > 0.0), 0.0, direction)
         norm = float((direction**2).sum())
-        if norm == 0.0 or value <= held * (1.0 + 1e-6) or process_time() > until:
+        if norm == 0.0 or value <= held * (1.0 + 1e-6) or gone_s > _WITHIN_S:
             break
         price = np.clip(price - step * (value - held) / norm * direction, 0.0, reward)
     return least

@@ -31,9 +31,10 @@ def test_a_gate_is_set_where_only_plants_were_brought(app):
     press(app, "Add")
     assert not app.error
     assert metric(app, "Plants") == before
-    assert layer(app, "gate")["data"][0]["p"] == [35.0001, 29.9999]
+    on_plot = layer(app, "gate")
+    assert on_plot["data"][0]["p"] == pytest.approx([35.0001, 29.9999], abs=1e-6)
     go(app, "today")
-    assert layer(app, "gate")["data"][0]["p"] == pytest.approx([35.0001, 29.9999], abs=1e-6)
+    assert layer(app, "gate") == on_plot
 
 
 def test_the_gate_and_areas_are_drawn_and_taken_back(app):

@@ -80,3 +80,15 @@ def test_on_a_published_family_a_team_is_near_its_bound():
     reward = zipf((30, 60), 0.8, 1).reward
     team = team_walks(reward, int(0.1 * full_budget(30, 60)), 3)
     assert team.reward >= 0.97 * team.bound
+
+
+def test_how_much_of_a_long_search_is_done_is_told_and_changes_nothing():
+    reward = np.random.default_rng(1).random((6, 9)) ** 3
+    told = []
+    team = team_walks(reward, 40, 2, told.append)
+    assert told == sorted(told)
+    assert 0.0 <= told[0] < 0.1
+    assert 0.5 <= told[-1] <= 1.0
+    assert len(set(told)) > 20
+    quiet = team_walks(reward, 40, 2)
+    assert (team.reward, team.bound) == (quiet.reward, quiet.bound)

@@ -1,0 +1,53 @@
+"""What a program hands over by mistake is refused in a sentence that names it; the rest of the
+mistakes by a command, see `tests.wrong_values`.
+"""
+
+import numpy as np
+import pytest
+
+import fieldmon as fm
+from fieldmon.errors import SettingError
+from tests.wrong_values import Case, cases, faults
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return list(cases(tmp_path_factory.mktemp("wrong_values")))
+
+
+def test_wrong_values_for_every_parameter_are_refused_by_name_and_nothing_crashes(
+    made, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    assert faults(made, calls=1000) == []
+
+
+def test_every_public_name_is_tried(made):
+    tried = {case.name.split(".")[0] for case in made}
+    # SAMPLERS is a dict, errors are raised, and a plant to inspect is an answer
+    others = {"SAMPLERS", "PlantToInspect", "ImportDoubt", "__version__", "rover", "scout"}
+    errors = {name for name in fm.__all__ if name.endswith(("Error", "Problem", "Needed"))}
+    assert set(fm.__all__) - tried == others | errors
+
+
+def test_what_crashes_says_nothing_or_names_nothing_is_found():
+    def crashes(hours: "float") -> "float":
+        return hours + 1
+
+    def takes(hours: "float") -> "float":
+        return hours
+
+    def mumbles(hours: "float") -> "float":  # noqa: ARG001 - refused all the same
+        raise SettingError("It must be otherwise.")
+
+    def warns(hours: "float") -> "float":  # noqa: ARG001 - as above
+        return np.log(np.float64(0.0))
+
+    for call, label, said in (
+        (crashes, "text", "TypeError"),
+        (takes, "text", "it is taken"),
+        (mumbles, "text", "does not name it"),
+        (warns, "text", "RuntimeWarning"),
+    ):
+        assert said in Case("f", call, {"hours": 1.0}).fault("hours", label)
+    assert Case("f", takes, {"hours": 1.0}).fault("hours", "half") == ""

@@ -229,7 +229,7 @@ def _which(file: File, names: list[str]) -> int:
 
 
 def _work(work: Work) -> tuple[Robot, str]:
-    with work.foot, st.expander(texts.WHO, expanded=True):
+    with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         who = widget_memory.show(
             st.segmented_control, texts.WHO, list(changing.WHO), key="who",
             default=changing.ROBOT, required=True, label_visibility="collapsed",

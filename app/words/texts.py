@@ -278,6 +278,10 @@ SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really i
 LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
 WORKING = "Working ..."
+SEASON_GONE = (
+    "There is no season {name} here: its file was moved, renamed or deleted. Put it back into the "
+    "folder of seasons, or choose another plot or season."
+)
 HELD = "Another program holds the season {name} (QGIS, a backup?). Waiting until it is free:"
 HELD_FOR = Plural("{n} second.", "{n} seconds.")
 HELD_STILL = (

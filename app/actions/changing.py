@@ -59,7 +59,7 @@ def in_hours() -> str:
 
 def show(name: str, season: Season, work: Work) -> None:
     """Show who works in the season of this name, and change it on demand."""
-    with work.foot, st.expander(texts.WHO, expanded=True):
+    with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         settings = season.settings
         wanted, hours = _wanted(name, settings, work)
         others = replace(wanted, robot=wanted.robot.with_hours(settings.robot.hours))

@@ -24,6 +24,7 @@ from ..state import (
     chosen_units,
     held,
     kept_files,
+    notices,
     plot_files,
     plot_source,
     sample_estate,
@@ -101,7 +102,10 @@ def _chosen(head: DeltaGenerator, work: Work, wait: Wait) -> Chosen:
 def _source() -> str:
     options = [plot_source.SAMPLE, plot_source.FILES, *seasons_folder.names()]
     plot_source.begin_from_address()
-    if widget_memory.value(plot_source.KEY) not in options:
+    named = widget_memory.value(plot_source.KEY)
+    if named not in options:
+        if named:
+            notices.keep("error", texts.SEASON_GONE.format(name=texts.isolated(named)))
         st.session_state[plot_source.KEY] = plot_source.SAMPLE
     chosen = widget_memory.show(
         st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, filter_mode=None,
@@ -124,7 +128,8 @@ def _of_files() -> dict[str, str]:
 
 
 def _from_season(name: str, work: Work) -> Choices:
-    held.wait(seasons_folder.path_of(name))
+    with work.foot:  # the boxes above are folded on a phone
+        held.wait(seasons_folder.path_of(name))
     season = cached.season(seasons_folder.path_of(name))
     settings, key, units = season.settings, str(season.path), chosen_units.units()
     clock = local_clock(season.plot.field)
@@ -229,7 +234,7 @@ def _which(file: File, names: list[str]) -> int:
 
 
 def _work(work: Work) -> tuple[Robot, str]:
-    with work.foot, st.expander(texts.WHO, expanded=True):
+    with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         who = widget_memory.show(
             st.segmented_control, texts.WHO, list(changing.WHO), key="who",
             default=changing.ROBOT, required=True, label_visibility="collapsed",

@@ -116,7 +116,7 @@ def tools(choices: Choices) -> None:
         if _kind() == ROW:
             bending.show(choices)
         elif _kind():
-            st.text_input(texts.DRAW_TYPED, key="draw_typed", placeholder="35.1503,30.3601")
+            st.text_input(texts.DRAW_TYPED, key="draw_typed", placeholder=texts.DRAW_EXAMPLE)
             st.button(texts.DRAW_ADD, key="draw_add", on_click=_add, args=(choices,))
         if points := _points(choices):
             st.caption(texts.DRAW_POINTS.format(n=len(points)))

@@ -312,7 +312,8 @@ def show_batches(choices: Choices) -> None:
 def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) -> None:
     said = recorded_batches.line(choices, batch, contents)
     # side by side, not in columns: a button takes what its word needs in each language
-    with st.container(horizontal=True, vertical_alignment="center"):
+    key = f"batch_{batch.number}"
+    with st.container(horizontal=True, vertical_alignment="center", key=key):
         st.markdown(said, width="stretch")
         if not batch.undone:
             st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo, help=said,

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 # more numbers than these have no room beside each other
 _MOST_NUMBERS = 200
+# a share below this is said to a tenth of a percent: 0 % says that there is nothing
+_SMALL = 0.01
 # who decides asks where to spray, not where to drive
 _OF_ROUTE = frozenset({"casing", "route", "arrows"})
 
@@ -51,7 +53,8 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
     if is_below(advice):
         st.markdown(texts.DECIDE_ANYWAY)
     zones, units = advice.zones, choices.units
-    share = number(zones.m2 / zones.plot_m2, ".0%")
+    of_plot = zones.m2 / zones.plot_m2
+    share = number(of_plot, ".1%" if of_plot < _SMALL else ".0%")
     with st.container(horizontal=True):
         st.metric(texts.DECIDE_AREA, f"{units.square(zones.m2)} ({share})", width="content")
         liquid = texts.DECIDE_LITRES.format(value=number(advice.litres, ",.0f"))

@@ -36,6 +36,8 @@ _LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbol
 _GREY = "#7F7F7F"
 # as far beside its line the words above an axis begin
 _ASIDE_PX = 30
+# beside the last day its name has room: at the edge it was cut
+_EDGE_PX = 10
 # as many letters of dates fit side by side in the narrow panel: six of "25 Nov"
 _LETTERS = 36
 
@@ -49,6 +51,7 @@ def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
     @wraps(make)
     def made(*args: object, **settings: object) -> alt.Chart:
         chart = make(*args, **settings).configure(background="transparent")
+        chart = chart.properties(padding={"left": _EDGE_PX, "right": _EDGE_PX})
         level = {"titleAngle": 0, "titleBaseline": "bottom", "titleY": -8}
         chart = chart.configure_axisLeft(titleAlign="left", titleX=-_ASIDE_PX, **level)
         chart = chart.configure_axisRight(titleAlign="right", titleX=_ASIDE_PX, **level)
@@ -146,7 +149,11 @@ def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
         alt.Chart(table)
         .mark_bar(color=_COLOURS[0])
         .encode(
-            x=alt.X("day:O", title=axes[0], axis=alt.Axis(labelAngle=0)),
+            x=alt.X(
+                "day:O",
+                title=axes[0],
+                axis=alt.Axis(labelAngle=0, labelOverlap=True, labelSeparation=4),
+            ),
             y=alt.Y("found:Q", title=axes[1]),
             tooltip=[alt.Tooltip("day", title=axes[0]), alt.Tooltip("found", title=axes[1])],
         )
@@ -349,7 +356,13 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
         for d in table["days"]
     ]
     encoding = {
-        "x": alt.X("row:Q", title=axes[0], axis=alt.Axis(tickMinStep=1, format="d")),
+        # its ends are the rows': to a round number, 70 rows began at -10
+        "x": alt.X(
+            "row:Q",
+            title=axes[0],
+            axis=alt.Axis(tickMinStep=1, format="d"),
+            scale=alt.Scale(domain=[lines.min() - 0.5, lines.max() + 0.5], nice=False),
+        ),
         "y": alt.Y("high:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
         "tooltip": [alt.Tooltip("row", title=axes[0]), alt.Tooltip("said", title=axes[1])],
     }

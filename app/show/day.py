@@ -138,7 +138,8 @@ def _risen(choices: Choices, yesterday: str) -> str:
     total = [np.bincount(line, chance) for chance in chances]
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
-    return listed(f"{k + 1} (+{number(rise[k], '.1%')})" for k in top)
+    rises = [texts.isolated(f"+{number(rise[k], '.1%')}") for k in top]
+    return listed(f"{k + 1}\u00a0({said})" for k, said in zip(top, rises, strict=True))
 
 
 def reasons(choices: Choices, plan: DayPlan) -> list[str]:

@@ -25,9 +25,12 @@ def show(choices: Choices) -> None:
     if not estimates:
         st.caption(texts.NOT_LEARNT)
     jump = next((one.value for one in estimates if one.name == "jumps beyond neighbours"), 1.0)
+    lines = []
     for one in estimates:
         if one.name == "length of jumps" and jump < _SAID:
             continue
         said = partial(number, form=".0%") if one.is_share else about
         figures = {name: said(getattr(one, name)) for name in ("value", "low", "high")}
-        st.markdown(f"- {texts.LEARNT[one.name].format(**figures)}")
+        lines.append(f"- {texts.LEARNT[one.name].format(**figures)}")
+    if lines:
+        st.markdown("\n".join(lines))

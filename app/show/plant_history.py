@@ -99,8 +99,7 @@ def show(choices: Choices) -> None:
     st.markdown(_on_route(choices, plant))
     if _taken_as_treated(choices, plant):
         st.caption(texts.HISTORY_TREATED)
-    for line in _inspections(choices, plant):
-        st.markdown(line)
+    st.markdown("\n".join(_inspections(choices, plant)))
     _show_photos(choices, plant)
 
 

@@ -30,7 +30,7 @@ def show(plot: Plot, units: UnitsInLanguage) -> None:
         st.metric(texts.AREA_IS, units.square(float(area_m2)), width="content")
         st.metric(plants, number(len(grid), ","), width="content")
         st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
-        st.metric(
-            texts.BEARING_IS, f"{number(grid.frame.bearing_deg % 180, '.1f')}°", width="content"
-        )
+        if grid.aisles_m is None:  # rows that bend, or blocks that turn, have no one direction
+            bearing = number(grid.frame.bearing_deg % 180, ".1f")
+            st.metric(texts.BEARING_IS, f"{bearing}°", width="content")
         st.metric(spacing, apart, width="content")

@@ -13,7 +13,7 @@ from fieldmon.errors import SettingError
 from fieldmon.plot.block_cutting import cut_blocks
 from fieldmon.plot.row_drawing import smooth_row
 
-from ..words import texts
+from ..words import language, texts
 
 if TYPE_CHECKING:
     from fieldmon.plot.field import Field
@@ -84,8 +84,14 @@ def _mostly_in(line: LineString, area: MultiPolygon) -> bool:
 
 
 def points_of(text: str) -> Points:
-    """Return typed positions, ``lon,lat`` each, separated by spaces, semicolons or lines."""
+    """Return typed positions, ``lon,lat`` each, separated by spaces, semicolons or lines.
+
+    Where the language writes fractions with a comma, a space parts the two: ``35,15 30,36``.
+    """
     made = []
+    if language.separators()[0] == "," and "." not in text:
+        numbers = text.replace(",", ".").replace(";", " ").split()
+        text = " ".join(",".join(numbers[k : k + 2]) for k in range(0, len(numbers), 2))
     for part in text.replace(";", " ").replace(", ", ",").split():
         try:
             lon, lat = (float(number) for number in part.split(","))

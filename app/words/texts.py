@@ -116,7 +116,7 @@ ASSUMED_WHAT = {
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
 }
-ASSUMED_ROBOT_TOO = "how fast and how well who inspects works"
+ASSUMED_ROBOT_TOO = "how fast and how thoroughly plants are inspected"
 ASSUMED_OF_ROBOT = "Of who inspects: {what}."
 ASSUMED_CHANGE, ASSUMED_ALL, ASSUMED_USE = "Change", "See all, or change", "Use these"
 ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your files."
@@ -278,6 +278,10 @@ SHOW_SAMPLER, SHOW_DAY, SHOW_TRUTH = "On the map", "Day", "Show what is really i
 LEFT = "Infested left"
 FOUND_SO_FAR, FOUND_TODAY, VISITED_TODAY = "Found so far", "Found that day", "Inspected that day"
 WORKING = "Working ..."
+SEASON_GONE = (
+    "There is no season {name} here: its file was moved, renamed or deleted. Put it back into the "
+    "folder of seasons, or choose another plot or season."
+)
 HELD = "Another program holds the season {name} (QGIS, a backup?). Waiting until it is free:"
 HELD_FOR = Plural("{n} second.", "{n} seconds.")
 HELD_STILL = (
@@ -475,6 +479,8 @@ DRAW_HINTS = {"gate": "Click where the gate is.", "path": "Click along the path.
               "row": "Drag a handle to bend the row; a click adds one.",
               "cut": "Click from one side of the plot to the other."}  # fmt: skip
 DRAW_TYPED = "or type positions (lon,lat lon,lat ...)"
+#: as the language writes fractions: with a comma, a space parts the two
+DRAW_EXAMPLE = "35.1503,30.3601"
 DRAW_ADD, DRAW_DONE, DRAW_UNDO, DRAW_DROP = "Add", "Finish", "Undo the last one", "Drop points"
 DRAW_POINTS = Plural("{n} point so far.", "{n} points so far.")
 DRAW_LEAST = (
@@ -777,9 +783,7 @@ LEARNT = {
     "detection": "An inspection finds {value} of what is there ({low} to {high}).",
     "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
     "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
-    "jumps beyond neighbours": (
-        "They jump farther than to the next plant: with a chance of {value}."
-    ),
+    "jumps beyond neighbours": "They jump beyond the next plant with a chance of {value}.",
     "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
 }
 AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"

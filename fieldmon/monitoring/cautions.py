@@ -152,7 +152,7 @@ def _of_waits(
             yield Caution("harvest", said, one.batch)
     if entry is not None and entry > datetime.combine(on, rules.starts):
         said = worded(
-            "Do not enter where {product} was applied on {day} before {time} on {date}.",
+            "Do not enter before {time} on {date} where {product} was applied on {day}.",
             time=f"{entry:%H:%M}", date=rules.units.day(entry.date()), **named,
         )  # fmt: skip
         yield Caution("entry", said, one.batch)

@@ -64,7 +64,7 @@ class FoundShare:
         low, high = self.interval
         return worded(
             "{share} ({found} of {n}; {low} to {high})",
-            share=figure(self.share, ".0%"), found=self.found, n=self.inspected,
+            share=figure(self.share, ".0%"), found=figure(self.found), n=figure(self.inspected),
             low=figure(low, ".0%"), high=figure(high, ".0%"),
         )  # fmt: skip
 
@@ -138,7 +138,7 @@ class TreatmentEffect:
         said.append(
             worded(
                 "It cleans {efficacy} of infested plants ({low} to {high}), told by {plants}; "
-                "{said} was said beforehand, which is worth {worth} plants.",
+                "{said} was said beforehand, which counts as {worth} plants.",
                 efficacy=figure(self.efficacy, ".0%"), low=figure(self.low, ".0%"),
                 high=figure(self.high, ".0%"), plants=counted(self.cured_of, "plant"),
                 said=figure(self.said, ".0%"), worth=figure(PRIOR_PLANTS, "g"),

@@ -82,7 +82,7 @@ DAYS_REST = "... and {n} earlier days; the season's file holds all of them."
 HOT_LIST = "Hot spots"
 HOT_MEANS = (
     "{rows}: {found:,} found among {inspected:,} inspected of its {plants:,} plants, where "
-    "{expected} would be if finds were strewn evenly. So many by chance alone: {p}."
+    "{expected} would be if finds were spread evenly. So many by chance alone: {p}."
 )
 HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"
 HOT_ROW = "Row {first}, plants {low} to {high}"

@@ -30,6 +30,7 @@ from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
+from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import scout
@@ -48,6 +49,7 @@ from tests.app.map_in_browser import (
     opacity,
     open_part,
     open_room,
+    picture,
     pixels,
     rest,
     scale_px_of_m,
@@ -823,6 +825,59 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
                            timeout=180_000)  # fmt: skip
     assert project.history.inspections.result.tolist() == [0, 1]
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+@pytest.mark.parametrize("page", [PHONE], indirect=True)
+def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_map_stays(
+    page, address, served_seasons
+):
+    states_season(served_seasons, "Right")
+    page.goto(f"{address}/?season=Right&lang=he&part=record")
+    rest(page)
+    batch = page.locator("[class*=st-key-batch_]").first
+    undo = batch.get_by_role("button").bounding_box()
+    line = batch.locator("p").first.bounding_box()
+    assert undo["x"] + undo["width"] <= line["x"], "the button is under its line"
+    page.goto(f"{address}/?season=Right&lang=he&part=today")
+    rest(page)
+    gaps = page.evaluate("""() => [...document.querySelectorAll(
+        ".st-key-panel [data-testid=stMarkdownContainer]>:is(ul,ol):last-child")].map((list) =>
+      list.closest("[data-testid=stElementContainer]").nextElementSibling?.getBoundingClientRect().top
+        - list.getBoundingClientRect().bottom).filter((gap) => !Number.isNaN(gap))""")
+    assert gaps
+    assert min(gaps) >= 8
+    page.goto(f"{address}/season?season=Right&lang=he&part=report")
+    page.locator(".st-key-panel iframe").wait_for()
+    still(page)
+    dressed(page)
+    sheet = round(page.locator(".st-key-panel").bounding_box()["y"])
+
+    def above():
+        return np.array(Image.open(io.BytesIO(picture(page))).convert("RGB"), np.int16)[:sheet]
+
+    before = above()
+    page.evaluate("document.querySelector('.st-key-panel iframe').scrollIntoView({block: 'end'})")
+    page.evaluate("() => new Promise((done) => setTimeout(() => requestAnimationFrame(done), 200))")
+    assert (np.abs(above() - before).max(axis=2) > 30).mean() < 0.01, "the report hides the map"
+
+
+def test_no_plot_lies_behind_the_legend_of_the_map_of_all(page, address, served_seasons):
+    # the farthest away of all seasons that other tests keep: the map of all has it in its corner
+    files = [served_seasons / f"{name}.gpkg" for name in ("North-west", "South-east")]
+    for file, (lon, lat) in zip(files, ((34.0, 32.0), (37.0, 28.9)), strict=True):
+        area = shapely.MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)])
+        Season.create(file, Plot.of(Field(file.stem, area)), begins=date(2026, 11, 16))
+    try:
+        page.goto(f"{address}/plots")
+        rest(page)
+        (place,) = pixels(view(page), [[37.0, 28.9]])
+        legend = page.locator(f"{MAP} .legend").bounding_box()
+        top = page.locator(MAP).bounding_box()["y"]
+        behind = place[0] > legend["x"] and top + place[1] > legend["y"]
+        assert not behind, f"it is at {place}, the legend at {legend}"
+    finally:
+        for file in files:
+            file.unlink()
 
 
 @pytest.fixture(scope="module")

@@ -62,7 +62,7 @@ def test_entry_is_warned_of_until_the_work_of_a_day_begins_after_it(on, warned):
     assert (said is not None) == warned
     if said:
         assert said.sentence == (
-            "Do not enter where Acarol was applied on 2026-04-06 before 09:00 on 2026-04-07."
+            "Do not enter before 09:00 on 2026-04-07 where Acarol was applied on 2026-04-06."
         )
 
 

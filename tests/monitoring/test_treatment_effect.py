@@ -109,7 +109,7 @@ def test_many_plants_overrule_what_was_said():
     # what is overlooked looks cured
     assert effect(history(*looks), [treated(3, said=0.95)])[0].efficacy < one.efficacy
     assert learnt_efficacy([one], "SOAP").efficacy == one.efficacy
-    assert "told by 50 plants; 95 % was said beforehand, which is worth 4 plants" in one.sentence()
+    assert "told by 50 plants; 95 % was said beforehand, which counts as 4 plants" in one.sentence()
 
 
 @pytest.mark.parametrize(
@@ -129,6 +129,7 @@ def test_it_is_said_in_words():
     )
     assert "Elsewhere 100 % (1 of 1" in said
     assert date(2026, 4, 9) == BEGINS + timedelta(3)
+    assert FoundShare(1100, 1687).sentence().startswith("65 % (1,100 of 1,687; ")
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -174,10 +174,11 @@ class MapPage {
     return { left: box.left - x, right: box.right - map.left + MARGIN_PX, top: box.top - y, bottom: map.height };
   }
 
-  // Return places of plants, not too many: whether something hides them is asked of each.
+  // Return places of plants, not too many: whether something hides them is asked of each. Where all plots
+  // are shown, there are none: then the places of their names.
   somePlaces() {
     const places = this.places(), some = [];
-    if (!places) return some;
+    if (!places) return (this.data.labels ?? []).filter(({ k }) => k === "name").map(({ p }) => p);
     const step = Math.ceil(places.lon.length / MOST_ASKED);
     for (let k = 0; k < places.lon.length; k += step) some.push([places.lon[k], places.lat[k]]);
     return some;

@@ -39,7 +39,7 @@ def by_state() -> LegendPart:
         ("dot", colours.CLEAN, names["clean"]),
         ("ring", colours.NEVER, names["never"]),
     ]
-    return part(texts.SHADES["state"], items, "shade:state")
+    return part("", items, "shade:state")  # its signs are its title
 
 
 def by_age(*, dark: bool = False) -> LegendPart:

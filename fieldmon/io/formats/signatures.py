@@ -56,7 +56,7 @@ VECTOR = frozenset(
 )
 WORKBOOKS = frozenset({FileKind.WORKBOOK, FileKind.OLD_WORKBOOK, FileKind.OPEN_WORKBOOK})
 TABULAR = WORKBOOKS | {FileKind.TABLE}
-READABLE = (
+READABLE = worded(
     "a shapefile (zipped or with its .dbf, .shx and .prj), GeoPackage, SpatiaLite, GeoJSON, KML or "
     "KMZ, GML, GPX, FlatGeobuf, GeoParquet, a zipped file geodatabase, MapInfo (.tab, .mif), DXF, "
     "ISOXML (TASKDATA.XML), CSV or a workbook (.xlsx, .xls, .ods)"
@@ -76,17 +76,24 @@ _MAGIC = (
     (b"II+\x00", FileKind.RASTER),
     (b"MM\x00+", FileKind.RASTER),
 )
-_INDEX = "only an index of a shapefile. Choose the .shp with it, or all of them zipped"
+_INDEX = worded("is only an index of a shapefile. Choose the .shp with it, or all of them zipped")
+_PICTURE = worded(
+    "is a picture without a position on the earth. Choose a GeoTIFF, or the plot as GeoPackage or "
+    "shapefile"
+)
 _REFUSED_MAGIC = (
-    (b"\x1f\x8b", "is packed with gzip. Unpack it and choose the file inside"),
-    (b"7z\xbc\xaf", "is a 7z archive. Unpack it, or pack it as .zip"),
-    (b"Rar!", "is a RAR archive. Unpack it, or pack it as .zip"),
-    (b"%PDF", "is a PDF, which holds no positions. Ask for the map as GeoPackage or shapefile"),
-    (b"\x89PNG", "is a picture without a position on the earth. Choose a GeoTIFF"),
-    (b"\xff\xd8\xff", "is a picture without a position on the earth. Choose a GeoTIFF"),
-    (b"\x00\x00\x27\x0a\xff\xff\xfe\x70", f"is {_INDEX}"),  # .sbn, .sbx of ArcGIS
-    (b"AutoCAD Binary DXF", "is a binary CAD drawing. Save it as an ASCII DXF"),
-    (b"AC10", "is a CAD drawing (DWG). Export it as GeoPackage, shapefile or GeoJSON"),
+    (b"\x1f\x8b", worded("is packed with gzip. Unpack it and choose the file inside")),
+    (b"7z\xbc\xaf", worded("is a 7z archive. Unpack it, or pack it as .zip")),
+    (b"Rar!", worded("is a RAR archive. Unpack it, or pack it as .zip")),
+    (
+        b"%PDF",
+        worded("is a PDF, which holds no positions. Ask for the map as GeoPackage or shapefile"),
+    ),
+    (b"\x89PNG", _PICTURE),
+    (b"\xff\xd8\xff", _PICTURE),
+    (b"\x00\x00\x27\x0a\xff\xff\xfe\x70", _INDEX),  # .sbn, .sbx of ArcGIS
+    (b"AutoCAD Binary DXF", worded("is a binary CAD drawing. Save it as an ASCII DXF")),
+    (b"AC10", worded("is a CAD drawing (DWG). Export it as GeoPackage, shapefile or GeoJSON")),
 )
 _BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 _TAG = re.compile(rb"<\s*(?:[\w.-]+:)?([A-Za-z][\w.-]*)")
@@ -110,23 +117,33 @@ _TEXTS = (
     (re.compile(rb"(\s*999\s*[\r\n]+[^\r\n]*[\r\n]+)*\s*0\s*[\r\n]+\s*SECTION\b"), FileKind.DXF),
 )
 _REFUSED_ROOTS = {
-    b"ogrvrtdatasource": "only points at other files (VRT). Choose the files themselves",
-    b"vrtdataset": "only points at other files (VRT). Choose the files themselves",
-    b"html": "is a web page, perhaps a log-in page saved instead of the file. Download it again",
-    b"wfs_capabilities": "describes a web service. Download the data themselves",
-    b"ogcwfsdatasource": "only points at a web service. Download the data themselves",
-    b"xfc": "is a part of an ISOXML. Choose the folder or zip that holds TASKDATA.XML with it",
-    b"gdal_wms": "only points at a web service. Download the data themselves",
-    b"svg": "is a drawing without positions on the earth. Export it as GeoPackage or GeoJSON",
+    b"ogrvrtdatasource": worded("only points at other files (VRT). Choose the files themselves"),
+    b"vrtdataset": worded("only points at other files (VRT). Choose the files themselves"),
+    b"html": worded(
+        "is a web page, perhaps a log-in page saved instead of the file. Download it again"
+    ),
+    b"wfs_capabilities": worded("describes a web service. Download the data themselves"),
+    b"ogcwfsdatasource": worded("only points at a web service. Download the data themselves"),
+    b"xfc": worded(
+        "is a part of an ISOXML. Choose the folder or zip that holds TASKDATA.XML with it"
+    ),
+    b"gdal_wms": worded("only points at a web service. Download the data themselves"),
+    b"svg": worded(
+        "is a drawing without positions on the earth. Export it as GeoPackage or GeoJSON"
+    ),
 }
 _REFUSED_ENDINGS = {
-    ".dbf": "holds only the table of a shapefile. Choose the .shp with it, or all of them zipped",
-    **dict.fromkeys(
-        (".shx", ".sbn", ".sbx", ".qix", ".fbn", ".fbx", ".ain", ".aih"), f"is {_INDEX}"
+    ".dbf": worded(
+        "holds only the table of a shapefile. Choose the .shp with it, or all of them zipped"
     ),
-    ".prj": "holds only a coordinate system. Choose the .shp with it, or all of them zipped",
-    ".vrt": "only points at other files (VRT). Choose the files themselves",
-    ".mid": "holds only the table of a MapInfo file. Choose the .mif with it, or both zipped",
+    **dict.fromkeys((".shx", ".sbn", ".sbx", ".qix", ".fbn", ".fbx", ".ain", ".aih"), _INDEX),
+    ".prj": worded(
+        "holds only a coordinate system. Choose the .shp with it, or all of them zipped"
+    ),
+    ".vrt": worded("only points at other files (VRT). Choose the files themselves"),
+    ".mid": worded(
+        "holds only the table of a MapInfo file. Choose the .mif with it, or both zipped"
+    ),
 }
 
 

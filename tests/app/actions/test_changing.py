@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 
+from app.words import texts
 from fieldmon.plot.robot import Robot, scout
-from tests.app.driving import go, metric, press, until
+from tests.app.driving import PAGES, go, metric, press, until
 
 
 def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(season_app, season):
@@ -41,6 +42,12 @@ def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
     press(season_app, "Back to Adaptive · 12 h · 40 s, from 06:00")
     assert season().settings == settings
     assert not [one for one in season_app.button if one.key == "undo_change"]
+
+
+def test_who_inspects_is_folded_away_where_no_day_is_planned(season_app):
+    for part in PAGES:
+        shown = [box for box in go(season_app, part).expander if box.label == texts.WHO]
+        assert [box.proto.expanded for box in shown] == [part == "today"] * len(shown), part
 
 
 def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season):

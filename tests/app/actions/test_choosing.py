@@ -1,5 +1,6 @@
 """Where, when and who: what is chosen counts in every room."""
 
+from app.actions import choosing
 from tests.app.driving import go, headline, map_of, metric, plants, plot_name
 
 
@@ -44,3 +45,15 @@ def test_a_season_that_is_gone_leaves_the_sample(season_app, season):
     season_app.run()
     assert not season_app.exception
     assert season_app.selectbox(key="season").value == "Sample estate"
+    (said,) = season_app.error
+    assert "There is no season \u2068Gate 2026\u2069 here" in said.value
+    assert not season_app.run().error, "said once"
+
+
+def test_who_waits_with_a_phone_is_told_so_outside_of_the_box_that_folds(season_app, monkeypatch):
+    monkeypatch.setattr(choosing.browser, "is_phone", lambda: True)
+    monkeypatch.setattr(choosing.held, "wait", lambda _: choosing.st.caption("waiting"))
+    season_app.run()
+    assert "waiting" in [one.value for one in season_app.caption]
+    folded = [one for box in season_app.get("popover") for one in box.caption]
+    assert "waiting" not in [one.value for one in folded]

@@ -57,7 +57,7 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     assert isinstance(one.waits.harvest_from, date)
     warned = " ".join(one.value for one in season_app.warning)
     assert "is too soon after Acarol" in warned
-    assert "Do not enter where Acarol" in " ".join(w.value for w in go(season_app, "today").warning)
+    assert "where Acarol was applied" in " ".join(w.value for w in go(season_app, "today").warning)
 
 
 def test_water_is_noted_by_the_area_in_which_the_plot_is_said(season_app, season):

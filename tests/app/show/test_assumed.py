@@ -19,7 +19,9 @@ def test_lengths_are_in_the_persons_unit_and_chances_in_percent():
 def test_of_who_inspects_the_line_says_that_and_what_is_said_apart():
     units, assumed = UnitsInLanguage(), [KNOWN, Assumed("speed_m_s", 1.0), Assumed("stop_s", 2.0)]
     line, own = sentence(assumed, units), of_who_inspects(assumed, units)
-    assert line.endswith("where nothing is known, how fast and how well who inspects works.")
+    assert line.endswith(
+        "where nothing is known, how fast and how thoroughly plants are inspected."
+    )
     assert "km/h" not in line
     assert own == "Of who inspects: 3.6 km/h, a stop takes 2 s more, as in simulated drives."
     assert of_who_inspects([ROWS, KNOWN], units) == ""

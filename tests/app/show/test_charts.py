@@ -111,6 +111,10 @@ def test_a_row_never_inspected_is_told_from_one_inspected_today():
     assert [(row["row"], row["said"]) for row in never] == [(2, "never")]
     bar = spec(chart)["layer"][2]["mark"]
     assert (bar["type"], bar["filled"]) == ("bar", False)
+    scale = spec(chart)["layer"][0]["encoding"]["x"]["scale"]
+    assert (scale["domain"], scale["nice"]) == ([0.5, 4.5], False), (
+        "there is no row before the first"
+    )
 
 
 def test_a_plot_of_which_nothing_was_inspected_has_hollow_bars_only():

@@ -19,7 +19,7 @@ def shown(monkeypatch):
         monkeypatch.setattr(st, "caption", lines.append)
         monkeypatch.setattr(learnt.chosen_day, "learnt", lambda _: estimates)
         learnt.show(None)
-        return [apart(line) for line in lines[1:]]
+        return apart("\n".join(lines[1:])).splitlines()
 
     return show
 

@@ -76,7 +76,7 @@ def test_every_inspection_of_the_plant_is_told_in_order_with_its_time_if_it_has_
     tap(choices, PLANT)
     plant_history.show(choices)
     days = ["Mon 6 Apr", "Tue 7 Apr", "Wed 8 Apr"]
-    assert said[-3:] == [
+    assert said[-1].splitlines() == [
         f"- {days[0]}: **clean**",
         f"- {days[1]} 08:20: **could not inspect**",
         f"- {days[2]} 10:01: **found**",

@@ -3,6 +3,7 @@
 import pytest
 
 from app.state.plot_edits import Edit, edited, points_of
+from app.words import language, texts
 from fieldmon.errors import SettingError
 from fieldmon.plot.field import Field
 from tests.app.driving import SQUARE
@@ -32,6 +33,19 @@ def test_typed_positions_that_are_none_are_refused(text):
 
 def test_typed_positions_are_read_in_any_layout():
     assert points_of("35.1,30.2 35.3,30.4;\n1, 2") == ((35.1, 30.2), (35.3, 30.4), (1.0, 2.0))
+
+
+def test_where_fractions_have_a_comma_a_space_parts_longitude_and_latitude():
+    language.use("es")
+    try:
+        assert points_of("35,15 30,36") == ((35.15, 30.36),)
+        assert points_of("35,15 -30,36; 35 30,5") == ((35.15, -30.36), (35.0, 30.5))
+        assert points_of(str(texts.DRAW_EXAMPLE)) == ((35.1503, 30.3601),)
+        assert points_of("35.1503,30.3601") == ((35.1503, 30.3601),), "as another program copies it"
+        with pytest.raises(SettingError, match="lon lat"):
+            points_of("35,15 30,36 35,2")
+    finally:
+        language.use(language.ENGLISH)
 
 
 def test_a_drawn_row_takes_the_place_of_the_one_before_in_its_block_only():

@@ -7,7 +7,8 @@ import pytest
 from app.words import language, texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import counted, figure, joined, worded
-from fieldmon.errors import SettingError
+from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.formats.signatures import kind_of
 from fieldmon.reports import words
 
 
@@ -129,3 +130,19 @@ def test_words_side_by_side_have_the_comma_of_their_language(speaking):
     assert language.in_words(library).count("،") == 1
     speaking("he")
     assert language.listed(["1", "2"]) == "1, 2"
+
+
+@pytest.mark.parametrize("code", ["he", "ar", "es"])
+@pytest.mark.parametrize(
+    ("head", "name"),
+    [(b"\xff\xd8\xff", "a.jpg"), (b"%PDF", "a.pdf"), (b"<svg>", "a.svg"), (b"text", "a.dbf"),
+     (b"\x01\x00\x02", "a.dat")],
+)  # fmt: skip
+def test_what_a_file_is_that_cannot_be_read_is_said_in_the_language(speaking, code, head, name):
+    with pytest.raises(FileProblem) as refused:
+        kind_of(head, name)
+    english = language.of_error(refused.value)
+    speaking(code)
+    said = language.of_error(refused.value)
+    assert not {"is", "holds", "Choose", "none", "workbook"} & set(said.replace(".", " ").split())
+    assert {"is", "holds"} & set(english.split())

@@ -23,6 +23,7 @@ def test_the_three_states_differ_by_shape_too():
     assert names == ("found", "looked clean", "never inspected")
     assert shown == (colours.FOUND, colours.CLEAN, colours.NEVER)
     assert len(set(kinds)) == 3
+    assert not legends.by_state()["title"], "it said the three signs' words once more"
 
 
 def test_ages_are_whole_days_without_a_gap():

@@ -39,7 +39,7 @@ def test_the_best_of_all_kinds_is_the_best_drive(priced):
 
 
 def test_kinds_grant_what_the_best_drive_is_granted():
-    """Where turns are dear, plants on both sides of an aisle are granted more than can be driven."""
+    """Where turns are dear, plants on both sides of an aisle are granted more than is driven."""
     aisles = Aisles.of(rectangle(2, 11, Planting(faces=2)), gate_xy_m=(-2.0, -3.0))
     ladder = ladder_below(aisles)
     between = ladder.plant[ladder.start[2] : ladder.start[3]]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import replace
+from types import NoneType
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.monitoring import day_figures
 from fieldmon.monitoring.advice import AdviceSettings, advice
@@ -100,6 +102,8 @@ class SeasonEstimates(OpenSeason):
         asked
             The threshold, the sprayer and the costs; None: the defaults.
         """
+        must_be("What is asked must be AdviceSettings", asked, (AdviceSettings, NoneType),
+                "Give AdviceSettings(level=0.05), for instance.")  # fmt: skip
         with self._asked(on) as (contents, morning, day):
             scene = self._scene(contents, on)
             evening = contents.history.evening(morning, day)

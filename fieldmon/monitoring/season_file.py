@@ -209,6 +209,9 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         FileProblem
             If something else than `seen` counts by now.
         """
+        for given in (settings, seen):
+            must_be("Settings must be MonitoringSettings", given, MonitoringSettings,
+                    "Begin with season.settings.")  # fmt: skip
         with self._lock, self.store.writing() as db:
             if as_json(settings_of(db)) != as_json(seen):
                 raise FileProblem(

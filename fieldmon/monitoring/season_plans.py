@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
+from datetime import time
+from types import NoneType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes, season_log
@@ -19,7 +22,7 @@ from fieldmon.planning.team_day import team_day
 from fieldmon.planning.team_worker import Posted
 
 if TYPE_CHECKING:
-    from datetime import date, time
+    from datetime import date
 
     from numpy.typing import NDArray
 
@@ -65,6 +68,9 @@ class SeasonPlans(OpenSeason):
         In the order of the team. Aisles that the routes kept of this day gave to one stay its own
         unless another way to give them out gains enough, see `Teamwork`.
         """
+        must_be(
+            "The time now must be a time", now, (time, NoneType), "Give time(11), for instance."
+        )
         with self._lock:
             contents = self._now()
             settings, day = contents.settings, contents.settings.day(on)

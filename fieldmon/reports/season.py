@@ -281,8 +281,8 @@ def _batches(facts: _Facts) -> Block:
     batches = facts.season.batches()
     if facts.on < facts.season.last_date():
         # what is of later days only came later
-        said = facts.season.contents([one.number for one in batches])
-        later = {number for number, of in said.items() if of.first > str(facts.on)}
+        contents = facts.season.contents([one.number for one in batches])
+        later = {number for number, of in contents.items() if of.first > str(facts.on)}
         batches = tuple(one for one in batches if one.number not in later)
     if not batches:
         return Listing(words.BATCHES, (words.BATCHES_NONE,))

@@ -35,6 +35,11 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         done = kept.merge(Season(copy))
     gone = f", {done.taken_back} were taken back there" if done.taken_back else ""
     typer.echo(f"{other.name}: {done.new} inspections were new{gone}")
+    if done.moved:
+        typer.echo(
+            "  numbered anew: batches have other numbers now than the log said before; see "
+            "fieldmon status --batches"
+        )
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")
     typer.echo("\n".join(lines(kept, kept.status(kept.last_date()))))

@@ -26,9 +26,11 @@ F = TypeVar("F", bound="Callable[..., Any] | type")
 _MOST = 10**300
 #: what to give instead of something else
 _INSTEAD = {
+    "AdviceSettings": "Give AdviceSettings(level=0.05).",
     "GeoDataFrame": "Read a file with geopandas, or make one of a table and its geometry.",
     "date": "Give date(2026, 11, 18).",
     "time": "Give time(6).",
+    "MonitoringSettings": "Begin with season.settings.",
     "Robot": "Give Robot(hours=4), or scout() for a person on foot.",
     "Plot": "Give the plot itself, as read_plot returns it; its plants are plot.grid.",
     "PlantGrid": "Give plot.grid.",

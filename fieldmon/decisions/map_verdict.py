@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csc_array
 
+from fieldmon.compute.arguments import array_of
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
@@ -130,7 +131,7 @@ def map_verdict(  # noqa: PLR0913 - most of them have to be named
     'do not treat'
     """
     _check(level, sure)
-    asked = np.ones(len(grid), bool) if plants is None else plants
+    asked = np.ones(len(grid), bool) if plants is None else _asked(plants, len(grid))
     if not asked.any():
         raise SettingError(
             worded("A verdict must be about a plant or more, but the area holds none.")
@@ -140,6 +141,24 @@ def map_verdict(  # noqa: PLR0913 - most of them have to be named
     shares = _drawn(grid, (chance, pairs), weights, key)
     shares = doubted_shares(shares, doubt, named=named)
     return _verdict(shares[:, 0], float(chance[asked].mean()), level, sure)
+
+
+def _asked(plants: object, n: int) -> NDArray[np.bool_]:
+    """Return which plants are asked about, ``(n,)``."""
+    asked = array_of(
+        np.bool_, "The mask of plants asked about", plants,
+        f"Of plants by their numbers give np.isin(np.arange({n}), numbers).",
+    )  # fmt: skip
+    if asked.shape != (n,):
+        raise SettingError(
+            worded(
+                "Whether it is asked about must be said of each of the {n} plants, but it is of "
+                "{size}.",
+                n=n,
+                size=asked.size,
+            )
+        )
+    return asked
 
 
 @dataclass(frozen=True, eq=False)

@@ -144,12 +144,12 @@ def start_infested(
 
 def _checked_risk(grid: PlantGrid, given: Floats) -> Floats:
     risk = np.atleast_1d(array_of(np.float64, "A risk map", given))
-    if len(risk) != len(grid):
+    if risk.shape != (len(grid),):
         raise ObservationError(
             worded(
                 "A risk map must have one entry a plant ({n}), but it has {n_2}.",
                 n=len(grid),
-                n_2=len(risk),
+                n_2=" x ".join(str(size) for size in risk.shape),
             )
         )
     known = risk[~np.isnan(risk)]

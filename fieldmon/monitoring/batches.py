@@ -145,6 +145,11 @@ def all_of(db: sqlite3.Connection) -> tuple[Batch, ...]:
     )
 
 
+def numbers(db: sqlite3.Connection) -> dict[tuple[str, str, str, str], int]:
+    """Return the number of each batch, by when, what, from where and by whom it was recorded."""
+    return {(one.at, one.kind, one.source, one.who): one.number for one in all_of(db)}
+
+
 def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchContents]:
     """Return what batches of inspections and treatments say, by their numbers."""
     asked = ", ".join("?" * len(numbers))

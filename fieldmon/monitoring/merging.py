@@ -59,11 +59,14 @@ class Merged:
         A sentence for each result that the copies tell differently, and for each setting.
     taken_back
         Inspections that counted before and do not now: the other copy undid or corrected them.
+    moved
+        Whether batches have other numbers now than earlier entries of the log say.
     """
 
     new: int
     contradictions: tuple[str, ...]
     taken_back: int = 0
+    moved: bool = False
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:

@@ -53,7 +53,7 @@ class SeasonEstimates(OpenSeason):
             return morning.chance
 
     def morning_in_sight(self, on: date) -> Floats:
-        """Return the same ``(n,)`` of what inspections can see: the day is planned by it."""
+        """Return the chances ``(n,)`` by which `on` is planned: of what inspections can see."""
         with self._asked(on) as (_, morning, _):
             return in_sight(morning).chance
 

@@ -67,7 +67,8 @@ class LogEntry:
         what = _Blank(self.what)
         if isinstance(number := what.get("expected"), int | float):
             what["expected"] = estimate(number)
-        return _SAID[self.kind].format_map(what)
+        anew = "; batches were numbered anew" if what.get("moved") else ""
+        return _SAID[self.kind].format_map(what) + anew
 
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""

@@ -292,7 +292,7 @@ class SeasonRecords(OpenSeason):
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
         with self._lock, self.store.writing() as db:
-            before = inspection_table.counting(db)
+            before, numbers = inspection_table.counting(db), batches.numbers(db)
             held = self._inspections(db)
             with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
@@ -304,12 +304,14 @@ class SeasonRecords(OpenSeason):
             self._refresh(db)
             now = inspection_table.counting(db)
             new, gone = len(now - before), len(before - now)
+            moved = not numbers.items() <= batches.numbers(db).items()
             states = season_log.states(db)
             if states != was:
                 season_log.append(
-                    db, "merged", states=states, new=new, entries=len(told), theirs=told
-                )
-        return Merged(new, (*contradict.sentences(self.label), *chosen), gone)
+                    db, "merged", states=states, new=new, entries=len(told), theirs=told,
+                    moved=moved,
+                )  # fmt: skip
+        return Merged(new, (*contradict.sentences(self.label), *chosen), gone, moved)
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""

@@ -279,6 +279,11 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
 
 def _batches(facts: _Facts) -> Block:
     batches = facts.season.batches()
+    if facts.on < facts.season.last_date():
+        # what is of later days only came later
+        contents = facts.season.contents([one.number for one in batches])
+        later = {number for number, of in contents.items() if of.first > str(facts.on)}
+        batches = tuple(one for one in batches if one.number not in later)
     if not batches:
         return Listing(words.BATCHES, (words.BATCHES_NONE,))
     rows, clock = [], local_clock(facts.season.plot.field)

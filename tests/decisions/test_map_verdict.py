@@ -67,6 +67,8 @@ def test_the_same_question_has_the_same_answer():
         ({"level": 0.0}, "between 0 and 1"),
         ({"level": 0.1, "sure": 0.5}, "between 0.5 and 1"),
         ({"level": 0.1, "plants": np.zeros(500, bool)}, "the area holds none"),
+        ({"level": 0.1, "plants": np.ones(10, bool)}, "each of the 500 plants, but it is of 10"),
+        ({"level": 0.1, "plants": [1, 2]}, "must hold True or False"),
     ],
 )
 def test_questions_without_an_answer_are_refused(more, said):

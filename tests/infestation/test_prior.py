@@ -163,7 +163,12 @@ def test_a_risk_map_raises_chances_where_it_speaks():
 
 
 @pytest.mark.parametrize(
-    ("risk", "says"), [(np.zeros(3), "one entry a plant"), (np.full(len(GRID), 87.0), "87")]
+    ("risk", "says"),
+    [
+        (np.zeros(3), "one entry a plant"),
+        (np.zeros((len(GRID), 1)), f"has {len(GRID)} x 1"),
+        (np.full(len(GRID), 87.0), "87"),
+    ],
 )
 def test_a_risk_map_that_does_not_fit_is_refused(risk, says):
     with pytest.raises(ObservationError, match=says):

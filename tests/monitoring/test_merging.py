@@ -206,6 +206,23 @@ def result(plant, what, day=1, **columns):
     return Inspections.of(np.array([plant]), np.array([what]), on, **columns)
 
 
+def test_batches_that_get_another_number_are_said_to(path, other):
+    theirs, ours = Season(other), Season(path)
+    theirs.record(result(9, FOUND), "theirs", "Ben")
+    ours.record(result(3, FOUND), "ours", "Ann")
+    number = {one.source: one.number for one in ours.batches()}["ours"]
+    assert ours.log()[-1].what["batch"] == number
+    done = ours.merge(theirs)
+    moved = {one.source: one.number for one in ours.batches()}["ours"] != number
+    assert moved
+    assert done.moved
+    assert ours.log()[-1].sentence().endswith("; batches were numbered anew")
+    assert not ours.merge(theirs).moved
+    again = theirs.merge(ours)
+    assert not again.moved
+    assert not theirs.log()[-1].sentence().endswith("anew")
+
+
 def test_what_is_new_and_what_was_taken_back_are_counted_apart(path, other):
     counted = len(Season(path).history.inspections)
     theirs = Season(other)

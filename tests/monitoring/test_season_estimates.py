@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring.history import BeliefSettings
 from tests.monitoring.seasons import (
@@ -53,3 +54,8 @@ def test_the_status_counts(season):
     assert np.isnan(status.days_since).sum() == season.plot.grid.n_rows - len(
         set(rows[done.plant].tolist())
     )
+
+
+def test_advice_is_asked_with_settings_or_a_sentence(season):
+    with pytest.raises(SettingError, match=r"must be AdviceSettings, but it is 0\.05"):
+        season.advice(BEGINS, 0.05)

@@ -204,3 +204,9 @@ def test_a_season_begins_today_on_the_plot_without_records_unless_told_otherwise
     risky = Season.create(tmp_path / "c.gpkg", plot, settings=season.settings, risk=risk)
     assert (risky.morning(today) > season.morning(today)).all()
     assert np.array_equal(Season(risky.path).morning(today), risky.morning(today))
+
+
+def test_settings_are_changed_by_settings_or_a_sentence(season):
+    for settings, seen in ((None, season.settings), (season.settings, {"hours": 4})):
+        with pytest.raises(SettingError, match="Settings must be MonitoringSettings"):
+            season.change(settings, seen)

@@ -65,3 +65,8 @@ def test_planning_twice_keeps_one_route(season):
 def test_a_date_of_no_season_is_a_sentence(season):
     with pytest.raises(SettingError, match="began on 2026-04-06"):
         season.plan(date(2026, 4, 1))
+
+
+def test_the_time_now_is_a_time_or_a_sentence(season):
+    with pytest.raises(SettingError, match="must be a time, but it is '11:00'"):
+        season.plan(BEGINS, "11:00")

@@ -119,6 +119,10 @@ def test_up_to_an_earlier_day_nothing_later_is_counted(worked):
     shown = {each.label: each.value for each in one(report, KeyFigures).figures}
     assert shown["Plants found"] == f"{worked.progress(until).found}"
     assert one(report, Listing, "Treatments").sentences == ("No treatment was noted.",)
+    said = worked.contents([batch.number for batch in worked.batches()]).values()
+    earlier = sum(of.first <= str(until) for of in said)
+    assert 0 < earlier < len(said)
+    assert len(table(report, "What was recorded").rows) == earlier
 
 
 def test_a_day_before_the_season_is_refused(worked):

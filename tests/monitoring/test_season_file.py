@@ -208,5 +208,5 @@ def test_a_season_begins_today_on_the_plot_without_records_unless_told_otherwise
 
 def test_settings_are_changed_by_settings_or_a_sentence(season):
     for settings, seen in ((None, season.settings), (season.settings, {"hours": 4})):
-        with pytest.raises(SettingError, match="Settings must be MonitoringSettings"):
+        with pytest.raises(SettingError, match="must be MonitoringSettings"):
             season.change(settings, seen)

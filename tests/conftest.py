@@ -3,7 +3,6 @@
 import gc
 import os
 import shutil
-import sys
 import tempfile
 from contextlib import suppress
 from importlib import import_module
@@ -15,11 +14,6 @@ from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 from fieldmon.compute.cores import cores
 from tests.xdist_order import BothEnds, in_order, workers
-
-# tests start some hundred processes: what these and the other worker import is made into bytecode
-# once, whatever the environment says
-sys.dont_write_bytecode = False
-os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # a season waits for the disk before a record counts, several times for each: tests keep their files
 # in memory where there is plenty, and let go of them as they pass (pyproject.toml)
@@ -108,6 +102,28 @@ def pytest_collection_finish():
     gc.enable()
 
 
+def within(call, **given):
+    """Call something in a frame with room for 8 MB of frames below it.
+
+    Python 3.11 asks the system for the memory of frames in pieces of 16 kB, and hands a piece back
+    as its first frame returns: where calls go to and fro at the edge of a piece, each costs some
+    10 us. The compiler's do by the million.
+    """
+    return call(**given)
+
+
+within.__code__ = within.__code__.replace(co_stacksize=1 << 20)
+RUNNING = []
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop(session):
+    if RUNNING:
+        return None  # whoever runs tests otherwise
+    RUNNING.append(session)
+    return within(session.config.hook.pytest_runtestloop, session=session)
+
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 # software drawing: Mesa's, which keeps compiled shaders, or else the browser's own, some seconds
 # slower for every map, and for maps alone: put together without it, a page takes half the processor
@@ -118,12 +134,18 @@ FLAGS = [
     *["--disable-smooth-scrolling"],
     *["--disable-background-networking", "--disable-component-update", "--no-first-run"],
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+    # pages of the app share a process and what it has made of their scripts: a tenth of all
+    "--process-per-site",
 ]
 
 
 @pytest.fixture(scope="session")
-def browser():
-    """Start a real browser, once: a process holds no two of them."""
+def browser(tmp_path_factory):
+    """Start a real browser, once: a process holds no two of them.
+
+    Its first window keeps on disk, for its tabs, what it makes of scripts: a fifth of what a page
+    of the app takes. Other windows keep nothing.
+    """
     if CHROMIUM is None:
         if os.environ.get("FIELDMON_REQUIRE_BROWSER"):
             pytest.fail("Chromium must be installed here, but it was not found")
@@ -131,6 +153,12 @@ def browser():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield chromium
-        chromium.close()
+        window = playwright.chromium.launch_persistent_context(
+            tmp_path_factory.mktemp("chromium"),
+            executable_path=CHROMIUM,
+            args=FLAGS,
+            # maps are drawn by the processor, as all that moves
+            reduced_motion="reduce",
+        )
+        yield window.browser
+        window.close()

@@ -184,15 +184,15 @@ def refuse_second():
 def functions_within(folder):
     """Return all functions whose code stands in a folder, by their code."""
     inside, found = str(folder), {}
-    for one in gc.get_objects():
-        if isinstance(one, FunctionType) and one.__code__.co_filename.startswith(inside):
+    for one in gc.get_objects():  # some stand for what is gone: `isinstance` raises an error of it
+        if type(one) is FunctionType and one.__code__.co_filename.startswith(inside):
             found.setdefault(one.__code__, []).append(one)
     return found
 
 
 def answers_kept(name):
     """Return all functions of a library's modules that keep their answers (``@cache``)."""
-    every = [one for one in gc.get_objects() if isinstance(one, _lru_cache_wrapper)]
+    every = [one for one in gc.get_objects() if type(one) is _lru_cache_wrapper]
     return [one for one in every if one.__module__.split(".")[0] == name]
 
 
@@ -278,7 +278,7 @@ def loops_reached(function):
 
 def loops_run():
     """Return the code of all loops that ran so far: Python tells nobody when one is called."""
-    every = [one for one in gc.get_objects() if isinstance(one, Dispatcher) and one.overloads]
+    every = [one for one in gc.get_objects() if issubclass(type(one), Dispatcher) and one.overloads]
     return {function.__code__ for one in every for function in loops_reached(one.py_func)}
 
 
@@ -529,7 +529,7 @@ class _Instead(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 def let_go(is_changed):
     """Let no loop that reaches a change run as it was compiled while tests were found."""
-    for one in [one for one in gc.get_objects() if isinstance(one, Dispatcher)]:
+    for one in [one for one in gc.get_objects() if issubclass(type(one), Dispatcher)]:
         if one.overloads and any(is_changed(each) for each in loops_reached(one.py_func)):
             one._make_finalizer()()
             one._reset_overloads()

@@ -161,25 +161,20 @@ def wait_for(url, server):
 @pytest.fixture(scope="session")
 def new_tab(browser):
     """Return what opens a tab of some size: one kind of visitor's share what was loaded."""
-    windows = {}
+    windows = {None: browser.contexts[0]}
 
     def of(size=(1200, 800), agent=None):
         if agent not in windows:
-            # maps are drawn by the processor, as all that moves
-            windows[agent] = browser.new_context(
-                user_agent=agent, accept_downloads=True, reduced_motion="reduce"
-            )
-            # another program may have the machine's processors
-            windows[agent].set_default_timeout(180_000)
+            windows[agent] = browser.new_context(user_agent=agent, reduced_motion="reduce")
+        # another program may have the machine's processors
+        windows[agent].set_default_timeout(180_000)
         page = windows[agent].new_page()
         page.set_viewport_size({"width": size[0], "height": size[1]})
         page.requests = []
         page.on("request", lambda sent: page.requests.append(sent.url))
         return page
 
-    yield of
-    for window in windows.values():
-        window.close()
+    return of
 
 
 @pytest.fixture

@@ -1,9 +1,12 @@
 """The tool that puts small faults in: a child ends as a child, whatever its tests do."""
 
+import gc
 import os
 import signal
 import subprocess
 import sys
+import weakref
+from types import CodeType
 
 import pytest
 
@@ -123,6 +126,16 @@ class Row:
     def seats(self, n):
         return [n + k for k in range(n)]
 """
+
+
+def test_what_stands_for_something_that_is_gone_is_passed_over(tmp_path):
+    gone = {1}
+    held = weakref.proxy(gone)
+    del gone
+    assert any(one is held for one in gc.get_objects())
+    assert mutants_warm.functions_within(tmp_path) == {}
+    assert all(isinstance(one, CodeType) for one in mutants_warm.loops_run())
+    assert mutants_warm.answers_kept("tests.nowhere") == []
 
 
 def test_a_fault_is_put_in_where_a_function_stands_and_taken_out_again(tmp_path, monkeypatch):

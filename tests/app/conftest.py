@@ -160,15 +160,16 @@ def wait_for(url, server):
 
 @pytest.fixture(scope="session")
 def new_tab(browser):
-    """Return what opens a tab of some size: one kind of visitor's share what was loaded."""
-    windows = {None: browser.contexts[0]}
+    """Return what opens a tab of some size and kind of browser: all share what was loaded."""
+    (window,) = browser.contexts
+    # another program may have the machine's processors
+    window.set_default_timeout(180_000)
 
     def of(size=(1200, 800), agent=None):
-        if agent not in windows:
-            windows[agent] = browser.new_context(user_agent=agent, reduced_motion="reduce")
-        # another program may have the machine's processors
-        windows[agent].set_default_timeout(180_000)
-        page = windows[agent].new_page()
+        page = window.new_page()
+        if agent is not None:
+            page.told = window.new_cdp_session(page)
+            page.told.send("Emulation.setUserAgentOverride", {"userAgent": agent})
         page.set_viewport_size({"width": size[0], "height": size[1]})
         page.requests = []
         page.on("request", lambda sent: page.requests.append(sent.url))

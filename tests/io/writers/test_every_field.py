@@ -97,7 +97,7 @@ def from_kml(data, _):
 
 
 def from_waypoints(data, _):
-    waypoints = yaml.safe_load(data)["waypoints"]
+    waypoints = yaml.load(data, yaml.CSafeLoader)["waypoints"]
     rows = [waypoints[f"waypoint{k}"] for k in range(len(waypoints))]
     told = {name: [row[name] for row in rows] for name in ("stop", "plant", "row", "number")}
     return told | {"arrive_s": [row["arrive_s"] for row in rows],
@@ -241,7 +241,7 @@ def test_the_sheet_and_waypoints_have_rows_where_there_are_rows(tmp_path, make):
     assert ("row" in heads) == plan.grid.in_rows
     assert {len(row) for row in rows} == {len(heads)}
     (points,) = write_handoff(plan, tmp_path / "day.waypoints.yaml")
-    for point in yaml.safe_load(points.read_text("utf-8"))["waypoints"].values():
+    for point in yaml.load(points.read_text("utf-8"), yaml.CSafeLoader)["waypoints"].values():
         assert ("row" in point) == plan.grid.in_rows
 
 

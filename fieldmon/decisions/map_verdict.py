@@ -14,7 +14,7 @@ from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
-from fieldmon.infestation.plot_estimate import doubted_shares, draw_fields
+from fieldmon.infestation.plot_estimate import doubted, draw_fields
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,7 +78,7 @@ class MapVerdict:
         )  # fmt: skip
 
 
-def map_verdict(  # noqa: PLR0913 - most of them have to be named
+def map_verdict(  # noqa: PLR0913 - two of them have to be named
     grid: PlantGrid,
     chance: Floats,
     level: float,
@@ -88,7 +88,6 @@ def map_verdict(  # noqa: PLR0913 - most of them have to be named
     sure: float = 0.9,
     key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
     doubt: float = 0.0,
-    named: bool = False,
 ) -> MapVerdict:
     """Return whether a plot, or a part of it, has to be treated.
 
@@ -113,9 +112,6 @@ def map_verdict(  # noqa: PLR0913 - most of them have to be named
         Which fields are drawn: the same key, the same answer.
     doubt
         How far the expected share may be off beyond that, as a share of it (`Belief.doubt`).
-    named
-        Whether somebody named the pest (`Belief.pest`), as `estimate_plot` has it: so both give one
-        interval.
 
     Raises
     ------
@@ -138,8 +134,7 @@ def map_verdict(  # noqa: PLR0913 - most of them have to be named
         )
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
     weights = csc_array(asked[:, None] / np.count_nonzero(asked))
-    shares = _drawn(grid, (chance, pairs), weights, key)
-    shares = doubted_shares(shares, doubt, named=named)
+    shares = _drawn(grid, (chance, pairs), weights, (key, doubt))
     return _verdict(shares[:, 0], float(chance[asked].mean()), level, sure)
 
 
@@ -186,8 +181,6 @@ def zone_verdicts(
     zones: NDArray[np.int64],
     asked: tuple[float, float, float],
     doubt: float = 0.0,
-    *,
-    named: bool = False,
 ) -> ZoneVerdicts:
     """Return the verdict of each zone, and the chance that treating them all is enough.
 
@@ -202,7 +195,7 @@ def zone_verdicts(
     asked
         Share of the plants from which on treating pays, of a zone and of the plot; how sure a
         verdict must be; and the chance that treating cleans an infested plant.
-    doubt, named
+    doubt
         As of `map_verdict`.
 
     Raises
@@ -228,8 +221,7 @@ def zone_verdicts(
         ),
         (n, count + 1),
     )
-    shares = _drawn(grid, (chance, pairs), weights, np.uint64(0))
-    shares = doubted_shares(shares, doubt, named=named)
+    shares = _drawn(grid, (chance, pairs), weights, (np.uint64(0), doubt))
     expected = chance @ weights
     made = [_verdict(shares[:, k], float(expected[k]), level, sure) for k in range(count)]
     return ZoneVerdicts(tuple(made), float(np.mean(shares[:, count] < level)))
@@ -266,12 +258,14 @@ def _drawn(
     grid: PlantGrid,
     believed: tuple[Floats, Floats],
     weights: csc_array,
-    key: np.uint64,
+    which: tuple[np.uint64, float],
 ) -> Floats:
     """Return sums over the infested plants of each drawn field, ``(draws, k)``.
 
-    `weights` ``(n, k)`` is what each plant counts in each sum; `key` names the fields.
+    `weights` ``(n, k)`` is what each plant counts in each sum; `which` names the fields, and says
+    how far the expected numbers may be off.
     """
+    key, doubt = which
     at_once = int(np.clip(_CELLS_AT_ONCE // len(grid), 1, _DRAWS))
     sums = np.empty((_DRAWS, weights.shape[1]))
     for first in range(0, _DRAWS, at_once):
@@ -281,4 +275,6 @@ def _drawn(
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     right = believed[0] @ weights
     sums *= right / np.maximum(sums.mean(axis=0), 1e-12)
+    if doubt > 0.0:
+        sums *= doubted(doubt)[:, None]
     return read_only(np.minimum(sums, 1.0))

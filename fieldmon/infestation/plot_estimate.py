@@ -104,7 +104,12 @@ def estimate_plot(
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     counts = (drawn * (expected / max(float(drawn.mean()), 1e-9))).clip(0.0, len(chance))
-    counts = doubted_shares(counts / len(chance), doubt, named=named) * len(chance)
+    if doubt > 0.0:
+        # odds, as finds change a level by: never more than there are plants
+        factors = doubted_level(doubt, named=named)
+        # but where all are infested, odds have no bound, and the least factor may be 0
+        share = np.minimum(counts / len(chance), 1.0 - 1e-12)
+        counts = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), len(chance))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
@@ -114,20 +119,6 @@ def doubted(doubt: float) -> Floats:
     places = ((np.arange(_DRAWS) + 1) * _GOLDEN) % 1.0
     factors: Floats = gammaincinv(doubt**-2.0, places) * doubt**2.0
     return factors
-
-
-def doubted_shares(shares: Floats, doubt: float, *, named: bool) -> Floats:
-    """Return the infested shares ``(draws, ...)`` of drawn fields as far off as they may be.
-
-    Their odds are multiplied, as finds change a level: never more than there are plants.
-    """
-    if doubt <= 0.0:
-        return shares
-    factors = doubted_level(doubt, named=named).reshape(-1, *[1] * (shares.ndim - 1))
-    # where all are infested, odds have no bound, and the least factor may be 0
-    share = np.minimum(shares, 1.0 - 1e-12)
-    off: Floats = np.minimum(shares * factors / (1.0 + share * (factors - 1.0)), 1.0)
-    return off
 
 
 def doubted_level(doubt: float, *, named: bool) -> Floats:

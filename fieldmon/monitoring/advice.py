@@ -285,14 +285,12 @@ def advice(
         The day, for the looks to a verdict; None: they are not asked for.
     """
     plot = map_verdict(
-        grid, evening.chance, asked.level, evening.pair_chance, sure=asked.sure,
-        doubt=evening.doubt, named=evening.pest is not None,
-    )  # fmt: skip
+        grid, evening.chance, asked.level, evening.pair_chance, sure=asked.sure, doubt=evening.doubt
+    )
     zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs)
     said = zone_verdicts(
         grid, (evening.chance, evening.pair_chance), zones.zone,
         (asked.level, asked.sure, asked.costs.works), evening.doubt,
-        named=evening.pest is not None,
     )  # fmt: skip
     more = None
     if scene is not None and plot.verdict == LOOK_ON:
@@ -311,7 +309,7 @@ def inspections_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings)
         after = evening.learn(order[:looks], np.full(looks, found), learning)
         return map_verdict(
             scene.grid, after.chance, asked.level, after.pair_chance, sure=asked.sure,
-            doubt=after.doubt, named=after.pest is not None,
+            doubt=after.doubt,
         ).verdict  # fmt: skip
 
     return MoreInspections(

@@ -89,7 +89,7 @@ class SeasonEstimates(OpenSeason):
             evening = contents.history.evening(morning, day)
         return map_verdict(
             contents.history.grid, evening.chance, level, evening.pair_chance,
-            plants=plants, sure=sure, doubt=evening.doubt, named=evening.pest is not None,
+            plants=plants, sure=sure, doubt=evening.doubt,
         )  # fmt: skip
 
     def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:

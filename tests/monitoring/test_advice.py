@@ -15,7 +15,6 @@ from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.advice import Advice, AdviceSettings, _first
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.samplers.decide import Decide
@@ -147,15 +146,3 @@ def test_sums_of_a_hundred_and_more_are_said_without_hundredths(season, saving, 
     zones = SimpleNamespace(whole_cost=saving + 5000.0, cost=5000.0)
     advice = Advice(season.plot.grid, AdviceSettings(), None, zones, None)
     assert advice.saved == said
-
-
-@pytest.mark.parametrize("pest", [None, "spider-mite"])
-def test_the_verdict_has_the_interval_of_the_status(tmp_path, pest):
-    chosen = {} if pest is None else {"pest": shipped_pest(pest)}
-    season = a_season(tmp_path / "s.gpkg", **chosen)
-    n, still = len(season.plot.grid), season.status(BEGINS).estimate
-    for said in (season.advice(BEGINS).plot, season.verdict(BEGINS, 0.05)):
-        # whole plants, rounded outwards
-        assert 0 <= said.low * n - still.low <= 1
-        assert 0 <= still.high - said.high * n <= 1
-        assert said.share * n == pytest.approx(still.expected)

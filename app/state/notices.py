@@ -32,7 +32,9 @@ def show() -> None:
 def reporting(action: Callable[..., str]) -> Callable[..., None]:
     """Return a callback that keeps the sentence its action returns, or the problem it meets.
 
-    An empty sentence is nothing to say.
+    An empty sentence is nothing to say. An action on a season waits here for whoever writes it, for
+    the page to say so: the action itself would wait as long without a word. Nobody is kept out
+    meanwhile, and readers are not waited for.
     """
 
     def callback(*arguments: object) -> None:

@@ -41,7 +41,7 @@ def test_plan_and_route_of_a_day_on_scenario_c(benchmark, name):
         seconds_left=Robot().day_s,
     )
     route = benchmark(lambda: route_of(scene, plan_work(scene, sampler(name))))
-    assert len(route) > 300
+    assert len(route) > 200
 
 
 def test_night_on_scenario_c(benchmark):

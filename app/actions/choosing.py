@@ -69,12 +69,13 @@ def choose(
     Without a `day` the hours stand with who works. On a phone they fold with where and when.
     Returns the choices, or the problem that keeps from them.
     """
+    options = _options()
     if not browser.is_phone():
-        return _chosen(head, Work(foot, day), wait)
+        return _chosen(head, Work(foot, day), wait, options)
     with head.container(key="where_and_when", horizontal=True, vertical_alignment="center"):
         name = _of_files().get(plot_source.chosen()) or texts.isolated(plot_source.chosen())
         boxes, line = st.popover(name), st.empty()
-    chosen = _chosen(boxes, Work(foot, None if day is None else boxes), wait)
+    chosen = _chosen(boxes, Work(foot, None if day is None else boxes), wait, options)
     if chosen.choices is not None:
         line.markdown(_where_and_when(chosen.choices))
     return chosen
@@ -87,9 +88,9 @@ def _where_and_when(choices: Choices) -> str:
     return language.listed(said if choices.season is not None else [f"**{choices.name}**", *said])
 
 
-def _chosen(head: DeltaGenerator, work: Work, wait: Wait) -> Chosen:
+def _chosen(head: DeltaGenerator, work: Work, wait: Wait, options: list[str]) -> Chosen:
     with head:
-        source = _source()
+        source = _source(options)
         try:
             if source in (plot_source.SAMPLE, plot_source.FILES):
                 return Chosen(_from_files(source, wait, work))
@@ -99,7 +100,8 @@ def _chosen(head: DeltaGenerator, work: Work, wait: Wait) -> Chosen:
             return Chosen(problem=error)
 
 
-def _source() -> str:
+def _options() -> list[str]:
+    """Return where a plot may come from; say so if the season that is asked for is gone."""
     options = [plot_source.SAMPLE, plot_source.FILES, *seasons_folder.names()]
     plot_source.begin_from_address()
     named = widget_memory.value(plot_source.KEY)
@@ -107,6 +109,10 @@ def _source() -> str:
         if named:
             notices.keep("error", texts.SEASON_GONE.format(name=texts.isolated(named)))
         st.session_state[plot_source.KEY] = plot_source.SAMPLE
+    return options
+
+
+def _source(options: list[str]) -> str:
     chosen = widget_memory.show(
         st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, filter_mode=None,
         label_visibility="collapsed", format_func=_source_name,

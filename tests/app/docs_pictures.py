@@ -1,8 +1,8 @@
-"""The pictures of README and docs/app: ``python -m tests.app.docs_pictures [names]``.
+"""The pictures of README, docs/app and docs/scouting: ``python -m tests.app.docs_pictures NAMES``.
 
 A season of a week is begun on a plot of the sample estate, with made-up insects that are found and
 treated; today is planned. On two more plots a season has just begun. Pictures go to `docs/images`.
-Those of a scout's page, of maps below the plot, of drives and of before and after are made by hand.
+Those of maps below the plot, of drives and of before and after are made by hand.
 """
 
 import math
@@ -20,9 +20,15 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import fieldmon as fm
+from app.state import seasons_folder
+from app.state.scout_page import invitation
 from app.words import texts
+from fieldmon.monitoring import scouts
+from fieldmon.monitoring.photos_asked import ask_photo
 from fieldmon.plot.local_clock import local_clock
 from tests.app import pictures
+from tests.app.scouting import Line, PhoneBrowser
+from tests.app.test_scouting import plant_of, told_now
 from tests.paths import ROOT
 
 IMAGES = ROOT / "docs" / "images"
@@ -47,6 +53,14 @@ SHOTS = {
     "answers": ("plot", "laptop", "light", "en", 1080),
     "answers_of_records": ("plot", "laptop", "light", "en", 1080),
     "send": ("today", "laptop", "light", "en", 1080),
+}
+#: of the scout's page, by name: language, scheme, taps before it, and which tap is a find; None:
+#: none, and there is a network
+SCOUTED = {
+    "scouting": ("en", "light", 4, 4),
+    "scouting_asked": ("en", "light", 2, None),
+    "scouting_dark": ("en", "dark", 1, 2),
+    "scouting_hebrew": ("he", "light", 2, 0),
 }
 
 
@@ -162,21 +176,65 @@ def taken(page, url, name, part, language):
         return to.read_bytes()
 
 
+def scouted(browser, names):
+    """Take pictures of the scout's page, without a network but where a photo is asked for."""
+    with tempfile.TemporaryDirectory() as folder:
+        begun(Path(folder))
+        os.environ[seasons_folder.FOLDER] = folder
+        season, line = fm.Season(Path(folder) / f"{NAME}.gpkg"), Line()
+        today, lonlat = local_clock(season.plot.field).today(), season.plot.grid.lonlat()
+        ask_photo(season, int(season.plan(today).route.plant[2]), "webs under the leaf?", "Eli")
+        for name in names:
+            language, scheme, taps, found = SCOUTED[name]
+            line.come()
+            phone = PhoneBrowser(browser, Path(folder) / name, color_scheme=scheme,
+                                 device_scale_factor=2)  # fmt: skip
+            key = scouts.let_in(season, f"Ann {name}")
+            phone.page.goto(invitation(line.address, NAME, key, str(today), language))
+            phone.page.locator("#clean").wait_for(timeout=120_000)
+            if found is not None:
+                phone.page.evaluate("navigator.serviceWorker.ready.then(() => null)")
+                phone.page.wait_for_function("() => navigator.serviceWorker.controller !== null")
+                line.go()
+            for k in range(taps + 1):
+                lon, lat = lonlat[plant_of(phone.page)].tolist()
+                at = {"longitude": lon + 1e-5, "latitude": lat + 1e-5, "accuracy": 4}
+                phone.window.set_geolocation(at)
+                if k < taps:
+                    told_now(phone.page, "found" if k + 1 == found else "clean", 3)
+            if found == taps + 1:
+                phone.page.locator("#found").click()
+                phone.page.locator("#count").fill("4")
+            phone.page.wait_for_timeout(2500)
+            kept(phone.page.screenshot(), name, 468)
+            phone.close()
+            line.go()
+
+
+def kept(shot, name, wide):
+    """Keep a picture, so wide."""
+    image = Image.open(BytesIO(shot)).convert("RGB")
+    high = round(image.height * wide / image.width)
+    image = image.resize((wide, high), Image.Resampling.LANCZOS)
+    # in all their colours: a palette of 256 shows chances in others than the map
+    image.save(IMAGES / f"{name}.webp", quality=92, method=6)
+
+
 def main():
     """Take the pictures."""
-    wanted = sys.argv[1:] or list(SHOTS)
-    with pictures.served(begun) as url, sync_playwright() as browsers:
+    wanted = sys.argv[1:] or [*SHOTS, *SCOUTED]
+    with sync_playwright() as browsers:
         chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
         browser = browsers.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        for name in wanted:
-            part, size, scheme, language, wide = SHOTS[name]
-            for page, _, _ in pictures.windows(browser, [size], [scheme], [language]):
-                shot = taken(page, url, name, part, language)
-            image = Image.open(BytesIO(shot)).convert("RGB")
-            high = round(image.height * wide / image.width)
-            image = image.resize((wide, high), Image.Resampling.LANCZOS)
-            # in all their colours: a palette of 256 shows chances in others than the map
-            image.save(IMAGES / f"{name}.webp", quality=92, method=6)
+        if of_app := [name for name in wanted if name in SHOTS]:
+            with pictures.served(begun) as url:
+                for name in of_app:
+                    part, size, scheme, language, wide = SHOTS[name]
+                    for page, _, _ in pictures.windows(browser, [size], [scheme], [language]):
+                        shot = taken(page, url, name, part, language)
+                    kept(shot, name, wide)
+        if of_phone := [name for name in wanted if name in SCOUTED]:
+            scouted(browser, of_phone)
         browser.close()
 
 

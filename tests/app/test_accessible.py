@@ -159,6 +159,9 @@ def test_a_wait_of_over_a_second_is_said_in_words(today):
 
 def test_a_day_is_done_by_keys_alone(today):
     page = today
+    # who comes by keys sees where they are among the rooms
+    tab_to(page, page.get_by_test_id("stTopNavLink").nth(2))
+    assert page.evaluate("getComputedStyle(document.activeElement).outline").endswith("solid 3px")
     # hours
     said = page.locator("[data-testid=stMetricValue]").nth(1)
     before = said.inner_text()

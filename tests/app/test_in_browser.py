@@ -861,6 +861,17 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     assert (np.abs(above() - before).max(axis=2) > 30).mean() < 0.01, "the report hides the map"
 
 
+@pytest.mark.parametrize("page", [((960, 600), None)], indirect=True)
+def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(page, address):
+    shown(page, address)
+    for width, height in ((960, 600), (720, 450)):  # 1440 x 900 at 150 and 200 %
+        page.set_viewport_size({"width": width, "height": height})
+        tools = page.locator(f"{MAP} .tools .tool")
+        assert tools.count() >= 7
+        for k in range(tools.count()):
+            tools.nth(k).click(trial=True, timeout=5_000)  # nothing lies over it
+
+
 def test_no_plot_lies_behind_the_legend_of_the_map_of_all(page, address, served_seasons):
     # the farthest away of all seasons that other tests keep: the map of all has it in its corner
     files = [served_seasons / f"{name}.gpkg" for name in ("North-west", "South-east")]

@@ -68,3 +68,20 @@ def test_printed_by_a_browser_a_season_begins_each_part_on_a_page(browser, of_se
         k for sheet in of_season.sheets for k, text in enumerate(pages) if sheet.heading in text
     }
     assert len(began) >= 4
+
+
+def test_from_the_right_the_words_of_maps_and_charts_stand_where_they_stand_from_the_left(
+    browser, of_season, tmp_path
+):
+    path = tmp_path / "report.html"
+    path.write_text(html_text(of_season), "utf-8")
+    page = browser.new_page()
+    page.goto(path.as_uri())
+    place = """(side) => { document.documentElement.dir = side;
+      return [...document.querySelectorAll("svg text")].map((word) => {
+        const at = word.getBoundingClientRect(), map = word.closest("svg").getBoundingClientRect();
+        return at.left - map.left; }); }"""
+    left, right = (page.evaluate(place, side) for side in ("ltr", "rtl"))
+    page.close()
+    assert len(left) > 20
+    assert right == pytest.approx(left, abs=1.0)

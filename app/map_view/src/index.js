@@ -143,7 +143,7 @@ class MapPage {
   }
 
   padding() {
-    const { left, right, bottom } = covered(), tools = [30, 64];
+    const { left, right, bottom } = covered(), tools = [30, this.tools.offsetWidth + 24];
     if (this.data.direction === "rtl") tools.reverse();
     // below the plot, the gate's name has room above the day's bar
     return { left: left + tools[0], right: right + tools[1], top: this.top(), bottom: bottom + 76 };

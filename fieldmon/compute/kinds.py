@@ -145,7 +145,7 @@ def checked(public: F) -> F:
     >>> plants_in("4")
     Traceback (most recent call last):
     ...
-    fieldmon.errors.SettingError: The hours of plants_in must be a number, but it is '4'.
+    fieldmon.errors.SettingError: 'hours' of plants_in must be a number, but it is '4'.
     """
     if not isinstance(public, type):
         wrapped: F = _checked(public)
@@ -173,11 +173,11 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
         for (name, annotation), given in zip(in_order, args, strict=False):
             if annotation and not kind_of(annotation).fits(given):
-                must_be_of(f"The {name} of {_called(function, args)}", annotation, given)
+                must_be_of(f"'{name}' of {_called(function, args)}", annotation, given)
         for name, given in keywords.items():
             annotation = named.get(name, "")
             if annotation and not kind_of(annotation).fits(given):
-                must_be_of(f"The {name} of {_called(function, args)}", annotation, given)
+                must_be_of(f"'{name}' of {_called(function, args)}", annotation, given)
         return function(*args, **keywords)
 
     return wrapper

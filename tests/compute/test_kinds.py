@@ -121,10 +121,10 @@ def test_methods_refuse_what_they_are_not_annotated_with_and_stay_what_they_were
     for call, said in (
         (
             lambda: season.plan("soon"),
-            "The on of _LongSeason.plan must be a date, but it is 'soon'",
+            "'on' of _LongSeason.plan must be a date, but it is 'soon'",
         ),
-        (lambda: season.plan(TODAY, keep=1), "The keep of _LongSeason.plan must be True or False"),
-        (lambda: _Season.create(path=3), "The path of _Season.create must be text, but it is 3"),
+        (lambda: season.plan(TODAY, keep=1), "'keep' of _LongSeason.plan must be True or False"),
+        (lambda: _Season.create(path=3), "'path' of _Season.create must be text, but it is 3"),
     ):
         with pytest.raises(SettingError) as refused:
             call()

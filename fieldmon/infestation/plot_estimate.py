@@ -46,8 +46,7 @@ class PlotEstimate:
     expected
         Expected number of infested plants.
     low, high
-        Interval that holds the number with the chance asked for (90 % unless told), to the nearest
-        whole numbers.
+        Interval that holds the number with the chance asked for (90 % unless told).
     chance_clean
         Chance that no plant is infested.
     """
@@ -112,8 +111,10 @@ def estimate_plot(
         share = np.minimum(counts / len(chance), 1.0 - 1e-12)
         counts = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), len(chance))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
-    # to the nearest: outwards, an interval of a few plants would hold far more than is asked
-    return PlotEstimate(expected, round(float(low)), round(float(high)), clean)
+    if doubt > 0.0:
+        # to the nearest: outwards, an interval of a few plants would hold far more than is asked
+        return PlotEstimate(expected, round(float(low)), round(float(high)), clean)
+    return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
 
 
 def doubted(doubt: float) -> Floats:

@@ -111,7 +111,8 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
     key
         Which fields are drawn: the same key, the same answer.
     doubt
-        How far the expected share may be off beyond that, as a share of it (`Belief.doubt`).
+        How far the expected share may be off beyond that, as a share of it
+        (`Belief.doubt_of_rates`).
 
     Raises
     ------

@@ -69,7 +69,12 @@ class Belief(Protocol):
 
     @property
     def doubt(self) -> float:
-        """How far the expected number infested may be off as rates are not known, as a share."""
+        """How far the expected number infested may be off, as a share."""
+        ...
+
+    @property
+    def doubt_of_rates(self) -> float:
+        """The same as far as rates are not known alone: a verdict hangs on no more than that."""
         ...
 
     @property

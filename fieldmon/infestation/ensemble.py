@@ -44,6 +44,7 @@ class Ensemble:
     steps: int = 0
     traces: None = None
     doubt: float = 0.0
+    doubt_of_rates: float = 0.0
     pest: None = None
 
     @classmethod

@@ -31,6 +31,7 @@ class IndependentPlants:
     pair_chance: None = None
     traces: None = None
     doubt: float = 0.0
+    doubt_of_rates: float = 0.0
     pest: None = None
 
     def learn(

@@ -53,6 +53,7 @@ class PairApproximation:
     pair_chance: NDArray[np.float64]
     traces: None = None
     doubt: float = 0.0
+    doubt_of_rates: float = 0.0
     pest: None = None
 
     @classmethod

@@ -285,12 +285,13 @@ def advice(
         The day, for the looks to a verdict; None: they are not asked for.
     """
     plot = map_verdict(
-        grid, evening.chance, asked.level, evening.pair_chance, sure=asked.sure, doubt=evening.doubt
-    )
+        grid, evening.chance, asked.level, evening.pair_chance,
+        sure=asked.sure, doubt=evening.doubt_of_rates,
+    )  # fmt: skip
     zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs)
     said = zone_verdicts(
         grid, (evening.chance, evening.pair_chance), zones.zone,
-        (asked.level, asked.sure, asked.costs.works), evening.doubt,
+        (asked.level, asked.sure, asked.costs.works), evening.doubt_of_rates,
     )  # fmt: skip
     more = None
     if scene is not None and plot.verdict == LOOK_ON:
@@ -309,7 +310,7 @@ def inspections_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings)
         after = evening.learn(order[:looks], np.full(looks, found), learning)
         return map_verdict(
             scene.grid, after.chance, asked.level, after.pair_chance, sure=asked.sure,
-            doubt=after.doubt,
+            doubt=after.doubt_of_rates,
         ).verdict  # fmt: skip
 
     return MoreInspections(

@@ -89,7 +89,7 @@ class SeasonEstimates(OpenSeason):
             evening = contents.history.evening(morning, day)
         return map_verdict(
             contents.history.grid, evening.chance, level, evening.pair_chance,
-            plants=plants, sure=sure, doubt=evening.doubt,
+            plants=plants, sure=sure, doubt=evening.doubt_of_rates,
         )  # fmt: skip
 
     def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:

@@ -10,7 +10,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
-from fieldmon.infestation.plot_estimate import draw_fields, estimate_plot
+from fieldmon.infestation.plot_estimate import doubted_level, draw_fields, estimate_plot
 from fieldmon.plot.layout import rectangle
 from tests.infestation.enumerated import Enumerated
 
@@ -107,11 +107,28 @@ def test_of_a_pest_that_is_named_the_doubt_is_not_itself_in_doubt():
     grid = rectangle(40, 40)
     chance = np.full(1600, 0.05)
     wide, named = (estimate_plot(grid, chance, doubt=0.4, named=each) for each in (False, True))
-    assert wide.low < named.low < named.expected < named.high < wide.high
+    assert named.low < named.expected < named.high
+    assert named.high / named.low < wide.high / wide.low
     halves = [estimate_plot(grid, chance, sure=0.5, doubt=0.4, named=n) for n in (False, True)]
     assert halves[0].high - halves[0].low == pytest.approx(halves[1].high - halves[1].low, rel=0.25)
     ends = [level_range(chance, 0.4, named=each) for each in (False, True)]
-    assert ends[0].low < ends[1].low < 1.0 < ends[1].high < ends[0].high
+    assert ends[1].low < 1.0 < ends[1].high
+    assert ends[1].high / ends[1].low < ends[0].high / ends[0].low
+
+
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize("sure", [0.5, 0.9])
+def test_intervals_of_a_few_plants_hold_as_many_whole_numbers_as_they_say(named, sure):
+    draws, held = np.random.default_rng(3), []
+    for mean in np.linspace(3.0, 15.0, 25):
+        chance = np.full(400, mean / 400)
+        alone = np.repeat(chance, np.diff(GRID.adjacent.start)) * chance[GRID.adjacent.plant]
+        made = estimate_plot(GRID, chance, alone, sure, doubt=0.5, named=named)
+        level = draws.permutation(np.tile(doubted_level(0.5, named=named), 10))
+        number = np.rint(draws.binomial(400, mean / 400, level.size) * level)
+        held.append(np.mean((made.low <= number) & (number <= made.high)))
+    # a whole number at either end counts with all of its chance
+    assert np.mean(held) == pytest.approx(sure, abs=0.07)
 
 
 @pytest.mark.parametrize("named", [True, False])

@@ -110,7 +110,7 @@ def test_one_look_less_would_not_decide(season):
             after = evening.learn(order[:k], np.full(k, found), learning)
             said = map_verdict(
                 scene.grid, after.chance, level, after.pair_chance, sure=asked.sure,
-                doubt=after.doubt,
+                doubt=after.doubt_of_rates,
             )  # fmt: skip
             assert (said.verdict == verdict) == (k == looks)
 

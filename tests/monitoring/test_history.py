@@ -79,7 +79,8 @@ def test_the_next_morning_comes_of_the_evening_by_the_spread_that_is_believed():
 
 
 def test_what_is_inspected_narrows_how_far_all_chances_may_be_off():
-    first = TracedPairs.of(PLOT.grid, MORNING.chance)
+    # a tenth is told, and a tenth is found: more than was told would leave more in doubt
+    first = TracedPairs.of(PLOT.grid, np.full(N, 0.1))
     looked = np.arange(0, N, 3)
     finds = np.where(looked % 30 == 0, FOUND, CLEAN)
     done = Inspections.of(looked, finds, np.datetime64(BEGINS))

@@ -69,7 +69,7 @@ class Calibration:
         infested of each morning, of what that leaves (1: nothing is left to know).
     covered, half_covered
         Share of mornings with infested plants on which the interval of 90 % held their number, and
-        that of 50 %; NaN where there was none.
+        that of 50 %; NaN where there was none. First mornings do not count: their number was told.
     clean_said, clean_was, clean_count
         Reliability of the chance that the plot is clean, between `CLEAN_EDGES`.
     seconds_a_day
@@ -98,6 +98,7 @@ class _Watched:
         self._belief, self._mornings, self._seconds = belief, mornings, seconds
         self.chance, self.pair_chance = belief.chance, belief.pair_chance
         self.traces, self.doubt, self.pest = belief.traces, belief.doubt, belief.pest
+        self.doubt_of_rates = belief.doubt_of_rates
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
@@ -130,6 +131,8 @@ class _Mornings(NamedTuple):
         A map a morning, ``(n,)`` each: chance of infestation, and who was infested.
     ahead, half_ahead
         What was believed of the whole plot, with intervals of 90 % and of 50 %.
+    told
+        Whether it was a season's first morning.
     seconds
         Spent by the belief.
     """
@@ -138,6 +141,7 @@ class _Mornings(NamedTuple):
     truths: list[NDArray[np.bool_]]
     ahead: list[PlotEstimate]
     half_ahead: list[PlotEstimate]
+    told: list[bool]
     seconds: list[float]
 
 
@@ -186,6 +190,7 @@ def _mornings(
         [day.infested for day in season],
         [_estimate(belief, aisles.grid, 0.9) for belief in believed],
         [_estimate(belief, aisles.grid, 0.5) for belief in believed],
+        [day.number == 0 for day in season],
         seconds,
     )
 
@@ -202,7 +207,7 @@ def _estimate(belief: Belief, grid: PlantGrid, sure: float) -> PlotEstimate:
 
 
 def _compared(mornings: _Mornings) -> Calibration:
-    chances, truths, ahead, half_ahead, seconds = mornings
+    chances, truths, ahead, half_ahead, told, seconds = mornings
     counts = np.array([np.count_nonzero(truth) for truth in truths])
     p = np.clip(np.concatenate(chances), _LEAST, 1.0 - _LEAST)
     y = np.concatenate(truths)
@@ -217,8 +222,8 @@ def _compared(mornings: _Mornings) -> Calibration:
         _log_score(p, y),
         _log_score(np.clip(classes, _LEAST, 1.0 - _LEAST), y),
         1.0 - _log_score(p, y) / flat,
-        _held(ahead, counts),
-        _held(half_ahead, counts),
+        _held(ahead, counts * ~np.array(told)),
+        _held(half_ahead, counts * ~np.array(told)),
         *_reliability(clean, counts == 0, CLEAN_EDGES),
         sum(seconds) / len(counts),
     )

@@ -276,8 +276,9 @@ def _map_verdicts(plot: _Plot, rng: np.random.Generator) -> tuple[Verdict, int]:
         now = slice(first, first + _LOOKS_A_CHECK)
         belief = belief.learn(plants[now], found[now], learning)
         said = map_verdict(
-            grid, belief.chance, plot.level, belief.pair_chance, sure=1 - WRONG, doubt=belief.doubt
-        )
+            grid, belief.chance, plot.level, belief.pair_chance,
+            sure=1 - WRONG, doubt=belief.doubt_of_rates,
+        )  # fmt: skip
         if said.verdict != "look on":
             return said.verdict, min(first + _LOOKS_A_CHECK, len(plants))
     return "look on", len(plants)

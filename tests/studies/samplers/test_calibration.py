@@ -40,7 +40,7 @@ def test_a_belief_that_never_learns_scores_as_the_share_it_says():
     class Stubborn:
         def __init__(self, chance):
             self.chance, self.pair_chance, self.traces = chance, None, None
-            self.doubt, self.pest = 0.0, None
+            self.doubt, self.doubt_of_rates, self.pest = 0.0, 0.0, None
 
         def learn(self, *_):
             return self
@@ -55,6 +55,10 @@ def test_a_belief_that_never_learns_scores_as_the_share_it_says():
     share = np.average(blind.was, weights=blind.count)
     assert blind.brier == pytest.approx(share * (1 - said) ** 2 + (1 - share) * said**2)
     assert blind.seconds_a_day < 0.01
+    # of the first morning the number was told, and an interval that holds it tells nothing
+    told = calibration([scenario], Naive(), lambda _, chance: Stubborn(chance), seeds=1, n_days=1)
+    assert np.isnan(told.covered)
+    assert np.isnan(told.half_covered)
 
 
 def test_the_report_shows_every_belief(made):

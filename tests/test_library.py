@@ -285,7 +285,7 @@ MISTAKES = {
     "a label of none": (lambda _: fm.ProductLabel(None), "product must be text"),
     "a wait as text": (lambda _: fm.Application(waiting_days="7"), "waiting_days must be a whole"),
     "a chance as text": (lambda _: fm.Viewpoints(longer="x"), "longer must be a number"),
-    "a start that is none": (lambda plot: fm.simulate(plot, None), "start of simulate must be"),
+    "a start that is none": (lambda plot: fm.simulate(plot, None), "'start' of simulate must be"),
 }  # fmt: skip
 
 

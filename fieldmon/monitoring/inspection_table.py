@@ -193,9 +193,3 @@ def not_what_they_say(db: sqlite3.Connection) -> list[int]:
         if mark in {digest(own, one, length=_LENGTH) for one in ids}:
             del wrong[fid]
     return sorted(wrong)
-
-
-def counting(db: sqlite3.Connection) -> set[str]:
-    """Return the digests of the inspections that count."""
-    counts = "SELECT digest FROM inspections WHERE undone = 0 AND digest IS NOT NULL"
-    return {mark for (mark,) in db.execute(counts)}

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
@@ -69,8 +69,24 @@ class Merged:
     moved: bool = False
 
 
-def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
-    """Put all that another copy holds into `db`; return a sentence for each setting that differs.
+class Taken(NamedTuple):
+    """What came of another copy.
+
+    Parameters
+    ----------
+    new, taken_back
+        As `Merged` has them.
+    settings
+        A sentence for each setting that differs.
+    """
+
+    new: int
+    taken_back: int
+    settings: tuple[str, ...]
+
+
+def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> Taken:
+    """Put all that another copy holds into `db`.
 
     Raise `FileProblem` if it is no copy of the same season.
     """
@@ -83,7 +99,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
         {row["fid"]: batches[_key(row, _BATCH)]["fid"] for row in copied["batches"]}
         for copied in copies
     ]
-    _merge_inspections((db, other), numbers)
+    new, taken_back = _merge_inspections((db, other), numbers)
     treated = [copied["treatments"] for copied in copies]
     _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set()))
     _count(db, batches)
@@ -99,7 +115,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, ...]:
     changes = _once(copies, "outside_changes", schema.OUTSIDE_CHANGES.names, ("at",))
     _write(db, schema.OUTSIDE_CHANGES, changes)
     phone_tables.bring_together(db, phones)
-    return said
+    return Taken(new, taken_back, said)
 
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
@@ -177,18 +193,23 @@ def _number(
 
 def _merge_inspections(
     both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]
-) -> None:
-    """Let the first of both have the inspections of both.
+) -> tuple[int, int]:
+    """Let the first of both have the inspections of both; return how many are new, and gone.
 
     `numbers` says how the batches of each are numbered now.
     """
     db, stay = both[0], _n_staying(both, numbers)
     copies = [_rows(one, schema.INSPECTIONS, stay) for one in both]
+    own = [{**row} for row in copies[0]]  # they are changed as they are merged
     counts = "SELECT digest FROM inspections WHERE digest = ? AND undone = 0 AND fid <= ?"
     digests = {row["digest"] for rows in copies for row in rows}
     counting = {held for one in digests for (held,) in db.execute(counts, (one, stay))}
     rows = _merged_findings(copies, numbers, counting)
     _write(db, schema.INSPECTIONS, rows, stay)
+    before, now = (
+        {row["digest"] for row in some if row["undone"] == 0} - {None} for some in (own, rows)
+    )
+    return len(now - before), len(before - now)
 
 
 def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]) -> int:

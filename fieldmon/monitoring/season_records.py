@@ -292,7 +292,7 @@ class SeasonRecords(OpenSeason):
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
         with self._lock, self.store.writing() as db:
-            before, numbers = inspection_table.counting(db), batches.numbers(db)
+            numbers = batches.numbers(db)
             held = self._inspections(db)
             with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
@@ -300,18 +300,17 @@ class SeasonRecords(OpenSeason):
                 was = None if told else season_log.states(db)
                 # nobody writes there from here on
                 contradict = contradictions(other.inspections, held)
-                chosen = merging.merge(db, theirs)
+                taken = merging.merge(db, theirs)
             self._refresh(db)
-            now = inspection_table.counting(db)
-            new, gone = len(now - before), len(before - now)
             moved = not numbers.items() <= batches.numbers(db).items()
             states = season_log.states(db)
             if states != was:
                 season_log.append(
-                    db, "merged", states=states, new=new, entries=len(told), theirs=told,
+                    db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
                     moved=moved,
                 )  # fmt: skip
-        return Merged(new, (*contradict.sentences(self.label), *chosen), gone, moved)
+        said = *contradict.sentences(self.label), *taken.settings
+        return Merged(taken.new, said, taken.taken_back, moved)
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""

@@ -68,7 +68,7 @@ def content(db):
             for table in merging.TAKEN}  # fmt: skip
 
 
-def counting(db):
+def that_count(db):
     """Return what is recorded and not taken back."""
     counts = "SELECT digest FROM inspections WHERE undone = 0 AND digest IS NOT NULL"
     return {*db.execute(counts)}
@@ -88,8 +88,8 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
         one, other = apart(seed)
         ours, theirs = copied(one), copied(other)
         new, gone, _ = merging.merge(ours, other)
-        assert new == len(counting(ours) - counting(one))
-        assert gone == len(counting(one) - counting(ours))
+        assert new == len(that_count(ours) - that_count(one))
+        assert gone == len(that_count(one) - that_count(ours))
         merging.merge(theirs, one)
         assert content(ours) == content(theirs)
         assert sorted(held(ours)) == sorted({*held(one), *held(other)})  # nothing lost, none twice

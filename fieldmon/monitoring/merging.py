@@ -69,7 +69,7 @@ class Merged:
     moved: bool = False
 
 
-class Taken(NamedTuple):
+class MergedCopy(NamedTuple):
     """What came of another copy.
 
     Parameters
@@ -85,7 +85,7 @@ class Taken(NamedTuple):
     settings: tuple[str, ...]
 
 
-def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> Taken:
+def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     """Put all that another copy holds into `db`.
 
     Raise `FileProblem` if it is no copy of the same season.
@@ -115,7 +115,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> Taken:
     changes = _once(copies, "outside_changes", schema.OUTSIDE_CHANGES.names, ("at",))
     _write(db, schema.OUTSIDE_CHANGES, changes)
     phone_tables.bring_together(db, phones)
-    return Taken(new, taken_back, said)
+    return MergedCopy(new, taken_back, said)
 
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:

@@ -10,6 +10,7 @@ from dataclasses import fields
 from datetime import date, datetime
 from functools import lru_cache, wraps
 from inspect import Parameter, signature
+from itertools import chain
 from math import isnan
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -167,14 +168,11 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
             named[name] = ""
         elif one.kind is not Parameter.VAR_KEYWORD:
             named[name] = str(one.annotation)
-    in_order = list(named.items())
+    in_order = list(named)
 
     @wraps(function)
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
-        for (name, annotation), given in zip(in_order, args, strict=False):
-            if annotation and not kind_of(annotation).fits(given):
-                must_be_of(f"'{name}' of {_called(function, args)}", annotation, given)
-        for name, given in keywords.items():
+        for name, given in chain(zip(in_order, args, strict=False), keywords.items()):
             annotation = named.get(name, "")
             if annotation and not kind_of(annotation).fits(given):
                 must_be_of(f"'{name}' of {_called(function, args)}", annotation, given)

@@ -209,7 +209,7 @@ class TracedPairs:
         came[BY_ADJACENT] = beside
         start = float(self.at_start @ self.counts.scale[[AT_START, AT_START_ELSEWHERE]])
         more = max(float(np.log(start / self.at_start.sum())), 0.0)
-        return float(np.hypot(self._doubt_of(came), _STILL_TOO_FEW * more))
+        return float(np.hypot(self._doubt_of(came, expected), _STILL_TOO_FEW * more))
 
     @property
     def doubt_of_rates(self) -> float:
@@ -217,16 +217,16 @@ class TracedPairs:
 
         As far as what each origin brings is known, and as infestations that jumped come in groups.
         """
-        return self._doubt_of(self._brought_so_far)
+        brought = self._brought_so_far
+        return self._doubt_of(brought, float(brought.sum()))
 
     @property
     def _brought_so_far(self) -> Floats:
         brought: Floats = np.einsum("i,ik->k", self.chance, self.shares, dtype=np.float64)
         return brought
 
-    def _doubt_of(self, brought: Floats) -> float:
+    def _doubt_of(self, brought: Floats, expected: float) -> float:
         """Return the doubt of a number of which so much hangs on each origin, ``(N_ORIGINS,)``."""
-        expected = float(self._brought_so_far.sum())
         origins = float(((brought * self.counts.doubt) ** 2).sum()) / expected**2
         sent = float((self.unseen * self.chance).sum()) / expected
         relatives = 2.0 * self.jumps * float(self.beyond.sum()) * sent

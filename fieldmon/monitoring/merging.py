@@ -200,14 +200,13 @@ def _merge_inspections(
     """
     db, stay = both[0], _n_staying(both, numbers)
     copies = [_rows(one, schema.INSPECTIONS, stay) for one in both]
-    own = [{**row} for row in copies[0]]  # they are changed as they are merged
     counts = "SELECT digest FROM inspections WHERE digest = ? AND undone = 0 AND fid <= ?"
     digests = {row["digest"] for rows in copies for row in rows}
     counting = {held for one in digests for (held,) in db.execute(counts, (one, stay))}
     rows = _merged_findings(copies, numbers, counting)
     _write(db, schema.INSPECTIONS, rows, stay)
     before, now = (
-        {row["digest"] for row in some if row["undone"] == 0} - {None} for some in (own, rows)
+        {row["digest"] for row in some if row["undone"] == 0} - {None} for some in (copies[0], rows)
     )
     return len(now - before), len(before - now)
 

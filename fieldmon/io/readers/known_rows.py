@@ -13,8 +13,6 @@ from fieldmon.io.parse.values import numbers
 from fieldmon.plot.planting import PLANTED
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from fieldmon.io.formats.layer import Layer
 
 
@@ -56,9 +54,10 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
             continue
         used.append(f"{column!r}")
         stated = numbers(layer.column(column))
-        wrong += _out_of_range(setting, column, stated, names)
+        # 0 and less stand for what nobody knows
         usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
         values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
+        wrong += _out_of_range(setting, column, values[-1], names)
     if not used:
         return {}, []
     rows = (KnownRows(*one) for one in zip(*values, strict=True))
@@ -72,7 +71,7 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
 
 
 def _out_of_range(
-    setting: str, column: str, stated: NDArray[np.float64], names: list[str]
+    setting: str, column: str, stated: list[float | None], names: list[str]
 ) -> list[ImportMessage]:
     """Return a doubt for each plot of which a column says what no rows are."""
     allowed = PLANTED[setting]
@@ -87,8 +86,6 @@ def _out_of_range(
             ),
             name,
         )
-        for name, value in zip(names, stated.tolist(), strict=True)
-        # 0 and less stand for what nobody knows
-        if np.isfinite(value) and (value > 0 or setting == "row_bearing_deg")
-        and (rule := allowed.broken(value))
-    ]  # fmt: skip
+        for name, value in zip(names, stated, strict=True)
+        if value is not None and (rule := allowed.broken(value))
+    ]

@@ -116,19 +116,22 @@ def blocks_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Block, ...]]
     return read.having(tuple(_block(field, field.name) for field in read.value))
 
 
+def _asked(feature: str | int | None) -> tuple[str, int]:
+    """Return the plot that is asked for, and its number if that is one, else 0."""
+    wanted = "" if feature is None else str(feature).strip()
+    return wanted, int(wanted) if re.fullmatch(r"[0-9]{1,9}", wanted) else 0
+
+
 def _number(names: list[str], feature: str | int | None) -> int:
     """Return the number of the plot that is wanted, 0 where it is named or all are."""
-    wanted = "" if feature is None else str(feature).strip()
-    return int(wanted) if re.fullmatch(r"[0-9]{1,9}", wanted) and wanted not in names else 0
+    wanted, number = _asked(feature)
+    return 0 if wanted in names else number
 
 
 def _named_by_number(names: list[str], feature: str | int | None) -> list[ImportMessage]:
     """Return what to say of a plot that was chosen by a name which is another one's number."""
-    wanted = "" if feature is None else str(feature).strip()
-    if wanted not in names or not re.fullmatch(r"[0-9]{1,9}", wanted):
-        return []
-    number = int(wanted)
-    if not 0 < number <= len(names) or names[number - 1] == wanted:
+    wanted, number = _asked(feature)
+    if wanted not in names or not 0 < number <= len(names) or names[number - 1] == wanted:
         return []
     return [
         seen(

@@ -10,13 +10,15 @@ import numpy as np
 from fieldmon.compute.wording import written
 from fieldmon.infestation.origins import (
     ANYWHERE,
+    ARRIVE,
+    ARRIVE_BY_EDGE,
     AT_START,
     AT_START_ELSEWHERE,
     BY_EDGE,
     JUMPED,
 )
 from fieldmon.infestation.reach import kernel_means
-from fieldmon.infestation.traced_pairs import ARRIVE, ARRIVE_BY_EDGE, TracedPairs
+from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief

@@ -30,6 +30,9 @@ N_ORIGINS = JUMPED + 6
 _PRIOR_FINDS = np.full(N_ORIGINS, 5.0)
 _PRIOR_FINDS[[AT_START, AT_START_ELSEWHERE]] = 1.0
 _PRIOR_FINDS[[ANYWHERE, BY_EDGE]] = 0.5
+#: share of the plants infested from outside in a night, at least, anywhere and by the edge, before
+#: anything was found (our choice)
+ARRIVE, ARRIVE_BY_EDGE = 0.0002, 0.0001
 # inspections are taken to overlook so much at least and at most
 _DETECTS = (0.05, 0.99)
 

@@ -162,7 +162,7 @@ def reach_of(grid: PlantGrid) -> Reach:
     """Return the kernels of a plot, made once."""
     cells = Cells.of(grid)
     made = kernels(cells.size_m)
-    return Reach(cells, made, *_transformed(cells, made), _at_edge(grid))
+    return Reach(cells, made, *transformed(cells, made), _at_edge(grid))
 
 
 @lru_cache(maxsize=8)
@@ -187,7 +187,7 @@ def pest_reach_of(
     return Reach(
         cells,
         made,
-        *_transformed(cells, made),
+        *transformed(cells, made),
         usual.at_edge,
         adjacent=float(shares @ near),
         beyond=shares * far,
@@ -195,7 +195,7 @@ def pest_reach_of(
     )
 
 
-def _transformed(cells: Cells, made: Floats) -> tuple[NDArray[np.complex128], tuple[int, int]]:
+def transformed(cells: Cells, made: Floats) -> tuple[NDArray[np.complex128], tuple[int, int]]:
     """Return the transforms of kernels ``(6, d, d)``, and the cells with room about them."""
     d = made.shape[1]
     across, along = (fft.next_fast_len(int(side) + d - 1, real=True) for side in cells.shape)

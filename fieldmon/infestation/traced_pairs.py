@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
+from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
@@ -30,6 +31,8 @@ from fieldmon.infestation.cohorts import Cohorts
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
+    ARRIVE,
+    ARRIVE_BY_EDGE,
     AT_START,
     AT_START_ELSEWHERE,
     BY_ADJACENT,
@@ -60,9 +63,6 @@ if TYPE_CHECKING:
 # an infested plant of which nothing is known has sent out so many before the season, and no more
 # than so many unseen: clusters of eight (our choice)
 _SENT, _MOST_SENT = 3.5, 7.0
-#: share of the plants infested from outside in a night, at least, anywhere and by the edge, before
-#: anything was found (our choice)
-ARRIVE, ARRIVE_BY_EDGE = 0.0002, 0.0001
 # only another inspection can say that a plant found and left where it is may be clean
 _UNKNOWN = 0.95
 # what was inspected around a plant never lowers it by more in a day (as an exponent)
@@ -76,6 +76,8 @@ _LEAST_JUMPS = 0.05
 # doubt: finds beside finds are put down to clusters first (chosen on nine real maps, and on 36
 # seasons with 3 to 30 % infested where 1.5 % were told)
 _STILL_TOO_FEW = 0.7
+# two maps are believed: the ancestry of finds by so much, as logarithms of chances (our choice)
+_BY_ANCESTRY = 0.6
 # of a flat map the mean is rounded
 _AVERAGE = 1.0 - 1e-9
 
@@ -111,6 +113,9 @@ class TracedPairs:
         For how many nights infestations hide, as far as inspections tell; None: a pest was named.
     slope_sums
         ``(6,)`` how far differences between chances came true, see `calibration_slope`.
+    ancestry
+        Who infested whom; None: a pest was named, finds are left where they are, or the plot has
+        too many plants.
     """
 
     grid: PlantGrid
@@ -125,13 +130,22 @@ class TracedPairs:
     wind_m_s: tuple[float, float] = (0.0, 0.0)
     latency: Latency | None = None
     slope_sums: Floats = field(default_factory=no_inspections)
+    ancestry: Ancestry | None = None
 
     @classmethod
-    def of(cls, grid: PlantGrid, chance: Floats, clustering: float = CLUSTERING) -> TracedPairs:
+    def of(
+        cls,
+        grid: PlantGrid,
+        chance: Floats,
+        clustering: float = CLUSTERING,
+        *,
+        by_ancestry: bool = True,
+    ) -> TracedPairs:
         """Begin with the `chance` ``(n,)`` of each plant of a `grid`.
 
         `clustering` is the correlation of neighbours, see
-        :func:`fieldmon.infestation.pairs.pair_chances`.
+        :func:`fieldmon.infestation.pairs.pair_chances`; `by_ancestry` whether mornings know who
+        infested whom.
         """
         chance = np.clip(chance, LEAST_CHANCE, MOST_CHANCE)
         shares = np.zeros((len(chance), N_ORIGINS), np.float32)
@@ -140,14 +154,18 @@ class TracedPairs:
         at_start = np.array([chance[~elsewhere].sum(), chance[elsewhere].sum()])
         together = pair_chances(chance, grid, clustering)
         unseen, counts = np.full(len(chance), _SENT), OriginCounts.none()
+        ancestry = None
+        if by_ancestry and len(chance) <= MOST_PLANTS:
+            ancestry = Ancestry.of(grid, chance)
         return cls(
             grid, chance, together, shares, unseen, counts, no_evidence(), at_start,
-            latency=Latency.none(chance), slope_sums=no_inspections(chance),
+            latency=Latency.none(chance), slope_sums=no_inspections(chance), ancestry=ancestry,
         )  # fmt: skip
 
     def of_pest(self, pest: Pest) -> TracedPairs:
         """Return the same, of a plot on which this pest lives."""
-        return replace(self, cohorts=Cohorts.none(pest, len(self.chance)), latency=None)
+        cohorts = Cohorts.none(pest, len(self.chance))
+        return replace(self, cohorts=cohorts, latency=None, ancestry=None)
 
     @property
     def pest(self) -> Pest | None:
@@ -269,6 +287,9 @@ class TracedPairs:
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
+            ancestry=self.ancestry.learn(plants, found, told)
+            if self.ancestry is not None and learning.treated
+            else None,
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency
             and self.latency.inspected(plants, found, told, believed[0] / self.chance),
@@ -330,18 +351,34 @@ class TracedPairs:
 
     def overnight(self, spread: Spread) -> TracedPairs:
         """Return what is believed the next morning."""
-        return self._overnight(spread, tells_apart=True)
+        morning = self._overnight(spread, tells_apart=True)
+        if self.ancestry is None:
+            return morning
+        arrive = max(spread.arrivals_per_day, ARRIVE)
+        ancestry, chance = self.ancestry.overnight(self._sends(spread), arrive)
+        if chance is not None:
+            # the logarithmic pool of both maps (Genest & Zidek 1986)
+            morning = morning.times((chance / morning.chance) ** _BY_ANCESTRY)
+        return replace(morning, ancestry=ancestry)
 
     def untold_night(self, spread: Spread) -> TracedPairs:
         """Return the same chances next morning; where they came from is not told apart any more.
 
         No find can be traced by it, but it is worked out in half the time.
         """
-        return self._overnight(spread, tells_apart=False)
+        return replace(self._overnight(spread, tells_apart=False), ancestry=None)
+
+    @property
+    def _degree(self) -> float:
+        """How many plants stand beside one, on average."""
+        return float(np.diff(self.grid.adjacent.start).mean())
+
+    def _sends(self, spread: Spread) -> float:
+        """Return what an infested plant sends out in a night to the plants beside it."""
+        return spread.rate_per_day * (self._degree if spread.to != "one" else 1.0)
 
     def _overnight(self, spread: Spread, *, tells_apart: bool) -> TracedPairs:
-        degree = float(np.diff(self.grid.adjacent.start).mean())
-        sends = spread.rate_per_day * (degree if spread.to != "one" else 1.0)
+        degree, sends = self._degree, self._sends(spread)
         reach, moves = self.reach, self.chance
         if isinstance(spread, PestSpread) and self.cohorts is not None:
             moves = self.chance * (1.0 - self.cohorts.still)
@@ -441,7 +478,10 @@ class TracedPairs:
         chance = np.maximum(self.chance * left, LEAST_CHANCE)
         together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
         latency = self.latency and self.latency.treated(left)
-        return replace(self, chance=chance, pair_chance=together, latency=latency)
+        ancestry = self.ancestry and self.ancestry.anew(chance)
+        return replace(
+            self, chance=chance, pair_chance=together, latency=latency, ancestry=ancestry
+        )
 
 
 def _moving(spread: PestSpread, rate: float | None, moves: float) -> PestSpread:

@@ -14,6 +14,7 @@ import numpy as np
 
 import fieldmon.infestation
 from fieldmon.compute.digest import digest
+from fieldmon.infestation.ancestry import Ancestry
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import OriginCounts
 from fieldmon.infestation.pairs import PairApproximation
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 _EVERY, _IN_FILE = 8, 2
 # how the names of arrays begin that are of what hides
 _LATENCY = "latency_"
+# and that are of who infested whom
+_ANCESTRY = "ancestry_"
 
 
 class _KeptMorning(NamedTuple):
@@ -204,6 +207,7 @@ def _arrays(morning: Belief) -> Arrays | None:
     if not isinstance(morning, TracedPairs) or morning.cohorts is not None:
         return None
     latency = {} if morning.latency is None else vars(morning.latency)
+    ancestry = {} if morning.ancestry is None else morning.ancestry.arrays
     return {
         "chance": morning.chance,
         "pair_chance": morning.pair_chance,
@@ -213,6 +217,7 @@ def _arrays(morning: Belief) -> Arrays | None:
         "slope_sums": morning.slope_sums,
         "counts": np.array([morning.counts.found, morning.counts.expected]),
         **{f"{_LATENCY}{name}": values for name, values in latency.items()},
+        **{f"{_ANCESTRY}{name}": values for name, values in ancestry.items()},
     }
 
 
@@ -226,7 +231,10 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     wanted = _arrays(first)
     if wanted is None or wanted.keys() != arrays.keys():
         return None
-    if any(wanted[name].shape != arrays[name].shape for name in wanted):
+    ancestry = {
+        name[len(_ANCESTRY) :]: arrays.pop(name) for name in wanted if name.startswith(_ANCESTRY)
+    }
+    if any(wanted[name].shape != values.shape for name, values in arrays.items()):
         return None
     counts = arrays.pop("counts", None)
     own: dict[str, object] = {}
@@ -235,4 +243,6 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     latency = [name for name in arrays if name.startswith(_LATENCY)]
     if latency:
         own["latency"] = Latency(**{name[len(_LATENCY) :]: arrays.pop(name) for name in latency})
+    if ancestry and isinstance(first, TracedPairs):
+        own["ancestry"] = Ancestry.of_arrays(first.grid, ancestry)
     return replace(first, **arrays, **own)  # type: ignore[type-var]

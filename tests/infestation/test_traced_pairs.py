@@ -153,7 +153,7 @@ def test_a_day_moves_the_chance_of_jumping_as_bayes_rule_does_and_counts_it_once
     "pest", [None, Pest("mite", movement=Movement("exponential", 0.4, reach_m=6.0))]
 )
 def test_a_night_that_tells_nothing_apart_brings_the_same_chances(pest):
-    first = TracedPairs.of(GRID, FLAT)
+    first = TracedPairs.of(GRID, FLAT, by_ancestry=False)
     belief = first if pest is None else first.of_pest(pest)
     told = untold = seen(belief, np.arange(N) % 41 == 0)
     spread = Spread(0.1) if pest is None else PestInWeather(pest).spread(0, GRID.frame)

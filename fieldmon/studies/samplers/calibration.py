@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 BELIEFS: dict[str, Believe] = {
     "independent plants": IndependentPlants,
     "traced pairs": TracedPairs.of,
+    "traced pairs, no ancestry": partial(TracedPairs.of, by_ancestry=False),
     "pairs": PairApproximation.of,
     "pairs, clustering known": partial(PairApproximation.of, clustering=0.65),
     "ensemble": Ensemble.of,

@@ -1,0 +1,365 @@
+"""Chances by the ancestry of finds: from where each came, as all of the season's inspections say.
+
+Infestations are taken to come about as a branching process: from none on the first morning or from
+outside, and from one another by jumps. Who infested whom is drawn many times for the finds
+(`drawn_ancestry`), and of what was never seen the number is worked out (`unseen_offspring`). How
+far jumps go, how closely infested plants stood at first and how many arrive from outside is
+estimated anew each night (an EM step with Gamma priors).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from fieldmon.infestation.chance_bounds import LEAST_CHANCE
+from fieldmon.infestation.drawn_ancestry import (
+    NOBODY,
+    Believed,
+    Drawn,
+    Infestations,
+    draw_ancestries,
+)
+from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE
+from fieldmon.infestation.unseen_offspring import Unseen, stays_unseen, unseen_now
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.landing import Landing
+    from fieldmon.plot.grid import PlantGrid
+
+    Floats = NDArray[np.float64]
+
+# how many nights before the season are thought of, and what share of the infestations that come
+# from none began on the first of them (our choice: clusters mostly are of one age)
+_BEFORE, _OF_ONE_AGE = 6, 0.7
+# what an infested plant sent out in a night then, and how many finds that is worth (our choice)
+_SENT_BEFORE, _SENT_BEFORE_FINDS = 0.4, 4.0
+# how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
+# the kernels of `reach`; arrivals and the share at the start, in finds (our choice)
+_SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
+_ARRIVAL_FINDS, _START_FINDS = 0.5, 1.0
+# the share of the start that came by the edge, and how many finds that is worth (our choice)
+_BY_EDGE, _BY_EDGE_FINDS = 0.1, 0.5
+# sweeps in a round of which rates are known, and in that of which chances are; a quarter is left
+# out. Of many infestations there are fewer, so that no more than so many pairs are looked at
+_SWEEPS, _LEAST_SWEEPS, _PAIRS = (34, 100), 4, 4e6
+#: a plot of more plants does without: each night would take seconds
+MOST_PLANTS = 10_000
+# after so many days, or with so many infestations, an ancestry begins anew
+_MOST_DAYS, _MOST_INFESTATIONS = 30, 1500
+# places for infestations that were not found: at least, and as a share of all
+_LEAST_ROOM, _ROOM = 32, 0.25
+# never surer than this
+_MOST = 0.95
+
+
+class Rates(NamedTuple):
+    """What is believed of how infestations come about.
+
+    Parameters
+    ----------
+    shares
+        ``(8,)`` how much of what is sent out goes by each kernel.
+    before
+        What an infested plant sent out in a night before the season.
+    start, start_by_edge
+        How many times as many as was told came from none before the season: as the first map has
+        it, and by the edge.
+    anywhere, by_edge
+        Share of the plants infested from outside in a night: anywhere, and by the edge.
+    """
+
+    shares: Floats
+    before: float = _SENT_BEFORE
+    start: float = 1.0 - _BY_EDGE
+    start_by_edge: float = _BY_EDGE
+    anywhere: float = ARRIVE
+    by_edge: float = ARRIVE_BY_EDGE
+
+
+def _ages() -> Floats:
+    """Return how infestations that come from none are shared out over the mornings before."""
+    ages = np.full(_BEFORE + 1, (1.0 - _OF_ONE_AGE) / (_BEFORE + 1))
+    ages[0] += _OF_ONE_AGE
+    return ages
+
+
+@dataclass(frozen=True, eq=False)
+class Ancestry:
+    """What is known of who infested whom; never changed, each step returns another.
+
+    Parameters
+    ----------
+    grid
+        The plants.
+    start
+        ``(n,)`` the chances of the first morning.
+    missed
+        ``(t, n)`` the logarithm of the chance that each day's inspections of a plant overlook it.
+        It and `taken` have few digits, since a season's file keeps them.
+    sends
+        ``(t,)`` what an infested plant sent out in each night.
+    last_find
+        ``(n,)`` the day of each plant's last find, or -1 minus the nights before the season.
+    new
+        Plants found since the last night.
+    taken
+        ``(m, n)`` how likely each plant was infested already by the ancestry of finds.
+    infestations
+        The ancestry drawn last.
+    rates
+        What is believed of how infestations come about.
+    """
+
+    grid: PlantGrid
+    start: Floats
+    missed: NDArray[np.float16]
+    sends: Floats
+    last_find: NDArray[np.int64]
+    new: tuple[int, ...]
+    taken: NDArray[np.float16]
+    infestations: Infestations = field(default_factory=lambda: Infestations.room(_LEAST_ROOM))
+    rates: Rates = field(default_factory=lambda: Rates(_SHARES / _SHARES.sum()))
+
+    def __repr__(self) -> str:
+        return f"<Ancestry of {np.count_nonzero(self.infestations.found)} finds>"
+
+    @classmethod
+    def of(cls, grid: PlantGrid, chance: Floats) -> Ancestry:
+        """Begin with the `chance` ``(n,)`` of each plant of a `grid`."""
+        nothing = np.zeros((0, len(grid)), np.float16)
+        never = np.full(len(grid), -_BEFORE - 1)
+        return cls(grid, chance, nothing, np.zeros(0), never, (), nothing)
+
+    def learn(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], detects: Floats
+    ) -> Ancestry:
+        """Return what is known after inspecting `plants` ``(k,)`` that finds are destroyed on."""
+        today = np.zeros((1, len(self.grid)))
+        overlooked = np.log1p(-np.minimum(detects[~found], 1.0 - LEAST_CHANCE))
+        np.add.at(today[0], plants[~found], overlooked)
+        new = tuple(dict.fromkeys(plants[found].tolist()))
+        days = len(self.sends)
+        before, first = self.missed[:days], self.missed[days:].sum(axis=0)
+        missed = np.concatenate([before, (today + first).astype(np.float16)])
+        return replace(self, missed=missed, new=tuple(dict.fromkeys((*self.new, *new))))
+
+    def anew(self, chance: Floats) -> Ancestry:
+        """Return an ancestry that begins today with other chances ``(n,)``, as after a treatment.
+
+        Of how infestations come about it knows what was learnt, but for how many were at the start.
+        """
+        start = Rates(self.rates.shares)
+        rates = self.rates._replace(start=start.start, start_by_edge=start.start_by_edge)
+        return replace(Ancestry.of(self.grid, chance), rates=rates)
+
+    @property
+    def knows(self) -> bool:
+        """Tell whether anything was inspected yet: before, the first map says all there is."""
+        return bool(self.new or self.infestations.there.any() or self.missed.any())
+
+    def overnight(self, sends: float, arrive: float = ARRIVE) -> tuple[Ancestry, Floats | None]:
+        """Return what is known the next morning, and each plant's chance ``(n,)``.
+
+        Before anything was inspected there are no chances (None).
+
+        Parameters
+        ----------
+        sends
+            How many infestations an infested plant sends out in this night.
+        arrive
+            The share of all plants that is told to be infested from outside in a night.
+        """
+        day, n = len(self.sends), len(self.grid)
+        nothing = np.zeros((day + 1 - len(self.missed), n), np.float16)
+        night = _with_finds(
+            replace(
+                self,
+                missed=np.concatenate([self.missed, nothing]),
+                sends=np.append(self.sends, sends),
+                rates=self.rates if day else self.rates._replace(anywhere=arrive),
+            )
+        )
+        if not self.knows:
+            return night, None
+        many = max(int(np.count_nonzero(night.infestations.there)), 1)
+        hidden = unseen = np.zeros(n)
+        for k, most in enumerate(_SWEEPS):
+            sweeps = max(_LEAST_SWEEPS, min(most, int(_PAIRS / many**2)))
+            draws = 2 * day + k, sweeps, sweeps // 4
+            night, hidden, unseen = _drawn(night, landing_of(self.grid), draws, arrive)
+        chance = np.clip(
+            1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
+        )
+        if day + 1 >= _MOST_DAYS or many > _MOST_INFESTATIONS:
+            night = night.anew(chance)
+        return night, chance
+
+    @property
+    def arrays(self) -> dict[str, NDArray[np.generic]]:
+        """What to keep of it on a morning, beside the plants, by name."""
+        return {
+            "start": self.start,
+            "missed": self.missed,
+            "sends": self.sends,
+            "last_find": self.last_find,
+            "taken": self.taken,
+            "infestations": np.array(self.infestations, np.int64),
+            "rates": np.concatenate([self.rates.shares, self.rates[1:]]),
+        }
+
+    @classmethod
+    def of_arrays(cls, grid: PlantGrid, arrays: dict[str, NDArray[Any]]) -> Ancestry:
+        """Return what such arrays have kept; raise `ValueError` if they are none of its plants."""
+        kept = dict(arrays)
+        plant, begins, ends, found, parent, children, there, earliest = kept.pop("infestations")
+        shares, others = np.split(kept.pop("rates"), [len(_SHARES)])
+        n = len(grid)
+        if any(kept[name].shape[-1:] != (n,) for name in ("start", "missed", "last_find", "taken")):
+            raise ValueError(f"An ancestry of {n} plants must have arrays of so many.")
+        infestations = Infestations(
+            plant, begins, ends, found != 0, parent, children, there != 0, earliest
+        )
+        rates = Rates(shares, *map(float, others))
+        return cls(grid, new=(), infestations=infestations, rates=rates, **kept)
+
+
+def _with_finds(of: Ancestry) -> Ancestry:
+    """Return the same with the last day's finds among the infestations."""
+    day = len(of.sends) - 1
+    morning = _BEFORE + day
+    last_find = of.last_find.copy()
+    used = int(np.count_nonzero(of.infestations.there)) + len(of.new)
+    spare = max(_LEAST_ROOM, int(_ROOM * used))
+    made = of.infestations.copied(max(0, used + spare - len(of.infestations.plant)))
+    at = _places(made, len(of.grid))
+    free = np.flatnonzero(~made.there)
+    for k, plant in enumerate(of.new):
+        place = at[plant]
+        if place == NOBODY:
+            place = free[k]
+            earliest = max(0, _BEFORE + int(last_find[plant]) + 1)
+            made.plant[place], made.earliest[place] = plant, earliest
+            made.begins[place] = min(max(earliest, _BEFORE), morning)
+            made.parent[place], made.children[place] = NOBODY, 0
+            made.there[place] = True
+        made.found[place], made.ends[place] = True, morning
+        last_find[plant] = day
+    made.ends[made.there & ~made.found] = morning + 1
+    return replace(of, infestations=made, last_find=last_find, new=())
+
+
+def _drawn(
+    of: Ancestry, landing: Landing, draws: tuple[int, int, int], arrive: float
+) -> tuple[Ancestry, Floats, Floats]:
+    """Draw ancestries and estimate rates by them.
+
+    Return also how likely each plant is infested as the ancestor of a find, and how many
+    infestations of which nothing was seen are expected there.
+    """
+    t, n, rates = _BEFORE + len(of.sends) + 1, len(of.grid), of.rates
+    sends = np.concatenate([np.full(_BEFORE, rates.before), of.sends, [0.0]])
+    taken = np.zeros((t, n))
+    taken[: len(of.taken)] = of.taken
+    overlooked = np.zeros((t, n))
+    missed = of.missed[::-1].astype(np.float64)
+    overlooked[_BEFORE:-1] = np.cumsum(missed, axis=0)[::-1]
+    overlooked[:_BEFORE] = overlooked[_BEFORE]
+    since = np.arange(t)[:, None] <= of.last_find + _BEFORE
+    alone = np.where(since, -np.inf, overlooked)
+    unseen = stays_unseen(alone, taken, sends, rates.shares, landing)
+    kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
+    so_far = np.cumsum(kernel) / kernel.sum()
+    roots, by_edge = _roots(of, landing, t)
+    lasting = np.exp(overlooked + unseen.offspring)
+    believed = Believed(landing.cells, kernel, so_far, sends, roots, _BEFORE, lasting)
+    infestations = of.infestations.copied(0)
+    drawn = Drawn.none(t, n, len(kernel))
+    at = _places(infestations, n)
+    last_find = of.last_find + _BEFORE
+    kept = draw_ancestries(infestations, at, believed, last_find, draws, drawn)
+    mean = Drawn(*(sums / kept for sums in drawn))
+    there = infestations.there & infestations.found
+    taken = mean.active.copy()
+    taken[infestations.ends[there], infestations.plant[there]] = 1.0
+    made = replace(of, infestations=infestations, taken=taken.astype(np.float16))
+    learnt = _rates(made, landing, (unseen, taken), (sends, arrive), mean, by_edge)
+    expected = unseen_now(unseen, mean.active, roots, sends, rates.shares, landing)
+    return replace(made, rates=learnt), mean.hidden, expected
+
+
+def _roots(of: Ancestry, landing: Landing, t: int) -> tuple[Floats, Floats]:
+    """Return how many infestations come to each plant from none, ``(t, n)``.
+
+    And the share of them that comes by the edge.
+    """
+    rates, told = of.rates, _told(of)
+    ages = _ages()[:, None]
+    roots, by_edge = np.empty((2, t, len(of.grid)))
+    by_edge[: _BEFORE + 1] = ages * told.mean() * rates.start_by_edge * landing.at_edge
+    by_edge[_BEFORE + 1 :] = rates.by_edge * landing.at_edge
+    roots[: _BEFORE + 1] = ages * told * rates.start
+    roots[_BEFORE + 1 :] = rates.anywhere
+    roots += by_edge
+    return roots, by_edge / roots
+
+
+def _told(of: Ancestry) -> Floats:
+    """How many came from none before the season, as the first map has it, ``(n,)``.
+
+    By the first morning each had become as many as it sent out.
+    """
+    nights = np.arange(_BEFORE, -1, -1)
+    told: Floats = of.start / float(_ages() @ (1.0 + of.rates.before) ** nights)
+    return told
+
+
+def _rates(
+    of: Ancestry,
+    landing: Landing,
+    unseen: tuple[Unseen, Floats],
+    night: tuple[Floats, float],
+    drawn: Drawn,
+    by_edge: Floats,
+) -> Rates:
+    """Return the rates by what ancestries have, over what would have been seen of it."""
+    rates, told, (sends, arrive) = of.rates, _told(of), night
+    seen = 1.0 - unseen[0].chance
+    meets = seen * (1.0 - unseen[1])
+    sent = sends[:, None] * drawn.active
+    kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
+    all_jumps = drawn.jumps.sum(axis=0) / np.maximum(kernel, LEAST_CHANCE)
+    jumps = rates.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
+    shares = (_SHARES + jumps) / (_SHARES.sum() + landing.met(sent[:-1], meets[1:]))
+    early = landing.met(sent[:_BEFORE], meets[1 : _BEFORE + 1]) @ rates.shares / rates.before
+    before = _SENT_BEFORE_FINDS + drawn.jumps[0].sum()
+    from_edge = drawn.roots * by_edge
+    ages, first = _ages(), slice(0, _BEFORE + 1)
+    told_seen = float((ages @ seen[first]) @ told)
+    edge_seen = float((ages @ seen[first]) @ landing.at_edge * told.mean())
+    at_start, at_start_by_edge = drawn.roots[first].sum(), from_edge[first].sum()
+    arrived, arrived_by_edge = drawn.roots[_BEFORE + 1 :].sum(), from_edge[_BEFORE + 1 :].sum()
+    later = seen[_BEFORE + 1 :].sum(axis=0)
+    return Rates(
+        shares / shares.sum(),
+        before / (_SENT_BEFORE_FINDS / _SENT_BEFORE + early),
+        (_START_FINDS * (1.0 - _BY_EDGE) + at_start - at_start_by_edge)
+        / (_START_FINDS + told_seen),
+        (_BY_EDGE_FINDS * _BY_EDGE + at_start_by_edge) / (_BY_EDGE_FINDS + edge_seen),
+        (_ARRIVAL_FINDS + arrived - arrived_by_edge) / (_ARRIVAL_FINDS / arrive + later.sum()),
+        (_ARRIVAL_FINDS + arrived_by_edge)
+        / (_ARRIVAL_FINDS / ARRIVE_BY_EDGE + later @ landing.at_edge),
+    )
+
+
+def _places(infestations: Infestations, n: int) -> NDArray[np.int64]:
+    """Return which infestation that was not found is at each plant, ``(n,)``, or `NOBODY`."""
+    at = np.full(n, NOBODY)
+    hidden = np.flatnonzero(infestations.there & ~infestations.found)
+    at[infestations.plant[hidden]] = hidden
+    return at

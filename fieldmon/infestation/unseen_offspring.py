@@ -1,0 +1,95 @@
+"""Infestations from which no find descends: how likely they stay unseen, and how many there are.
+
+An infestation sends out others independently of each other, so those that were never seen need not
+be drawn. The chance that one that begins at a plant on a morning was not seen until today, with all
+that came from it, follows night by night from the last back (the probability generating function
+of a branching process: Harris 1963). With it, the number of those that are there now follows night
+by night from the first on.
+
+Mornings and nights are counted as in `drawn_ancestry`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.landing import Landing
+
+    Floats = NDArray[np.float64]
+
+
+class Unseen(NamedTuple):
+    """How likely an infestation stays unseen, ``(t, n)`` each, by the morning on which it begins.
+
+    Parameters
+    ----------
+    alone
+        That no inspection shows it, as a logarithm.
+    offspring
+        That nothing is seen of what it sends out, as a logarithm.
+    """
+
+    alone: Floats
+    offspring: Floats
+
+    def __repr__(self) -> str:
+        return f"<Unseen on {len(self.alone)} mornings>"
+
+    @property
+    def chance(self) -> Floats:
+        """That nothing is seen of it and of all that comes from it."""
+        chance: Floats = np.exp(self.alone + self.offspring)
+        return chance
+
+
+def stays_unseen(
+    alone: Floats, taken: Floats, sends: Floats, shares: Floats, landing: Landing
+) -> Unseen:
+    """Return how likely infestations stay unseen.
+
+    Parameters
+    ----------
+    alone
+        ``(t, n)`` see `Unseen`; minus infinity where the plant was found since.
+    taken
+        ``(t, n)`` the chance that the plant is infested already: what lands there does nothing.
+    sends
+        ``(t,)`` what an infested plant sends out in a night.
+    shares
+        ``(k,)`` how much of it goes by each kernel.
+    """
+    offspring = np.zeros_like(alone)
+    for night in range(len(alone) - 2, -1, -1):
+        seen = 1.0 - np.exp(alone[night + 1] + offspring[night + 1])
+        caught = landing.landed(seen * (1.0 - taken[night + 1]), shares, back=True)
+        offspring[night] = offspring[night + 1] - sends[night] * caught
+    return Unseen(alone, offspring)
+
+
+def unseen_now(
+    unseen: Unseen, active: Floats, roots: Floats, sends: Floats, shares: Floats, landing: Landing
+) -> Floats:
+    """Return how many infestations of which nothing was seen are expected at each plant, ``(n,)``.
+
+    Parameters
+    ----------
+    active
+        ``(t, n)`` how likely a plant of the finds' ancestry sends something out in a night.
+    roots
+        ``(t, n)`` how many infestations come to a plant from none.
+    sends, shares
+        As for `stays_unseen`.
+    """
+    chance, there = unseen.chance, np.zeros(active.shape[1])
+    for morning in range(len(active)):
+        new = roots[morning]
+        if morning:
+            senders = active[morning - 1] + there
+            new = new + sends[morning - 1] * landing.landed(senders, shares)
+        there = there + chance[morning] * new * np.maximum(1.0 - there, 0.0)
+    return there

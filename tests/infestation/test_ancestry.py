@@ -1,0 +1,167 @@
+"""Chances by the ancestry of finds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation import ancestry as module
+from fieldmon.infestation.ancestry import Ancestry
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.pest import Pest
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(20, 20)
+N = len(GRID)
+FLAT = np.full(N, 0.02)
+SPREAD = Spread(0.3, "one")
+MIDDLE = 20 * 10 + 10
+
+
+def after(plants, found, ancestry=None, detects=0.84):
+    """Return what is known, and the chances, the morning after inspecting some plants."""
+    plants = np.asarray(plants, np.int32)
+    ancestry = Ancestry.of(GRID, FLAT) if ancestry is None else ancestry
+    known = ancestry.learn(plants, np.asarray(found, bool), np.full(len(plants), detects))
+    return known.overnight(0.3)
+
+
+def test_a_find_speaks_for_the_plants_about_it():
+    _, chance = after([MIDDLE], [True])
+    assert chance[[MIDDLE - 1, MIDDLE + 1, MIDDLE - 20, MIDDLE + 20]].min() > 3.0 * chance[0]
+    assert chance[MIDDLE + 2] > chance[0]
+
+
+def test_a_clean_plant_is_less_likely_infested_and_so_are_those_about_it():
+    block = (np.arange(8)[:, None] * 20 + np.arange(8)).ravel()
+    _, chance = after(block, np.zeros(64, bool))
+    assert chance[20 * 3 + 3] < 0.5 * chance[-1]
+    assert chance[20 * 3 + 8] < chance[-1]
+
+
+def test_a_plant_clean_between_finds_is_inspected_again_before_one_far_away():
+    beside = [MIDDLE - 1, MIDDLE + 1, MIDDLE - 20, MIDDLE + 20]
+    _, chance = after([MIDDLE, *beside], [False, True, True, True, True])
+    assert chance[MIDDLE] > 3.0 * chance[0]
+
+
+def test_finds_that_stand_apart_teach_that_insects_jump():
+    """On a plot that is inspected wholly: diagonally two away every day, or side by side."""
+    far = [MIDDLE, MIDDLE + 42, MIDDLE + 38, MIDDLE - 38, MIDDLE - 42]
+    near = [MIDDLE, MIDDLE + 1, MIDDLE + 20, MIDDLE - 20, MIDDLE - 1]
+    jump = []
+    for plants in (far, near):
+        all_plants, known = np.arange(N, dtype=np.int32), Ancestry.of(GRID, FLAT)
+        for day in range(5):
+            known, _ = after(all_plants, all_plants == plants[day], known, 0.9)
+        jump.append(known.rates.shares[2:].sum())
+    assert jump[0] > 2.0 * jump[1]
+
+
+def test_nothing_is_known_before_anything_was_inspected():
+    known = Ancestry.of(GRID, FLAT)
+    for _ in range(3):
+        known, chance = known.overnight(0.3)
+        assert chance is None
+    assert not known.knows
+    belief = TracedPairs.of(GRID, FLAT)
+    other = TracedPairs.of(GRID, FLAT, by_ancestry=False)
+    for _ in range(2):
+        belief, other = belief.overnight(SPREAD), other.overnight(SPREAD)
+    assert (belief.chance == other.chance).all()
+
+
+def test_a_day_in_two_parts_is_one_day():
+    plants = np.arange(0, N, 7, dtype=np.int32)
+    found, detects = plants % 5 == 0, np.full(len(plants), 0.84)
+    first = Ancestry.of(GRID, FLAT)
+    once, chance = first.learn(plants, found, detects).overnight(0.3)
+    twice = first.learn(plants[:20], found[:20], detects[:20])
+    twice, same = twice.learn(plants[20:], found[20:], detects[20:]).overnight(0.3)
+    assert (chance == same).all()
+    assert (once.missed == twice.missed).all()
+
+
+def a_week(seed=0):
+    """Return what is known after a week of finds and clean plants."""
+    rng, known = np.random.default_rng(seed), Ancestry.of(GRID, FLAT)
+    for _ in range(7):
+        plants = rng.choice(N, 60, replace=False).astype(np.int32)
+        found = rng.random(60) < 0.1
+        known, _ = after(plants, found, known)
+    return known
+
+
+def test_what_is_kept_of_a_morning_goes_on_as_it_did():
+    known = a_week()
+    kept = Ancestry.of_arrays(GRID, known.arrays)
+    plants = np.arange(50, 90)
+    on, chance = after(plants, plants % 9 == 0, known)
+    again, same = after(plants, plants % 9 == 0, kept)
+    assert (chance == same).all()
+    for name, values in on.arrays.items():
+        assert (values == again.arrays[name]).all(), name
+    with pytest.raises(ValueError, match="An ancestry of 100 plants must have arrays of so many"):
+        Ancestry.of_arrays(rectangle(10, 10), known.arrays)
+
+
+def test_what_is_known_is_never_changed():
+    known = a_week()
+    before = {name: values.copy() for name, values in known.arrays.items()}
+    after(np.arange(40), np.arange(40) % 3 == 0, known)
+    for name, values in before.items():
+        assert (values == known.arrays[name]).all(), name
+    assert "finds" in repr(known)
+
+
+def test_chances_stay_chances_where_nearly_all_is_found():
+    known, plants = Ancestry.of(GRID, np.full(N, 0.6)), np.arange(N)
+    for day in range(3):
+        known, chance = after(plants, (plants + day) % 4 > 0, known)
+        assert ((chance > 0.0) & (chance <= 0.95)).all()
+
+
+def test_it_begins_anew_after_many_days_and_with_many_infestations(monkeypatch):
+    monkeypatch.setattr(module, "_MOST_DAYS", 5)
+    known = a_week()
+    assert len(known.sends) == 2
+    assert (known.start != FLAT).any()
+    monkeypatch.setattr(module, "_MOST_INFESTATIONS", 10)
+    known, chance = after(np.arange(40), np.ones(40, bool), known)
+    assert len(known.sends) == 0
+    assert (known.start == chance).all()
+    # what was learnt of jumps stays
+    assert known.rates.shares.sum() == pytest.approx(1.0)
+
+
+def test_it_is_left_out_where_it_does_not_hold():
+    belief = TracedPairs.of(GRID, FLAT)
+    assert belief.ancestry is not None
+    plants, found = np.array([3], np.int32), np.ones(1, bool)
+    flagged = belief.learn(plants, found, Learning(treated=False))
+    assert flagged.ancestry is None
+    assert belief.of_pest(Pest("mite")).ancestry is None
+    assert TracedPairs.of(rectangle(101, 100), np.full(10_100, 0.01)).ancestry is None
+
+
+def test_a_treatment_begins_anew_with_what_it_left():
+    belief = TracedPairs.of(GRID, FLAT)
+    belief = belief.learn(np.array([MIDDLE], np.int32), np.ones(1, bool), Learning())
+    left = np.where(np.arange(N) < 200, 0.1, 1.0)
+    treated = belief.overnight(SPREAD).treated(left)
+    assert (treated.ancestry.start == treated.chance).all()
+    assert not treated.ancestry.knows
+
+
+def test_both_maps_are_pooled():
+    """Where both agree on a ratio it stays; else it lies between them."""
+    plants = np.arange(0, N, 3, dtype=np.int32)
+    found = plants % 11 == 0
+    belief = TracedPairs.of(GRID, FLAT).learn(plants, found, Learning())
+    alone = replace(belief, ancestry=None).overnight(SPREAD)
+    _, chance = belief.ancestry.overnight(0.3)
+    pooled = belief.overnight(SPREAD).chance
+    low, high = np.minimum(chance, alone.chance), np.maximum(chance, alone.chance)
+    assert ((pooled >= low * (1.0 - 1e-9)) & (pooled <= high * (1.0 + 1e-9))).all()

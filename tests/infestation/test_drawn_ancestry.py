@@ -1,0 +1,150 @@
+"""Ancestries are drawn as often as they are likely: compared with all that there are."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.drawn_ancestry import (
+    NOBODY,
+    Believed,
+    Drawn,
+    Infestations,
+    draw_ancestries,
+)
+from fieldmon.infestation.landing import landing_of
+from fieldmon.plot.layout import rectangle
+
+ROW = rectangle(1, 4)
+N, MORNINGS = len(ROW), 4
+SEASON = 1
+
+
+def believed(seed=0):
+    """Return what some ancestries are weighed by, in which all may come from each other."""
+    rng = np.random.default_rng(seed)
+    landing = landing_of(ROW)
+    kernel = np.einsum("k,kij->ij", rng.dirichlet(np.ones(8)), landing.kernels)
+    kernel /= kernel.sum()
+    sends = rng.uniform(0.5, 3.0, MORNINGS)
+    lasting = rng.uniform(0.2, 1.0, (MORNINGS, N))
+    roots = rng.uniform(0.01, 0.3, (MORNINGS, N))
+    return Believed(landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, lasting)
+
+
+def with_finds(finds):
+    """Return infestations that were found at plants on mornings, and where others may not be."""
+    made = Infestations.room(8)
+    for place, (plant, morning) in enumerate(finds):
+        made.plant[place], made.ends[place] = plant, morning
+        made.begins[place], made.found[place], made.there[place] = morning, True, True
+    last_find = np.full(N, -1)
+    for plant, morning in finds:
+        last_find[plant] = morning
+    return made, last_find
+
+
+def jump(world, sender, plant):
+    """Return how much lands on a plant of the row of what another sends."""
+    half = len(world.kernel) // 2
+    along = world.cells.of_plant[plant] - world.cells.of_plant[sender]
+    return world.kernel[half, half + along]
+
+
+def all_ancestries(world, finds, last_find):
+    """Yield all ancestries as (weight, nodes), a node being (plant, begins, ends, parent)."""
+    last = MORNINGS - 1
+    hidden = [p for p in range(N) if last_find[p] + 1 <= last]
+    for there in product([False, True], repeat=len(hidden)):
+        ends = [(p, 0, e) for p, e in finds]
+        ends += [(p, last_find[p] + 1, last) for p, on in zip(hidden, there, strict=True) if on]
+        for begins in product(*(range(low, e + 1) for _, low, e in ends)):
+            choices = [
+                [NOBODY]
+                + [j for j, b in enumerate(begins) if j != i and b < begins[i] <= ends[j][2]]
+                for i in range(len(ends))
+            ]
+            for parents in product(*choices):
+                if any(i not in parents for i in range(len(finds), len(ends))):
+                    continue
+                weight = 1.0
+                for (plant, _, end), b, parent in zip(ends, begins, parents, strict=True):
+                    weight *= world.lasting[b, plant] / world.lasting[end, plant]
+                    if parent == NOBODY:
+                        weight *= world.roots[b, plant]
+                    else:
+                        weight *= world.sends[b - 1] * jump(world, ends[parent][0], plant)
+                yield (
+                    weight,
+                    [
+                        (plant, b, end, parent)
+                        for (plant, _, end), b, parent in zip(ends, begins, parents, strict=True)
+                    ],
+                )
+
+
+@pytest.mark.parametrize("finds", [[(0, 3)], [(1, 2)], [(0, 3), (2, 2)], [(1, 1), (1, 3), (3, 3)]])
+def test_ancestries_are_drawn_as_often_as_they_are_likely(finds):
+    """Three moves that fit together: each sum is that over all ancestries there are."""
+    world = believed(len(finds))
+    made, last_find = with_finds(finds)
+    if finds[0][0] == finds[-2 % len(finds)][0] and len(finds) == 3:
+        made.earliest[1] = made.ends[0] + 1
+    active, hidden, roots = np.zeros((MORNINGS, N)), np.zeros(N), np.zeros((MORNINGS, N))
+    total = 0.0
+    for weight, nodes in all_ancestries(world, finds, last_find):
+        if len(finds) == 3 and nodes[1][1] <= finds[0][1]:
+            continue  # the plant was found before
+        total += weight
+        for k, (plant, begins, end, parent) in enumerate(nodes):
+            active[begins:end, plant] += weight
+            hidden[plant] += weight * (k >= len(finds))
+            roots[begins, plant] += weight * (parent == NOBODY)
+    drawn = Drawn.none(MORNINGS, N, len(world.kernel))
+    kept = draw_ancestries(made, np.full(N, NOBODY), world, last_find, (1, 100_000, 1_000), drawn)
+    assert kept == 99_000
+    assert drawn.hidden / kept == pytest.approx(hidden / total, abs=0.015)
+    assert drawn.active / kept == pytest.approx(active / total, abs=0.02)
+    assert drawn.roots / kept == pytest.approx(roots / total, abs=0.02)
+    # whatever does not come from none has jumped
+    assert drawn.jumps.sum() + drawn.roots.sum() == pytest.approx(
+        kept * len(finds) + drawn.hidden.sum()
+    )
+
+
+def test_an_ancestry_holds_together():
+    """Parents begin before their children and end no sooner; nobody hangs on nothing."""
+    rng = np.random.default_rng(4)
+    plot = rectangle(12, 12)
+    landing, mornings = landing_of(plot), 9
+    kernel = np.einsum("k,kij->ij", np.full(8, 0.125), landing.kernels)
+    made = Infestations.room(120)
+    plants = rng.choice(144, 30, replace=False)
+    last_find = np.full(144, -1)
+    for place, plant in enumerate(plants):
+        made.plant[place], made.ends[place] = plant, rng.integers(3, mornings - 1)
+        made.begins[place], made.found[place] = made.ends[place], True
+        made.there[place], last_find[plant] = True, made.ends[place]
+    lasting = np.exp(-rng.uniform(0.0, 2.0, (mornings, 144)))
+    roots = np.full((mornings, 144), 1e-4)
+    sends = np.full(mornings, 0.3)
+    so_far = np.cumsum(kernel) / kernel.sum()
+    world = Believed(landing.cells, kernel, so_far, sends, roots, 3, lasting)
+    at, drawn = np.full(144, NOBODY), Drawn.none(mornings, 144, len(kernel))
+    draw_ancestries(made, at, world, last_find, (2, 50, 10), drawn)
+    there = np.flatnonzero(made.there)
+    children = np.bincount(made.parent[there] + 1, minlength=121)[1:]
+    assert (made.children[there] == children[there]).all()
+    assert (made.found[there] | (children[there] > 0)).all()
+    for i in there:
+        assert made.earliest[i] <= made.begins[i] <= made.ends[i]
+        if made.parent[i] != NOBODY:
+            parent = made.parent[i]
+            assert made.there[parent]
+            assert made.begins[parent] < made.begins[i] <= made.ends[parent]
+    hidden = there[~made.found[there]]
+    assert len(hidden) > 0
+    assert (at[made.plant[hidden]] == hidden).all()
+    assert np.count_nonzero(at != NOBODY) == len(hidden)
+    assert "30 found" in repr(made)
+    assert repr(drawn).startswith("<Drawn: ")

@@ -1,0 +1,86 @@
+"""What was never seen: against sums by hand and simulated plots."""
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.unseen_offspring import stays_unseen, unseen_now
+from fieldmon.plot.layout import rectangle
+
+PLOT = rectangle(9, 8)
+N = len(PLOT)
+LANDING = landing_of(PLOT)
+SHARES = np.array([0.3, 0.2, 0.2, 0.1, 0.05, 0.05, 0.05, 0.05])
+
+
+def by_hand(shares):
+    """Return what lands on each plant (columns) of what each sends (rows)."""
+    half = LANDING.kernels.shape[1] // 2
+    kernel = np.einsum("k,kij->ij", shares, LANDING.kernels)
+    y, x = np.divmod(LANDING.cells.of_plant, LANDING.cells.shape[1])
+    return kernel[half + y[None, :] - y[:, None], half + x[None, :] - x[:, None]]
+
+
+def test_jumps_land_as_the_kernels_have_it():
+    sent = np.random.default_rng(1).random(N)
+    assert LANDING.landed(sent, SHARES) == pytest.approx(sent @ by_hand(SHARES), abs=1e-12)
+    back = LANDING.landed(sent, SHARES, back=True)
+    assert back == pytest.approx(by_hand(SHARES) @ sent, abs=1e-12)
+
+
+def test_what_is_met_by_each_kernel_is_what_lands_there():
+    rng = np.random.default_rng(2)
+    sent, there = rng.random((2, 3, N))
+    for k, met in enumerate(LANDING.met(sent, there)):
+        landed = sent @ by_hand(np.eye(8)[k])
+        assert met == pytest.approx(float((landed * there).sum()))
+
+
+def test_nothing_is_seen_of_an_infestation_with_the_chance_of_a_branching_process():
+    """Two nights, worked out plant by plant."""
+    rng = np.random.default_rng(3)
+    alone = np.log(rng.uniform(0.2, 1.0, (3, N)))
+    alone[:, 5] = -np.inf
+    taken, sends, lands = rng.random((3, N)) * 0.5, np.array([0.7, 0.4, 0.0]), by_hand(SHARES)
+    unseen = stays_unseen(alone, taken, sends, SHARES, LANDING)
+    last = np.exp(alone[2])
+    second_night = np.exp(-0.4 * lands @ ((1.0 - last) * (1.0 - taken[2])))
+    second = np.exp(alone[1]) * second_night
+    first_night = np.exp(-0.7 * lands @ ((1.0 - second) * (1.0 - taken[1])))
+    first = np.exp(alone[0]) * first_night * second_night
+    assert unseen.chance == pytest.approx(np.array([first, second, last]))
+    assert (unseen.chance[:, 5] == 0.0).all()
+    assert repr(unseen) == "<Unseen on 3 mornings>"
+
+
+def test_as_many_are_unseen_as_on_simulated_plots_of_which_nothing_was_seen():
+    """Few come from none, so that no plant is infested twice."""
+    rng = np.random.default_rng(4)
+    looks = np.zeros((3, N), bool)
+    looks[1, : N // 2] = looks[2, ::3] = True
+    missed, sends = 0.3, np.array([0.6, 0.6, 0.0])
+    roots, lands = np.zeros((3, N)), by_hand(SHARES)
+    roots[0], roots[1] = 0.004, 0.002
+    alone = np.cumsum(np.where(looks, np.log(missed), 0.0)[::-1], axis=0)[::-1]
+    unseen = stays_unseen(alone, np.zeros((3, N)), sends, SHARES, LANDING)
+    active = np.zeros((3, N))
+    active[0, 30] = 1.0
+    expected = unseen_now(unseen, active, roots, sends, SHARES, LANDING)
+    kept, there = 0, np.zeros(N)
+    for _ in range(12_000):
+        infested = np.zeros(N, bool)
+        shown = False
+        for morning in range(3):
+            new = rng.random(N) < roots[morning]
+            if morning:
+                senders = infested.astype(float)
+                senders[30] += active[morning - 1, 30]
+                new |= rng.random(N) < -np.expm1(-sends[morning - 1] * (senders @ lands))
+            infested |= new
+            seen = infested & looks[morning] & (rng.random(N) > missed)
+            shown = shown or seen.any()
+        if not shown:
+            kept, there = kept + 1, there + infested
+    assert kept > 4_000
+    assert expected.sum() == pytest.approx(there.sum() / kept, rel=0.05)
+    assert expected == pytest.approx(there / kept, abs=0.012)

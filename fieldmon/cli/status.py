@@ -128,6 +128,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  {'' if number else 'learnt so far':22} {learnt.sentence()}"
     if not now.learnt:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
+    if (taught := season.taught()) is not None:
+        yield f"  an earlier season      {taught}"
     if (pest := season.settings.pest) is not None:
         yield f"  pest                   {pest.title or pest.name}"
     if now.development is not None:

@@ -151,10 +151,10 @@ def init(options: InitOptions) -> None:
 
     With --pest the chance map follows that pest's spread, and with --weather the warmth of nights.
 
-    Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
-    Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     With --earlier a season begins with what an earlier one learnt: detection, arrivals, jumps.
 
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     Example: fieldmon init season.gpkg estate.zip --feature Gate --pest spider-mite
     Example: fieldmon init season.gpkg estate.zip --feature Gate --earlier last_year.gpkg
     """

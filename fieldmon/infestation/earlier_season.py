@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.origins import (
     ANYWHERE,
@@ -164,19 +164,27 @@ class EarlierSeason:
         """Return what of it counts, in a season in which this is believed."""
         if not self.is_of(believed.pest):
             return worded(
-                "What {plot} taught until {until} does not count: it was of another pest.",
+                "What was learnt on {plot} until {until} does not count: it was of another pest.",
                 plot=self.plot,
                 until=self.until,
             )
-        if len(self._left_out(believed)):
+        left_out, anew = self._left_out(believed), []
+        if OVERLOOKED in left_out:
+            anew.append(worded("detection"))
+        if BY_ADJACENT in left_out:
+            anew.append(worded("spread to neighbours"))
+        if JUMPED in left_out:
+            anew.append(worded("jumps"))
+        if anew:
             return worded(
-                "Begun with what {plot} taught until {until}, at half its weight; not with what "
-                "other inspections, another rate of spread or other spacings make another.",
+                "Begun with what was learnt on {plot} until {until}, at half its weight. Learnt "
+                "anew, as settings or spacings differ: {anew}.",
                 plot=self.plot,
                 until=self.until,
+                anew=joined(", ", anew),
             )
         return worded(
-            "Begun with what {plot} taught until {until}, at half its weight.",
+            "Begun with what was learnt on {plot} until {until}, at half its weight.",
             plot=self.plot,
             until=self.until,
         )

@@ -21,7 +21,9 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     assert out.splitlines() == [*lines(kept, now), ahead]
     assert f"{now.plants} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
-    assert "learnt so far          detection 84 %" in out
+    assert "believed at first      An inspection finds 84 % of what is there" in out
+    kept.record(Inspections.of(np.array([1]), np.array([0]), np.datetime64(BEGINS)), "x")
+    assert "learnt so far          An inspection finds " in run("status", season)[1]
     assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
 
 

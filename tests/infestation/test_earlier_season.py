@@ -59,18 +59,18 @@ def test_how_many_were_infested_at_its_start_is_not_carried_over():
 
 
 @pytest.mark.parametrize(
-    ("believed", "left_out", "kept"),
+    ("believed", "left_out", "kept", "anew"),
     [
-        (replace(BELIEVED, detection=0.5), OVERLOOKED, BY_ADJACENT),
-        (replace(BELIEVED, rate_per_day=0.3), BY_ADJACENT, OVERLOOKED),
-        (replace(BELIEVED, row_m=2 * BELIEVED.row_m), JUMPED, BY_ADJACENT),
+        (replace(BELIEVED, detection=0.5), OVERLOOKED, BY_ADJACENT, "detection"),
+        (replace(BELIEVED, rate_per_day=0.3), BY_ADJACENT, OVERLOOKED, "neighbours, jumps"),
+        (replace(BELIEVED, row_m=2 * BELIEVED.row_m), JUMPED, BY_ADJACENT, "jumps"),
     ],
 )
-def test_what_is_told_otherwise_is_learnt_anew(believed, left_out, kept):
+def test_what_is_told_otherwise_is_learnt_anew(believed, left_out, kept, anew):
     one = earlier()
     begun = one.begin(FIRST, believed)
     assert begun.counts.expected[left_out] == 0.0 < begun.counts.expected[kept]
-    assert "; not with" in one.sentence(believed)
+    assert one.sentence(believed).endswith(f"{anew}.")
 
 
 def test_of_another_pest_nothing_counts_and_that_is_said():
@@ -81,7 +81,7 @@ def test_of_another_pest_nothing_counts_and_that_is_said():
 
 def test_where_seasons_are_alike_the_sentence_has_no_but():
     said = earlier().sentence(BELIEVED)
-    assert said == "Begun with what Gate taught until 2025-11-30, at half its weight."
+    assert said == "Begun with what was learnt on Gate until 2025-11-30, at half its weight."
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -21,7 +21,10 @@ def verdicts(
     ] = 100,
     maps: Annotated[
         Path | None,
-        typer.Option(help="Folder with the public plant maps, to compare on these too."),
+        typer.Option(
+            help="Folder with maps of plants, public ones or NAME.map.csv (docs: strategies), to "
+            "compare on these too."
+        ),
     ] = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")

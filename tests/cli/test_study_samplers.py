@@ -11,7 +11,7 @@ from tests.cli.estate import table
     [
         (["-o", __file__], "must be a folder"),
         (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
-        (["--maps", "."], "must hold one of"),
+        (["--maps", "."], "must hold a map of plants"),
         (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),
         (["--pest", "whitefly", "--scenario", "world"], "must begin with world"),
     ],

@@ -11,7 +11,7 @@ import typer
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
-from fieldmon.cli.study_output import can_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
 from fieldmon.errors import SettingError
@@ -137,7 +137,7 @@ def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonO
 
     study = study_of(scenarios, range(seeds))
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome)
-    with counting("Seasons") as count, table, executor.threads() as workers:
+    with going_on(file), counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     return table.asked()
 

@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
-from fieldmon.cli.study_output import can_be_folder
+from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
 
@@ -56,7 +56,7 @@ def verdicts(
     questions = [replace(each, pest_in_weather=pest_in_weather) for each in questions]
     study, file = study_of_verdicts(questions, range(seeds)), output / "verdicts.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], VerdictOutcome)
-    with counting("Plots") as count, table, executor.threads() as workers:
+    with going_on(file), counting("Plots") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     typer.echo(f"{'question':34} {'contender':26} looks  of W  right  apart  none")
     for one in summaries(table.asked()):

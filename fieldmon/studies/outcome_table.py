@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from typing import Self
 
 _SAVED_EVERY_S = 15.0
+# so much is shown of a line that cannot be read
+_SHOWN = 60
 
 
 class StudyOutcome(Protocol):
@@ -59,7 +61,7 @@ class OutcomeTable(Generic[Row]):
         self._by_key: dict[Hashable, list[Row]] = {}
         self._order = list(order)
         self._saved = monotonic()
-        text = file.read_text(encoding="utf-8") if file.exists() else None
+        text = file.read_text(encoding="utf-8", errors="replace") if file.exists() else None
         for outcome in [] if text is None else outcomes_from(text, file.name, kind):
             self._by_key.setdefault(outcome.key, []).append(outcome)
 
@@ -118,6 +120,16 @@ def outcomes_from(text: str, name: str, kind: type[Row]) -> list[Row]:
             "Move it away, or name another folder."
         )
     return [
-        kind(*(read(value) for read, value in zip(kind.kinds, row, strict=True)))
-        for row in rows[1:]
+        _outcome(row, f"Line {number} of {name}", kind) for number, row in enumerate(rows[1:], 2)
     ]
+
+
+def _outcome(row: list[str], line: str, kind: type[Row]) -> Row:
+    try:
+        return kind(*(read(value) for read, value in zip(kind.kinds, row, strict=True)))
+    except ValueError as error:
+        raise FileProblem(
+            f"{line} must hold {', '.join(kind.columns)} as this study wrote them, but it is "
+            f"{','.join(row)[:_SHOWN]!r}. The table was changed or cut: move it away, or name "
+            "another folder."
+        ) from error

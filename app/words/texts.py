@@ -389,8 +389,8 @@ BEGIN_NOTE = (
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 EARLIER, NO_EARLIER = "Begin with what an earlier season learnt", "Without one"
 EARLIER_HELP = (
-    "Detection, arrivals, jumps and hiding, as a season on this plot or estate learnt them, are "
-    "believed at first, at half their weight."
+    "Detection, arrivals and jumps, as a season on this plot or estate learnt them, are a first "
+    "guess. It counts little against the finds of this season."
 )
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"

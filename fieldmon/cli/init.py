@@ -85,7 +85,7 @@ class InitOptions:
         Path | None,
         typer.Option(
             help="File of an earlier season on the plot or the estate: what it learnt of the "
-            "insects is believed at first, at half its weight.",
+            "insects is a first guess, which counts little against this season's finds.",
         ),
     ] = None
     language: Language = None

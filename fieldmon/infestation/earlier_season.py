@@ -30,13 +30,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 # what another season learnt counts half as much as what this one learns (power prior: Ibrahim &
-# Chen 2000, Stat. Sci. 15:46), and as so many finds of an origin at most: a season that differs
-# soon outweighs it (our choice)
-_WORTH, _MOST_FINDS = 0.5, 20.0
+# Chen 2000, Stat. Sci. 15:46), and as so many finds of an origin at most: with five or twenty,
+# intervals held far less often where insects came otherwise than in the earlier season (chosen on
+# twenty seasons in each of six worlds; see docs/seasons.md)
+_WORTH, _MOST_FINDS = 0.5, 2.0
 # plants that stand otherwise by more are not jumped over alike (our choice)
 _SPACED_ALIKE = 0.1
-# how infested plants stand, and for how many nights they hide
-_N_WAYS, _N_HIDDEN = 4, 4
+# how infested plants may stand together
+_N_WAYS = 4
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,10 @@ class Believed:
 class EarlierSeason:
     """What an earlier season learnt of its insects: a first belief of the next one.
 
-    Learnt are the detection, how many arrive, whether insects jump and how far, and whether new
-    infestations hide. How many were infested at the start is not carried over: that is another
-    season's. It counts half, and as 20 finds of an origin at most.
+    Learnt are the detection, how many arrive, whether insects jump and how far. How many were
+    infested at the start is not carried over, as that is another season's, nor whether new
+    infestations hide, as late in a season that cannot be told from what was not inspected. It
+    counts half, and as two finds of an origin at most.
 
     Parameters
     ----------
@@ -91,9 +93,8 @@ class EarlierSeason:
         What its numbers are multiples of.
     found, expected
         ``(N_ORIGINS,)`` finds of each origin, and those expected, as they count now.
-    stands, hides
-        ``(4,)`` each, evidence of how infested plants stand together, and for how many nights
-        infestations hide, as it counts now.
+    stands
+        ``(4,)`` evidence of how infested plants stand together, as it counts now.
 
     Examples
     --------
@@ -111,10 +112,9 @@ class EarlierSeason:
     found: tuple[float, ...]
     expected: tuple[float, ...]
     stands: tuple[float, ...]
-    hides: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        lengths = {"found": N_ORIGINS, "expected": N_ORIGINS, "stands": _N_WAYS, "hides": _N_HIDDEN}
+        lengths = {"found": N_ORIGINS, "expected": N_ORIGINS, "stands": _N_WAYS}
         for name, length in lengths.items():
             values = np.array(getattr(self, name), float)
             if values.shape != (length,) or not np.isfinite(values).all():
@@ -136,11 +136,9 @@ class EarlierSeason:
             finds = evening.counts.found[origin], evening.counts.expected[origin]
             worth = min(_WORTH, _MOST_FINDS / max(*finds, 1e-12))
             found[origin], expected[origin] = worth * np.array(finds)
-        latency = evening.latency
-        hides = np.zeros(_N_HIDDEN) if latency is None else latency.evidence
         return cls(
             plot, until, believed, _numbers(found), _numbers(expected),
-            _numbers(_WORTH * evening.evidence), _numbers(_WORTH * hides),
+            _numbers(_WORTH * evening.evidence),
         )  # fmt: skip
 
     def begin(self, first: TracedPairs, believed: Believed) -> TracedPairs:
@@ -150,11 +148,8 @@ class EarlierSeason:
         found, expected = np.array(self.found), np.array(self.expected)
         left_out = self._left_out(believed)
         found[left_out] = expected[left_out] = 0.0
-        latency = first.latency and replace(first.latency, evidence=np.array(self.hides))
-        return replace(
-            first, counts=OriginCounts(found, expected), evidence=np.array(self.stands),
-            latency=latency,
-        )  # fmt: skip
+        counts, stands = OriginCounts(found, expected), np.array(self.stands)
+        return replace(first, counts=counts, evidence=stands)
 
     def is_of(self, pest: str) -> bool:
         """Tell whether it was learnt of this pest; empty: of one that nobody named."""
@@ -177,14 +172,15 @@ class EarlierSeason:
             anew.append(worded("jumps"))
         if anew:
             return worded(
-                "Begun with what was learnt on {plot} until {until}, at half its weight. Learnt "
-                "anew, as settings or spacings differ: {anew}.",
+                "Begun with what was learnt on {plot} until {until}, which counts little against "
+                "this season's finds. Learnt anew, as settings or spacings differ: {anew}.",
                 plot=self.plot,
                 until=self.until,
                 anew=joined(", ", anew),
             )
         return worded(
-            "Begun with what was learnt on {plot} until {until}, at half its weight.",
+            "Begun with what was learnt on {plot} until {until}, which counts little against this "
+            "season's finds.",
             plot=self.plot,
             until=self.until,
         )
@@ -202,7 +198,7 @@ def earlier_from(plain: dict[str, Any] | None) -> EarlierSeason | None:
     """Return it as `dataclasses.asdict` and JSON wrote it; None: there is none."""
     if plain is None:
         return None
-    learnt = {name: tuple(plain[name]) for name in ("found", "expected", "stands", "hides")}
+    learnt = {name: tuple(plain[name]) for name in ("found", "expected", "stands")}
     until, believed = date.fromisoformat(plain["until"]), Believed(**plain["believed"])
     return EarlierSeason(plain["plot"], until, believed, **learnt)
 

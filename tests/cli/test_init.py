@@ -66,7 +66,7 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(run, tmp_path):
     assert code == 0, err
     code, out, err, _ = run(*begin, "--earlier", "last.gpkg")
     assert code == 0, err
-    said = f"Begun with what was learnt on Nursery until {BEGINS}, at half its weight."
+    said = f"Begun with what was learnt on Nursery until {BEGINS}, which counts little"
     assert said in out
     assert said in run("status", "s.gpkg")[1]
     # another pest teaches nothing of this one, and that is said

@@ -45,9 +45,9 @@ def test_what_was_learnt_counts_half():
     assert detection_of(FIRST).value < detection_of(begun).value < 0.9
 
 
-def test_however_many_finds_it_had_it_counts_as_twenty_of_an_origin():
+def test_however_many_finds_it_had_it_counts_as_two_of_an_origin():
     begun = earlier(900.0, 300.0).begin(FIRST, BELIEVED)
-    assert begun.counts.found[JUMPED] == pytest.approx(20.0)
+    assert begun.counts.found[JUMPED] == pytest.approx(2.0)
     assert begun.counts.found[JUMPED] / begun.counts.expected[JUMPED] == pytest.approx(3.0)
 
 
@@ -81,7 +81,10 @@ def test_of_another_pest_nothing_counts_and_that_is_said():
 
 def test_where_seasons_are_alike_the_sentence_has_no_but():
     said = earlier().sentence(BELIEVED)
-    assert said == "Begun with what was learnt on Gate until 2025-11-30, at half its weight."
+    assert said == (
+        "Begun with what was learnt on Gate until 2025-11-30, which counts little against this "
+        "season's finds."
+    )
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -96,10 +99,7 @@ def test_what_a_season_learnt_moves_the_next_one_toward_it(seed):
     assert ((low - 1e-12 <= scales[1]) & (scales[1] <= high + 1e-12)).all()
     ends = sorted((first.jumps, evening.jumps))
     assert ends[0] - 1e-12 <= begun.jumps <= ends[1] + 1e-12
-    assert begun.latency.likely == pytest.approx(
-        np.exp(0.5 * evening.latency.evidence) * first.latency.likely
-        / (np.exp(0.5 * evening.latency.evidence) @ first.latency.likely)
-    )  # fmt: skip
+    assert begun.latency.likely.tolist() == first.latency.likely.tolist()
 
 
 def test_a_season_of_a_season_counts_a_quarter():

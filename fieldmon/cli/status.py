@@ -123,7 +123,11 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low} to {ahead.high} with "
         "a chance of 90 %)"
     )
-    yield f"  found of all           {now.detection_pct:6.1f} %, as believed"
+    least, most = (100 * now.found / max(now.found + n, 1) for n in (ahead.high, ahead.low))
+    yield (
+        f"  found of all           {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %), "
+        "as believed"
+    )
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
     since = "learnt so far" if now.inspected else "believed at first"
     for number, learnt in enumerate(worth_saying(now.learnt)):

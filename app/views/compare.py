@@ -31,6 +31,8 @@ def show(choices: Choices) -> None:
     field_map.want(map_layers.day_map(choices))
     st.caption(texts.COMPARE_INTRO)
     pest = chosen_pest.in_weather(choices)
+    if pest is None:
+        st.caption(texts.COMPARE_ASSUMED)
     settings = comparing.settings(choices, pest)
     if not 1 <= len(settings.strategies) <= _MOST:
         st.warning(texts.TOO_MANY.format(most=_MOST, n=len(settings.strategies)))

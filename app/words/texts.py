@@ -829,6 +829,9 @@ COMPARE_INTRO = (
     "Seasons are simulated on this plot: the start is drawn from today's chance map, and every "
     "strategy meets the same insects. Less loss (infested plants times days) is better."
 )
+COMPARE_ASSUMED = (
+    "Assumed: insects spread to the plants next to them only, and plants found are treated at once."
+)
 STRATEGY_SAMPLERS, STRATEGY_HOURS = "Ways to choose the plants", "Working hours"
 WHOSE_DAY = "Whose day"
 STRATEGY_INSPECTION_S, STRATEGY_ROBOTS = "Seconds at a plant", "Robots"

@@ -95,7 +95,8 @@ class BeliefSettings:
     ) -> Belief:
         """Return what is believed at first, from the `chance` ``(n,)`` of each plant of a `grid`.
 
-        Only where finds are traced is anything made of a `pest`, and of an earlier season.
+        Only where finds are traced is anything made of a `pest`, and of an earlier season: of what
+        it learnt of the detection only if the same `detection` is told.
         """
         must_be_shaped("The first morning's", {"chance": (chance, (len(grid),))})
         if not self.traces:
@@ -108,7 +109,10 @@ class BeliefSettings:
         return self.earlier.begin(traced, self.believed(grid, pest, detection))
 
     def believed(self, grid: PlantGrid, pest: Pest | None, detection: float) -> Believed:
-        """Return what the numbers that are learnt are multiples of."""
+        """Return what the numbers that are learnt on a `grid` are multiples of.
+
+        With a `pest`, by which nights go, and the `detection` that is told.
+        """
         name = "" if pest is None else pest.name
         return Believed.of(grid, name, self.spread.rate_per_day, detection)
 

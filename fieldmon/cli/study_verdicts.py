@@ -14,6 +14,9 @@ from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
 
+# 1.96 standard deviations of a share of one half
+_WIDEST = 0.98
+
 
 def verdicts(
     seeds: Annotated[
@@ -43,6 +46,7 @@ def verdicts(
     from fieldmon.simulation.experiment import run
     from fieldmon.studies.outcome_table import OutcomeTable
     from fieldmon.studies.verdicts.until_verdict import (
+        APART,
         VerdictOutcome,
         real_questions,
         study_of_verdicts,
@@ -64,4 +68,11 @@ def verdicts(
             f"{one.question[:34]:34} {one.contender:26} {one.looks:5.0f} {one.of_w:5.2f} "
             f"{one.right:6.2f} {one.right_apart:6.2f} {one.undecided:5.2f}"
         )
+    typer.echo(
+        "looks: inspections until the verdict, on average. of W: over those of the whole W walk. "
+        "right: share of right verdicts. apart: the same where the share infested is "
+        f"{APART:g} times the threshold or more, or 1/{APART:g} of it or less. none: share of "
+        f"plots without a verdict. With {seeds} plots a question a share may be off by "
+        f"{_WIDEST / seeds**0.5:.2f} (95 %)."
+    )
     typer.echo(f"Written: {file}")

@@ -133,10 +133,17 @@ def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonO
     from fieldmon.simulation import executor
     from fieldmon.simulation.experiment import run
     from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.samplers.contenders import CONTENDERS, OF_PESTS
     from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of
 
+    pest = scenarios[0].pest_in_weather is not None
+    always = {one.name for one in (OF_PESTS if pest else CONTENDERS) if one.every == 1}
+
+    def whole(rows: list[SeasonOutcome]) -> bool:
+        return always <= {row.contender for row in rows}
+
     study = study_of(scenarios, range(seeds))
-    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome)
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome, whole)
     with going_on(file), counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     return table.asked()

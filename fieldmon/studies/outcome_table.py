@@ -12,7 +12,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Sequence
+    from collections.abc import Callable, Hashable, Iterable, Sequence
     from pathlib import Path
     from types import TracebackType
     from typing import Self
@@ -54,9 +54,18 @@ class OutcomeTable(Generic[Row]):
         Keys in the order in which they are written. Others that the file holds come before them.
     kind
         The class of its rows.
+    whole
+        Tells whether the rows of a chunk are all that there should be; what lost some is simulated
+        again.
     """
 
-    def __init__(self, file: Path, order: Iterable[Hashable], kind: type[Row]) -> None:
+    def __init__(
+        self,
+        file: Path,
+        order: Iterable[Hashable],
+        kind: type[Row],
+        whole: Callable[[list[Row]], bool] = bool,
+    ) -> None:
         self.file, self._kind = file, kind
         self._by_key: dict[Hashable, list[Row]] = {}
         self._order = list(order)
@@ -64,6 +73,9 @@ class OutcomeTable(Generic[Row]):
         text = file.read_text(encoding="utf-8", errors="replace") if file.exists() else None
         for outcome in [] if text is None else outcomes_from(text, file.name, kind):
             self._by_key.setdefault(outcome.key, []).append(outcome)
+        for key in self._order:
+            if key in self._by_key and not whole(self._by_key[key]):
+                del self._by_key[key]
 
     def holds(self, key: Hashable) -> bool:
         """Tell whether a chunk is there."""

@@ -47,6 +47,14 @@ def test_a_table_that_is_no_text_is_refused(tmp_path):
         OutcomeTable(file, [], SeasonOutcome)
 
 
+def test_a_chunk_that_lost_rows_is_made_again_but_others_are_left(tmp_path):
+    file = tmp_path / "samplers.csv"
+    rows = [*outcomes("A", 0), *outcomes("A", 1)[:1], *outcomes("B", 0)[:1]]
+    file.write_text(csv_text(rows, SeasonOutcome))
+    table = OutcomeTable(file, [("A", 0), ("A", 1)], SeasonOutcome, lambda rows: len(rows) == 2)
+    assert [table.holds(key) for key in (("A", 0), ("A", 1), ("B", 0))] == [True, False, True]
+
+
 def test_it_is_written_when_it_is_left_even_by_an_error(tmp_path):
     file = tmp_path / "samplers.csv"
 

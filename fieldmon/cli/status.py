@@ -123,7 +123,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low} to {ahead.high} with "
         "a chance of 90 %)"
     )
-    least, most = (100 * now.found / max(now.found + n, 1) for n in (ahead.high, ahead.low))
+    least, most = now.detection_range_pct
     yield (
         f"  found of all           {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %), "
         "as believed"

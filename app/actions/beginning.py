@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
+from fieldmon.monitoring.history import BeliefSettings
 
 from ..state import chosen_day, chosen_pest, notices, plot_source, seasons_folder, work_day
 from ..words import language, texts
 from . import acting
 
 if TYPE_CHECKING:
+    from fieldmon.infestation.earlier_season import EarlierSeason
+
     from ..state.choices import Choices
 
 
@@ -22,6 +25,11 @@ def show(choices: Choices) -> None:
         st.markdown(f"### {texts.BEGIN_TITLE}")
         st.caption(texts.BEGIN_NOTE)
         st.text_input(texts.SEASON_NAME, _proposed(choices), key="season_name")
+        if kept := seasons_folder.names():
+            st.selectbox(
+                texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
+                format_func=lambda name: texts.NO_EARLIER if name is None else name,
+            )  # fmt: skip
         pressed = st.form_submit_button(texts.BEGIN)
     acting.once(pressed, begin, choices)
 
@@ -31,12 +39,19 @@ def _proposed(choices: Choices) -> str:
     return f"{choices.plot.field.name} {choices.on.year}"
 
 
+def _earlier() -> EarlierSeason | None:
+    """Return what the season chosen for it learnt; None: none was."""
+    chosen = st.session_state.get("season_earlier")
+    return None if chosen is None else Season(seasons_folder.path_of(chosen)).as_earlier()
+
+
 @notices.reporting
 def begin(choices: Choices) -> str:
     """Keep what is chosen as a season from now on."""
     name = st.session_state.get("season_name", _proposed(choices)).strip()
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
+        belief=BeliefSettings(earlier=_earlier()),
         pest=chosen_pest.pest(), weather=chosen_pest.met(choices) if chosen_pest.pest() else None,
         language=language.current(),
     )  # fmt: skip

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.infestation.learnt import worth_saying
+
 from ..state import chosen_day
 from ..words import texts
-from ..words.language import about, number
+from ..words.language import in_words
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
-
-# a chance below this is said to be 0 %: how far insects would jump is then of no use
-_SAID = 0.005
 
 
 def show(choices: Choices) -> None:
@@ -24,13 +22,11 @@ def show(choices: Choices) -> None:
     estimates = chosen_day.learnt(choices)
     if not estimates:
         st.caption(texts.NOT_LEARNT)
-    jump = next((one.value for one in estimates if one.name == "jumps beyond neighbours"), 1.0)
-    lines = []
-    for one in estimates:
-        if one.name == "length of jumps" and jump < _SAID:
-            continue
-        said = partial(number, form=".0%") if one.is_share else about
-        figures = {name: said(getattr(one, name)) for name in ("value", "low", "high")}
-        lines.append(f"- {texts.LEARNT[one.name].format(**figures)}")
-    if lines:
-        st.markdown("\n".join(lines))
+        return
+    taught = choices.season.taught()
+    notes = [] if taught is None else [in_words(taught)]
+    if not chosen_day.progress(choices).inspected:
+        notes.append(texts.LEARNT_AT_FIRST)
+    notes.append(texts.LEARNT_INTERVALS)
+    st.caption(" ".join(notes))
+    st.markdown("\n".join(f"- {in_words(one.sentence())}" for one in worth_saying(estimates)))

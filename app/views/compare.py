@@ -29,8 +29,8 @@ _VERDICT_PX = 230
 def show(choices: Choices) -> None:
     """Choose what to compare, and watch the results come."""
     field_map.want(map_layers.day_map(choices))
-    st.caption(texts.COMPARE_INTRO)
     pest = chosen_pest.in_weather(choices)
+    st.caption(texts.COMPARE_INTRO + ("" if pest else f" {texts.COMPARE_ASSUMED}"))
     settings = comparing.settings(choices, pest)
     if not 1 <= len(settings.strategies) <= _MOST:
         st.warning(texts.TOO_MANY.format(most=_MOST, n=len(settings.strategies)))

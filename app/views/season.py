@@ -42,8 +42,8 @@ def show(choices: Choices) -> None:
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     plants = len(choices.plot.grid)
-    everything = progress.found + now.expected
-    detected = 100.0 * progress.found / everything if everything else 100.0
+    shares = now.found_of_all_pct(progress.found)
+    detected, least, most = (number(one, ".0f") for one in shares)
     star = " *" if assumptions.of(choices) else ""
     with st.container(horizontal=True):
         low, high = (number(one, ",") for one in (now.low, now.high))
@@ -51,7 +51,7 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
         st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
-        share = texts.IN_PERCENT.format(value=number(detected, ".0f"))
+        share = texts.IN_PERCENT.format(value=f"{detected} ({least}–{most})")
         st.metric(f"{texts.DETECTED}{star}", share, width="content")
         seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
         st.metric(texts.INSPECTED_EVER, seen, width="content")

@@ -387,6 +387,11 @@ BEGIN_NOTE = (
     "says about the rest of the plot. Come back to it tomorrow from the list above."
 )
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
+EARLIER, NO_EARLIER = "Begin with what an earlier season learnt", "Without one"
+EARLIER_HELP = (
+    "Detection, arrivals and jumps, as a season on this plot or estate learnt them, are a first "
+    "guess. It counts little against the finds of this season."
+)
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
 YESTERDAY = "Yesterday"
@@ -779,13 +784,8 @@ NEVER_ROWS = Plural(
     "{n} of {all} rows was never inspected.", "{n} of {all} rows were never inspected."
 )
 LEARNT_TITLE = "What the inspections tell of the insects"
-LEARNT = {
-    "detection": "An inspection finds {value} of what is there ({low} to {high}).",
-    "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
-    "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
-    "jumps beyond neighbours": "They jump beyond the next plant with a chance of {value}.",
-    "length of jumps": "If so, jumps go {value} plants on average ({low} to {high}).",
-}
+LEARNT_AT_FIRST = "Nothing was inspected yet: this is what is believed at first."
+LEARNT_INTERVALS = "In brackets: intervals that hold with a chance of 90 %."
 AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"
 AHEAD = (
     "About {last} plants are infested after {nights} nights without inspections ({low} to {high} "
@@ -828,6 +828,9 @@ SCOUT_LAST = "Last: row {row}, plant {plant}: {result}"
 COMPARE_INTRO = (
     "Seasons are simulated on this plot: the start is drawn from today's chance map, and every "
     "strategy meets the same insects. Less loss (infested plants times days) is better."
+)
+COMPARE_ASSUMED = (
+    "Assumed: insects spread to the plants next to them only, and plants found are treated at once."
 )
 STRATEGY_SAMPLERS, STRATEGY_HOURS = "Ways to choose the plants", "Working hours"
 WHOSE_DAY = "Whose day"

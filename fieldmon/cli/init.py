@@ -81,6 +81,13 @@ class InitOptions:
     contact: Contact = 0.0
     least_gain: LeastGain = 0.5
     passing: Passing = None
+    earlier: Annotated[
+        Path | None,
+        typer.Option(
+            help="File of an earlier season on the plot or the estate: what it learnt of the "
+            "insects is a first guess, which counts little against this season's finds.",
+        ),
+    ] = None
     language: Language = None
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     pest_options: PestOptions = field(default_factory=PestOptions)
@@ -99,13 +106,14 @@ class InitOptions:
         """Return how the season is worked."""
         from dataclasses import replace
 
-        from fieldmon.monitoring import MonitoringSettings
+        from fieldmon.monitoring import MonitoringSettings, Season
         from fieldmon.monitoring.history import BeliefSettings
         from fieldmon.planning.members import Teamwork
 
         if self.spread is not None and pest_in_weather is not None:
             raise SettingError("--spread goes without --pest, which says how it spreads.")
-        belief = BeliefSettings(treated=not self.flag_only)
+        earlier = None if self.earlier is None else Season(self.earlier).as_earlier()
+        belief = BeliefSettings(treated=not self.flag_only, earlier=earlier)
         return MonitoringSettings(
             begins.date(),
             begins.time(),
@@ -143,9 +151,12 @@ def init(options: InitOptions) -> None:
 
     With --pest the chance map follows that pest's spread, and with --weather the warmth of nights.
 
+    With --earlier a season begins with what an earlier one learnt: detection, arrivals, jumps.
+
     Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
     Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     Example: fieldmon init season.gpkg estate.zip --feature Gate --pest spider-mite
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --earlier last_year.gpkg
     """
     import numpy as np
 
@@ -166,4 +177,6 @@ def init(options: InitOptions) -> None:
         f"Season begun in {path}: {len(known.records)} records, about {estimate(ahead.expected)} "
         f"plants believed infested ({ahead.low} to {ahead.high})."
     )
+    if (taught := season.taught()) is not None:
+        typer.echo(taught)
     typer.echo(f"Next: fieldmon plan {shlex.quote(str(path))} -o route.geojson")

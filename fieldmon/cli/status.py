@@ -109,6 +109,7 @@ def _show_batches(kept: Season) -> None:
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
     from fieldmon.compute.wording import estimate
+    from fieldmon.infestation.learnt import worth_saying
 
     ahead = now.estimate
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
@@ -122,12 +123,21 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low} to {ahead.high} with "
         "a chance of 90 %)"
     )
-    yield f"  found of all           {now.detection_pct:6.1f} %, as believed"
+    least, most = now.detection_range_pct
+    yield (
+        f"  found of all           {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %), "
+        "as believed"
+    )
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
-    for number, learnt in enumerate(now.learnt):
-        yield f"  {'' if number else 'learnt so far':22} {learnt.sentence()}"
-    if not now.learnt:
+    since = "learnt so far" if now.inspected else "believed at first"
+    for number, learnt in enumerate(worth_saying(now.learnt)):
+        yield f"  {'' if number else since:22} {learnt.sentence()}"
+    if now.learnt:
+        yield f"  {'':22} In brackets: intervals that hold with a chance of 90 %."
+    else:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
+    if (taught := season.taught()) is not None:
+        yield f"  an earlier season      {taught}"
     if (pest := season.settings.pest) is not None:
         yield f"  pest                   {pest.title or pest.name}"
     if now.development is not None:

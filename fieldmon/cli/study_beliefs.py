@@ -66,8 +66,8 @@ def beliefs(
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
             f"(as suspicious or not {c.suspicious_log_score:.4f}), skill {c.skill:.2f}, intervals "
-            f"of 90 and 50 % hold {c.covered:.0%} and {c.half_covered:.0%}, "
+            f"of 90 and 50 % hold on {c.covered:.0%} and {c.half_covered:.0%} of mornings, "
             f"{1000 * c.seconds_a_day:.0f} ms a day"
         )
     about = f"{chosen.name}; {seeds} seasons of 12 days inspected by {sampler}."
-    write_all(output, {"beliefs.html": report_html(made, about)})
+    write_all(output, {"beliefs.html": report_html(made, about, seeds)})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import typer
@@ -10,6 +11,7 @@ import typer
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 
@@ -20,6 +22,18 @@ def can_be_folder(output: Path) -> None:
         raise FileProblem(f"{output} must be a folder, but {there} is a file. Choose another one.")
     if not os.access(there, os.W_OK | os.X_OK):
         raise FileProblem(f"{there} must be a folder that you may write to, but you may not.")
+
+
+@contextmanager
+def going_on(table: Path) -> Iterator[None]:
+    """Say, where a person stops a study, that its table keeps what is done."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(
+            f"What is done is kept in {table}; the same command goes on from there.", err=True
+        )
+        raise
 
 
 def write_all(folder: Path, texts: dict[str, str]) -> None:

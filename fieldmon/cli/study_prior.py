@@ -43,7 +43,10 @@ class PriorOptions:
     ] = Path()
     maps: Annotated[
         Path | None,
-        typer.Option(help="Folder of mapped plants: run the samplers on those real maps instead."),
+        typer.Option(
+            help="Folder of mapped plants, public ones or NAME.map.csv (docs: strategies): run "
+            "the samplers on those real maps instead."
+        ),
     ] = None
     plot: Annotated[
         Path | None, typer.Option(help="Plot file: run the samplers on that plot instead.")

@@ -18,6 +18,7 @@ from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
 
 if TYPE_CHECKING:
+    import pandas as pd
     import pyarrow as pa
 
     from fieldmon.simulation.design import Design
@@ -145,20 +146,47 @@ def study_run(options: StudyOptions) -> None:
         typer.echo(f"Seasons are in {output}")
 
 
+# of one season there is no interval
+_FEW = 2
+#: what seasons have in common whose samplers meet the same insects
+_ALIKE = ["hours", "look_s", "infested", "spread"]
+
+
 def _tell(seasons: pa.Table) -> None:
-    """Print the mean of each combination."""
-    settings = ["sampler", "hours", "look_s", "infested", "spread"]
+    """Print the mean of each combination, and how much more it loses than the best sampler."""
     measures = ["detection_pct", "infested_plant_days"]
-    means = seasons.group_by(settings).aggregate(
-        [("seed", "count"), *((measure, "mean") for measure in measures)]
-    )
+    table = seasons.select(["sampler", *_ALIKE, "plot", "seed", *measures]).to_pandas()
     typer.echo(
-        "sampler           hours  look s  infested  spread  seasons  detection %  plant-days"
+        "sampler           hours  look s  infested  spread  seasons  detection %  plant-days  "
+        "more than the best"
     )
-    order = [(name, "ascending") for name in settings]
-    for row in means.sort_by(order).to_pylist():
-        typer.echo(
-            f"{row['sampler']:16s} {row['hours']:6g} {row['look_s']:7g} {row['infested']:9g} "
-            f"{row['spread']:7g} {row['seed_count']:8d} {row['detection_pct_mean']:12.1f} "
-            f"{row['infested_plant_days_mean']:11.0f}"
-        )
+    for alike, of_alike in table.groupby(_ALIKE, dropna=False):
+        hours, look_s, infested, spread = alike
+        lost = of_alike.pivot_table("infested_plant_days", ["plot", "seed"], "sampler")
+        best = lost.mean().idxmin()
+        for name, one in of_alike.groupby("sampler"):
+            typer.echo(
+                f"{name:16s} {hours:6g} {look_s:7g} {infested:9g} {spread:7g} {len(one):8d} "
+                f"{one['detection_pct'].mean():12.1f} {one['infested_plant_days'].mean():11.0f}  "
+                f"{_more(lost[name] - lost[best], is_best=name == best)}".rstrip()
+            )
+    typer.echo(
+        "Plant-days: infested plants, summed over the evenings. More than the best: season by "
+        "season, with 95 % intervals; one that holds 0 is no sure difference."
+    )
+
+
+def _more(difference: pd.Series[float], *, is_best: bool) -> str:
+    """Return how many plant-days more a sampler loses than the best, season by season."""
+    import numpy as np
+
+    from fieldmon.compute.wording import digits_of_estimate
+    from fieldmon.simulation.statistics import summary_statistics
+
+    if is_best:
+        return "(best)"
+    more = summary_statistics(np.asarray(difference, np.float64))
+    form = f"+.{digits_of_estimate(more.mean)}f"
+    if more.replicates < _FEW:
+        return format(more.mean, form)
+    return f"{more.mean:{form}} ({more.low:{form}} to {more.high:{form}})"

@@ -11,7 +11,7 @@ import typer
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
-from fieldmon.cli.study_output import can_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
 from fieldmon.errors import SettingError
@@ -47,7 +47,10 @@ class SamplersOptions:
     ] = None
     maps: Annotated[
         Path | None,
-        typer.Option(help="Folder with the public plant maps: compare finds on these."),
+        typer.Option(
+            help="Folder with maps of plants, public ones or NAME.map.csv (docs: strategies): "
+            "compare finds on these."
+        ),
     ] = None
     tune: Annotated[
         bool, typer.Option("--tune", help="Search Dynamic's open choices instead (ten minutes).")
@@ -72,7 +75,8 @@ def samplers(options: SamplersOptions) -> None:
     With --pest that pest lives in all scenarios, at the temperature of its figures, and every
     sampler knows it: "B, whitefly, clusters, prior none" is such a scenario.
 
-    With --maps the plots are maps of real plants, on which nothing spreads.
+    With --maps the plots are maps of real plants, on which nothing spreads. One of your own is a
+    table NAME.map.csv with the columns row, plant, infested, row_m and plant_m.
 
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """
@@ -129,11 +133,18 @@ def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonO
     from fieldmon.simulation import executor
     from fieldmon.simulation.experiment import run
     from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.samplers.contenders import CONTENDERS, OF_PESTS
     from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of
 
+    pest = scenarios[0].pest_in_weather is not None
+    always = {one.name for one in (OF_PESTS if pest else CONTENDERS) if one.every == 1}
+
+    def whole(rows: list[SeasonOutcome]) -> bool:
+        return always <= {row.contender for row in rows}
+
     study = study_of(scenarios, range(seeds))
-    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome)
-    with counting("Seasons") as count, table, executor.threads() as workers:
+    table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome, whole)
+    with going_on(file), counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     return table.asked()
 
@@ -157,17 +168,24 @@ def _on_maps(folder: Path, output: Path) -> None:
     from fieldmon.studies.samplers.mapped_plots import (
         SHARES,
         plots_in,
+        sentences,
         table,
         table_csv,
     )
 
-    rows = table(plots_in(folder))
+    plots, rows = plots_in(folder), []
     after = _columns(SHARES, "{:6.0%}")
-    typer.echo(f"{'Infested plants found after':44} {after}  per look, {after}  per hour")
-    for row in rows:
-        named = f"{row.name} (neighbours {row.correlation:.2f})"
-        found = _columns(row.per_look, "{:6.2f}")
-        typer.echo(f"{named:44} {row.who:9} {found}  {_columns(row.per_hour, '{:6.1f}')}")
+    typer.echo(f"{'Infested plants found after':44} {'':9} {after}  {after}")
+    typer.echo(f"{'':44} {'':9} {'per inspection':27}  per hour")
+    for plot in plots:
+        of_plot = table([plot])
+        for row in of_plot:
+            named = f"{row.name} (neighbours {row.correlation:.2f})"
+            found = _columns(row.per_look, "{:6.2f}")
+            typer.echo(f"{named:44} {row.who:9} {found}  {_columns(row.per_hour, '{:6.1f}')}")
+        rows += of_plot
+    for sentence in sentences(rows):
+        typer.echo(sentence)
     write_all(output, {"maps.csv": table_csv(rows)})
 
 

@@ -9,9 +9,18 @@ import typer
 
 
 def spread(
-    folder: Annotated[Path, typer.Argument(help="Folder with public maps of several dates.")],
+    folder: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder with maps of several dates: public ones, or NAME.map.csv (docs: "
+            "strategies)."
+        ),
+    ],
 ) -> None:
     """Predict mapped plots from date to date; compare with no change and the thesis's rule.
+
+    Each way is fitted on one half of a plot and predicts the other. Scores are of the plants that
+    were clean, minus the logarithm of the chance given to what was seen: less is better.
 
     Example: fieldmon study spread maps
     """

@@ -9,7 +9,7 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
-from fieldmon.cli.study_output import can_be_folder
+from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
 
@@ -62,7 +62,7 @@ def treatments(
     study = study_of_treatments(scenarios, range(seeds), names)
     file = output / "treatments.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TreatedSeason)
-    with counting("Seasons") as count, table, executor.threads() as workers:
+    with going_on(file), counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     _tell(table.asked())
     _tell_areas(scenarios, seeds)

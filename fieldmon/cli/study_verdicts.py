@@ -10,9 +10,12 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
-from fieldmon.cli.study_output import can_be_folder
+from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
+
+# 1.96 standard deviations of a share of one half
+_WIDEST = 0.98
 
 
 def verdicts(
@@ -21,7 +24,10 @@ def verdicts(
     ] = 100,
     maps: Annotated[
         Path | None,
-        typer.Option(help="Folder with the public plant maps, to compare on these too."),
+        typer.Option(
+            help="Folder with maps of plants, public ones or NAME.map.csv (docs: strategies), to "
+            "compare on these too."
+        ),
     ] = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV).")
@@ -40,6 +46,7 @@ def verdicts(
     from fieldmon.simulation.experiment import run
     from fieldmon.studies.outcome_table import OutcomeTable
     from fieldmon.studies.verdicts.until_verdict import (
+        APART,
         VerdictOutcome,
         real_questions,
         study_of_verdicts,
@@ -53,7 +60,7 @@ def verdicts(
     questions = [replace(each, pest_in_weather=pest_in_weather) for each in questions]
     study, file = study_of_verdicts(questions, range(seeds)), output / "verdicts.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], VerdictOutcome)
-    with counting("Plots") as count, table, executor.threads() as workers:
+    with going_on(file), counting("Plots") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     typer.echo(f"{'question':34} {'contender':26} looks  of W  right  apart  none")
     for one in summaries(table.asked()):
@@ -61,4 +68,11 @@ def verdicts(
             f"{one.question[:34]:34} {one.contender:26} {one.looks:5.0f} {one.of_w:5.2f} "
             f"{one.right:6.2f} {one.right_apart:6.2f} {one.undecided:5.2f}"
         )
+    typer.echo(
+        "looks: inspections until the verdict, on average. of W: over those of the whole W walk. "
+        "right: share of right verdicts. apart: the same where the share infested is "
+        f"{APART:g} times the threshold or more, or 1/{APART:g} of it or less. none: share of "
+        f"plots without a verdict. With {seeds} plots a question a share may be off by "
+        f"{_WIDEST / seeds**0.5:.2f} (95 %)."
+    )
     typer.echo(f"Written: {file}")

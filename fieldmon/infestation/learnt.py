@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import written
+from fieldmon.compute.wording import estimate, figure, worded
 from fieldmon.infestation.origins import (
     ANYWHERE,
     ARRIVE,
@@ -21,6 +21,9 @@ from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.compute.wording import Worded
     from fieldmon.infestation.belief import Belief
 
 # 90 % of a normal distribution lie within so many standard deviations
@@ -35,8 +38,8 @@ class Learnt:
     ----------
     name
         ``"detection"``, ``"infested at the start"`` (plants), ``"arrivals a night"`` (plants),
-        ``"jumps beyond neighbours"`` (the chance that insects do), or ``"length of jumps"``
-        (plants, if they do).
+        ``"jumps beyond neighbours"`` (the chance that insects do), ``"length of jumps"``
+        (plants, if they do), or ``"hiding"`` (the chance that new infestations hide for nights).
     value, low, high
         The guess and the interval; both ends are the guess where the number is a chance itself.
     """
@@ -51,16 +54,57 @@ class Learnt:
         """Tell whether it is a chance or a share, not a number of plants."""
         return self.name in _SHARES
 
-    def sentence(self) -> str:
-        """Return it in words."""
-        form = ".0%" if self.is_share else ".1f"
-        if self.low == self.high:
-            return f"{self.name} {written(self.value, form)}"
-        between = f"{written(self.low, form)} to {written(self.high, form)}"
-        return f"{self.name} {written(self.value, form)} ({between})"
+    def sentence(self) -> Worded:
+        """Return it in words, the interval in brackets."""
+        value, low, high = (
+            figure(one, ".0%") if self.is_share else estimate(one)
+            for one in (self.value, self.low, self.high)
+        )
+        if self.name == "detection":
+            return worded(
+                "An inspection finds {value} of what is there ({low} to {high}).",
+                value=value,
+                low=low,
+                high=high,
+            )
+        if self.name == "infested at the start":
+            return worded(
+                "{value} plants were infested at the start ({low} to {high}).",
+                value=value,
+                low=low,
+                high=high,
+            )
+        if self.name == "arrivals a night":
+            return worded(
+                "{value} plants a night are infested from outside ({low} to {high}).",
+                value=value,
+                low=low,
+                high=high,
+            )
+        if self.name == "length of jumps":
+            return worded(
+                "If they do, jumps go {value} plants on average ({low} to {high}).",
+                value=value,
+                low=low,
+                high=high,
+            )
+        if self.name == "hiding":
+            return worded(
+                "New infestations hide for some nights with a chance of {value}.", value=value
+            )
+        return worded("Insects jump beyond the next plant with a chance of {value}.", value=value)
 
 
-_SHARES = ("detection", "jumps beyond neighbours")
+_SHARES = ("detection", "jumps beyond neighbours", "hiding")
+# a chance below this is said to be 0 %: how far insects would jump is then of no use
+_SAID = 0.005
+
+
+def worth_saying(learnt: Iterable[Learnt]) -> tuple[Learnt, ...]:
+    """Return what there is to say: nothing of the length of jumps where insects do not jump."""
+    told = tuple(learnt)
+    no_jumps = any(one.name == "jumps beyond neighbours" and one.value < _SAID for one in told)
+    return tuple(one for one in told if not (no_jumps and one.name == "length of jumps"))
 
 
 def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
@@ -75,7 +119,7 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
     >>> from fieldmon.plot.layout import rectangle
     >>> at_first = TracedPairs.of(rectangle(9, 9), np.full(81, 0.02))
     >>> learnt_from(at_first, 0.84)[0].sentence()
-    'detection 84 % (71 % to 94 %)'
+    'An inspection finds 84 % of what is there (71 % to 94 %).'
     """
     if not isinstance(belief, TracedPairs):
         return ()
@@ -102,7 +146,16 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
         ),
         Learnt("jumps beyond neighbours", jumps, jumps, jumps),
         _length(belief),
+        *_hiding(belief),
     )
+
+
+def _hiding(belief: TracedPairs) -> tuple[Learnt, ...]:
+    """Return whether new infestations hide; nothing where the pest that was named says it."""
+    if belief.latency is None:
+        return ()
+    hides = 1.0 - float(belief.latency.likely[0])
+    return (Learnt("hiding", hides, hides, hides),)
 
 
 def _length(belief: TracedPairs) -> Learnt:

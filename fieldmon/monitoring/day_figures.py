@@ -21,6 +21,18 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.history import History
 
 
+def found_pct(found: int, left: float) -> float:
+    """Return the plants found in percent of those and of what is left; 100 if there is neither.
+
+    Examples
+    --------
+    >>> [round(found_pct(4, left)) for left in (34.0, 161, 7)]
+    [11, 2, 36]
+    """
+    everything = found + left
+    return 100.0 * found / everything if everything else 100.0
+
+
 @dataclass(frozen=True)
 class DayFigures:
     """A day after its work.
@@ -52,6 +64,11 @@ class DayFigures:
         """Return the figures of a day from what was done and what is believed."""
         done = progress.inspected_today, progress.found_today
         return cls(on, *done, estimate.expected, estimate.low, estimate.high, estimate.chance_clean)
+
+    def found_of_all_pct(self, found: int) -> tuple[float, float, float]:
+        """Return `found` plants in percent of those and of what is left: guess, low and high."""
+        value, low, high = (found_pct(found, n) for n in (self.expected, self.high, self.low))
+        return value, low, high
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from
@@ -26,6 +27,7 @@ from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
@@ -42,7 +44,6 @@ if TYPE_CHECKING:
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 
 
@@ -64,6 +65,8 @@ class BeliefSettings:
         Whether finds are traced beyond the plants next to them, and the season's own inspections
         tell how far insects jump, how many arrive and how many are overlooked. Seasons begun
         before that was known go on without.
+    earlier
+        What an earlier season of the plot or the estate learnt; None: nothing is known of one.
 
     Examples
     --------
@@ -78,22 +81,40 @@ class BeliefSettings:
     )
     treated: bool = True
     traces: bool = True
+    earlier: EarlierSeason | None = None
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "The belief's")
 
     def first_morning(
-        self, grid: PlantGrid, chance: NDArray[np.float64], pest: Pest | None = None
+        self,
+        grid: PlantGrid,
+        chance: NDArray[np.float64],
+        pest: Pest | None = None,
+        detection: float = Robot().detects,
     ) -> Belief:
         """Return what is believed at first, from the `chance` ``(n,)`` of each plant of a `grid`.
 
-        Only where finds are traced is anything made of a `pest`.
+        Only where finds are traced is anything made of a `pest`, and of an earlier season: of what
+        it learnt of the detection only if the same `detection` is told.
         """
         must_be_shaped("The first morning's", {"chance": (chance, (len(grid),))})
         if not self.traces:
             return PairApproximation.of(grid, chance)
         traced = TracedPairs.of(grid, chance)
-        return traced if pest is None else traced.of_pest(pest)
+        if pest is not None:
+            traced = traced.of_pest(pest)
+        if self.earlier is None:
+            return traced
+        return self.earlier.begin(traced, self.believed(grid, pest, detection))
+
+    def believed(self, grid: PlantGrid, pest: Pest | None, detection: float) -> Believed:
+        """Return what the numbers that are learnt on a `grid` are multiples of.
+
+        With a `pest`, by which nights go, and the `detection` that is told.
+        """
+        name = "" if pest is None else pest.name
+        return Believed.of(grid, name, self.spread.rate_per_day, detection)
 
     def evening(
         self,

@@ -145,7 +145,9 @@ class Monitor:
         self._sampler = sampler_or_name(sampler)
         self._streams = RandomStreams(int(seed))
         first = _first_chance(plot, chance)
-        self._belief: Belief = self.belief_settings.first_morning(plot.grid, first)
+        self._belief: Belief = self.belief_settings.first_morning(
+            plot.grid, first, detection=self.robot.detects
+        )
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
         self._trail = np.empty(0, np.int32)
         self._day: MonitorDay | None = None

@@ -317,7 +317,7 @@ def nothing_yet(
     plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
 ) -> History:
     """Return the history of a season in which nothing was found or treated."""
-    belief = settings.belief.first_morning(plot.grid, prior, settings.pest)
+    belief = settings.belief.first_morning(plot.grid, prior, settings.pest, settings.robot.detects)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,

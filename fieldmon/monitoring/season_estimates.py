@@ -7,7 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.kinds import checked
+from fieldmon.compute.wording import worded
 from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.errors import SettingError
+from fieldmon.infestation.earlier_season import EarlierSeason
+from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import day_figures
 from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.monitoring.day_figures import DayFigures, Progress
@@ -23,6 +28,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
@@ -131,6 +137,39 @@ class SeasonEstimates(OpenSeason):
         """Return what the inspections up to the evening of `on` tell of the insects."""
         with self._asked(on) as (contents, morning, day):
             return contents.history.learnt(morning, day)
+
+    def taught(self) -> Worded | None:
+        """Return what of an earlier season counts in this one; None: it began without one."""
+        now = self._now()
+        belief, settings = now.settings.belief, now.settings
+        if belief.earlier is None or not belief.traces:
+            return None
+        detects = settings.robot.detects
+        return belief.earlier.sentence(belief.believed(self.plot.grid, settings.pest, detects))
+
+    def as_earlier(self) -> EarlierSeason:
+        """Return what the season learnt until its last day, as a next one may begin with it.
+
+        Raise `SettingError` if it learnt nothing: nothing was inspected, or finds are not traced.
+        """
+        on = self.last_date()
+        with self._asked(on) as (contents, morning, day):
+            evening = contents.history.evening(morning, day)
+        inspected = (contents.history.inspections.result != SKIPPED).any()
+        if not isinstance(evening, TracedPairs) or not inspected:
+            raise SettingError(
+                worded(
+                    "An earlier season must have learnt of its insects, but in {name} {why}. "
+                    "Begin without it.",
+                    name=self.path.name,
+                    why=worded("finds are traced to neighbours only")
+                    if inspected
+                    else worded("nothing was inspected"),
+                )
+            )
+        settings, plot = contents.settings, self.plot
+        believed = settings.belief.believed(plot.grid, settings.pest, settings.robot.detects)
+        return EarlierSeason.of(evening, believed, plot.field.name, on)
 
     def progress(self, on: date) -> Progress:
         """Return how far the inspections are after the work of `on`; nothing is estimated."""

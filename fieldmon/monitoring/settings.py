@@ -15,6 +15,7 @@ from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import SEED, AllowedRange
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
+from fieldmon.infestation.earlier_season import earlier_from
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
@@ -223,6 +224,10 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
         "prior": asdict(settings.prior),
         "beliefs": asdict(settings.belief),
     }
+    if settings.belief.earlier is None:
+        del plain["beliefs"]["earlier"]
+    else:
+        plain["beliefs"]["earlier"]["until"] = settings.belief.earlier.until.isoformat()
     plain["season"] = {
         "begins": settings.begins.isoformat(),
         "starts": settings.starts.isoformat(),
@@ -251,6 +256,10 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
         team = plain.get("team", {"members": []})
         # before finds were traced, seasons knew of neighbours only, and go on so
         belief = {"traces": False, **plain["beliefs"]}
+        parts_of_belief = {
+            "spread": Spread(**belief["spread"]),
+            "earlier": earlier_from(belief.get("earlier")),
+        }
         return MonitoringSettings(
             begins=date.fromisoformat(season["begins"]),
             starts=time.fromisoformat(season["starts"]),
@@ -258,7 +267,7 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
             sampler=chooses["name"],
             sampler_settings=chooses["settings"],
             prior=PriorSettings(**plain["prior"]),
-            belief=BeliefSettings(**{**belief, "spread": Spread(**belief["spread"])}),
+            belief=BeliefSettings(**{**belief, **parts_of_belief}),
             seed=season["seed"],
             team=tuple(_member(one) for one in team["members"]),
             teamwork=Teamwork(**team.get("teamwork", {})),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.hotspots import hot_spots
-from fieldmon.monitoring.day_figures import Progress
+from fieldmon.monitoring.day_figures import Progress, found_pct
 
 if TYPE_CHECKING:
     from datetime import date
@@ -83,5 +83,10 @@ class Status:
     @property
     def detection_pct(self) -> float:
         """Return the finds in percent of finds and what is still expected out there."""
-        everything = self.found + self.estimate.expected
-        return 100.0 * self.found / everything if everything else 100.0
+        return found_pct(self.found, self.estimate.expected)
+
+    @property
+    def detection_range_pct(self) -> tuple[float, float]:
+        """Return the same at both ends of the 90 % interval of what is still out there."""
+        ahead = self.estimate
+        return found_pct(self.found, ahead.high), found_pct(self.found, ahead.low)

@@ -13,6 +13,7 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.monitoring.day_figures import found_pct
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
@@ -145,7 +146,7 @@ def _stands(facts: _Facts) -> Iterator[Block]:
 
 def _figures(facts: _Facts) -> KeyFigures:
     status, ahead = facts.status, facts.status.estimate
-    low, high = _of_all(status.found, ahead.high), _of_all(status.found, ahead.low)
+    low, high = found_pct(status.found, ahead.high), found_pct(status.found, ahead.low)
     finds = sum(one.found for one in facts.days)
     twice = worded(words.FOUND_TWICE, n=finds) if finds != status.found else ""
     return KeyFigures(
@@ -162,11 +163,6 @@ def _figures(facts: _Facts) -> KeyFigures:
             KeyFigure(words.HOT_SPOTS, figure(len(status.hot_spots)), words.HOT_NOTE),
         )
     )  # fmt: skip
-
-
-def _of_all(found: float, left: float) -> float:
-    """Return what was found in percent of it and of what is left."""
-    return 100.0 * found / (found + left) if found + left else 100.0
 
 
 def _rows_seen(facts: _Facts) -> Iterator[str]:
@@ -200,7 +196,7 @@ def _went(facts: _Facts) -> Iterator[Block]:
         for name in ("expected", "low", "high")
     )
     share, least, most = (
-        np.array([_of_all(f, e) for f, e in zip(facts.found_by.tolist(), left, strict=True)])
+        np.array([found_pct(f, e) for f, e in zip(facts.found_by.tolist(), left, strict=True)])
         for left in (still.tolist(), high.tolist(), low.tolist())
     )
     found = np.array([one.found for one in facts.days], np.float64)
@@ -228,7 +224,7 @@ def _days(facts: _Facts) -> Table:
         (
             facts.units.day(one.on), figure(one.inspected), figure(one.found),
             worded("{n} ({low:,}–{high:,})", n=estimate(one.expected), low=one.low, high=one.high),
-            figure(_of_all(found, one.expected), ".0f", " %"),
+            figure(found_pct(found, one.expected), ".0f", " %"),
         )
         for one, found in zip(facts.days, facts.found_by.tolist(), strict=True)
     ]  # fmt: skip

@@ -137,6 +137,9 @@ def _of_belief(settings: WorkSettings, units: Units) -> Iterator[Row]:
         yield from _of_nights(settings, settings.belief.spread)
     else:
         yield from _of_pest(settings.pest_in_weather, units)
+    if (earlier := settings.belief.earlier) is not None:
+        said = {"plot": words.isolated(earlier.plot), "until": earlier.until}
+        yield words.EARLIER, worded(words.EARLIER_VALUE, **said), words.FROM_CHOSEN
     treated, usual = settings.belief.treated, BeliefSettings()
     yield words.TREATED, words.TREATED_VALUES[treated], _from(treated == usual.treated)
 

@@ -119,6 +119,7 @@ ARRIVALS_VALUE = "1 in {n:,.0f}"
 BACKGROUND = "Chance where nothing is known"
 TREATED, TREATED_VALUES = "Plants found are", {True: "treated", False: "flagged"}
 GUESSED = "Guessed when the plot was read"
+EARLIER, EARLIER_VALUE = "Begun with what was learnt on", "{plot}, until {until}"
 FROM_CHOSEN, FROM_USUAL, FROM_FILE = "chosen", "the usual", "of the plot's file"
 FROM_NOBODY = "assumed"
 ADVICE_TITLE = "Advice of {day}"

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 
 _WIDTH, _RIGHT, _TOP, _BOTTOM = 640, 20, 28, 40
 _LETTER = 6.6
+# a chart of ranges is so wide at least, however long its labels; a legend has so much room, and
+# begins with a sign
+_LEAST, _LEGEND, _SIGN = 260, 130, 40
+_ANCHORS = {False: "middle", True: "end"}
 _ROW = 22
 _HEIGHT = 320
 _LINES = 5
@@ -43,26 +47,40 @@ class Line:
     high: Sequence[float] = ()
 
 
-def range_chart(title: str, rows: Sequence[Range], axis: str) -> Markup:
-    """Return a chart with one row a configuration, as an ``<svg>`` element; empty without rows."""
+def range_chart(title: str, rows: Sequence[Range], axis: str, even: float | None = None) -> Markup:
+    """Return a chart with one row a configuration, as an ``<svg>`` element; empty without rows.
+
+    A line is drawn through `even`, where neither side is ahead.
+    """
     rows = [row for row in rows if not math.isnan(row.mean)]
     if not rows:
         return Markup()
     values = [v for row in rows for v in (row.low, row.high, row.other) if not math.isnan(v)]
+    values += [] if even is None else [even]
     low, high, step = _scale(min(values), max(values))
     height = _TOP + _ROW * len(rows) + _BOTTOM
     bottom = height - _BOTTOM
     left = 16 + _LETTER * max(len(row.label) for row in rows)
+    right = max(_WIDTH - _RIGHT, left + _LEAST)
 
     def x(value: float) -> float:
-        return left + (value - low) / (high - low) * (_WIDTH - left - _RIGHT)
+        return left + (value - low) / (high - low) * (right - left)
 
     parts = [_vertical(x(tick), bottom, f"{tick:g}") for tick in _ticks(low, high, step)]
+    if even is not None:
+        parts.append(
+            Markup('<line x1="{:.1f}" y1="{}" x2="{:.1f}" y2="{}" class="even"/>').format(
+                x(even), _TOP, x(even), bottom
+            )
+        )
     for k, row in enumerate(rows):
         y = _TOP + _ROW * (k + 0.5)
         parts += [_text(left - 8, y + 4, row.label, "end"), _bar(row, x, y)]
-    parts.append(_text((left + _WIDTH - _RIGHT) / 2, height - 8, axis, "middle"))
-    return _svg(title, height, parts)
+    # what is longer than its axis ends with it
+    longer = _LETTER * len(axis) > right - left
+    middle = (left + right) / 2
+    parts.append(_text(right if longer else middle, height - 8, axis, _ANCHORS[longer]))
+    return _svg(title, height, parts, right + _RIGHT)
 
 
 def line_chart(
@@ -81,7 +99,8 @@ def line_chart(
     across = _scale(min(xs), max(xs))
     up = (math.floor(min(ys)), math.ceil(max(ys)), 1.0) if powers else _scale(0, max(ys))
     up = (up[0], max(up[1], up[0] + 1), up[2])
-    left, right, bottom = 50, _WIDTH - 130, _HEIGHT - _BOTTOM
+    left, right, bottom = 50, _WIDTH - _LEGEND, _HEIGHT - _BOTTOM
+    width = max(_WIDTH, right + _SIGN + _LETTER * max(len(line.label) for line in lines))
 
     def at(x: float, y: float) -> tuple[float, float]:
         return (
@@ -98,7 +117,7 @@ def line_chart(
         parts += [_band(line, at, k), _drawn(line, at, k), *_legend(line.label, right, k)]
     parts.append(_text((left + right) / 2, _HEIGHT - 8, axes[0], "middle"))
     parts.append(_text(left, _TOP - 8, axes[1], "start"))
-    return _svg(title, _HEIGHT, parts)
+    return _svg(title, _HEIGHT, parts, width)
 
 
 def _in_powers(line: Line) -> Line:
@@ -137,7 +156,7 @@ def _legend(label: str, right: float, k: int) -> list[Markup]:
     sign = Markup('<line x1="{}" y1="{}" x2="{}" y2="{}" class="{}"/>').format(
         right + 10, y, right + 34, y, _style(k)
     )
-    return [sign, _text(right + 40, y + 4, label, "start")]
+    return [sign, _text(right + _SIGN, y + 4, label, "start")]
 
 
 def _style(k: int) -> str:
@@ -188,8 +207,8 @@ def _text(x: float, y: float, text: str, anchor: str) -> Markup:
     )
 
 
-def _svg(title: str, height: float, parts: Sequence[Markup]) -> Markup:
+def _svg(title: str, height: float, parts: Sequence[Markup], width: float = _WIDTH) -> Markup:
     return Markup(
-        '<figure><figcaption>{}</figcaption><svg viewBox="0 0 {} {}" role="img" aria-label="{}">{}'
-        "</svg></figure>"
-    ).format(title, _WIDTH, height, title, Markup().join(parts))
+        '<figure><figcaption>{}</figcaption><div class="wide" tabindex="0"><svg viewBox="0 0 {:g} '
+        '{}" role="img" aria-label="{}">{}</svg></div></figure>'
+    ).format(title, width, height, title, Markup().join(parts))

@@ -21,7 +21,7 @@ from scipy.optimize import minimize
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.dispersal import Dispersal
 from fieldmon.infestation.kernels import DistanceKernel
-from fieldmon.studies.plant_maps import PUBLIC_MAPS, read_plant_map
+from fieldmon.studies.plant_maps import read_plant_maps
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -125,11 +125,16 @@ class MapScores:
 
 def intervals_in(folder: Path) -> list[Interval]:
     """Return the dates that follow each other on the public maps of a folder and its folders."""
-    files = sorted(path for path in folder.rglob("*") if path.name in DATED)
-    if not files:
-        raise FileProblem(f"{folder} must hold one of {', '.join(DATED)}, but it does not.")
-    maps = [each for path in files for each in read_plant_map(path, PUBLIC_MAPS[path.name])]
-    return [interval for each in maps for interval in _intervals(each)]
+    maps = read_plant_maps(folder, DATED)
+    made = [interval for each in maps for interval in _intervals(each)]
+    if not made:
+        names = ", ".join(each.name for each in maps)
+        raise FileProblem(
+            f"A map must have two dates between which {_FEW} plants or more were infested, and "
+            f"after which {_FEW} or more were still clean, with one infested before. None of these "
+            f"has: {names}."
+        )
+    return made
 
 
 def _intervals(of: PlantMap) -> list[Interval]:

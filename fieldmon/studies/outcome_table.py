@@ -12,12 +12,14 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Sequence
+    from collections.abc import Callable, Hashable, Iterable, Sequence
     from pathlib import Path
     from types import TracebackType
     from typing import Self
 
 _SAVED_EVERY_S = 15.0
+# so much is shown of a line that cannot be read
+_SHOWN = 60
 
 
 class StudyOutcome(Protocol):
@@ -52,16 +54,28 @@ class OutcomeTable(Generic[Row]):
         Keys in the order in which they are written. Others that the file holds come before them.
     kind
         The class of its rows.
+    whole
+        Tells whether the rows of a chunk are all that there should be; what lost some is simulated
+        again.
     """
 
-    def __init__(self, file: Path, order: Iterable[Hashable], kind: type[Row]) -> None:
+    def __init__(
+        self,
+        file: Path,
+        order: Iterable[Hashable],
+        kind: type[Row],
+        whole: Callable[[list[Row]], bool] = bool,
+    ) -> None:
         self.file, self._kind = file, kind
         self._by_key: dict[Hashable, list[Row]] = {}
         self._order = list(order)
         self._saved = monotonic()
-        text = file.read_text(encoding="utf-8") if file.exists() else None
+        text = file.read_text(encoding="utf-8", errors="replace") if file.exists() else None
         for outcome in [] if text is None else outcomes_from(text, file.name, kind):
             self._by_key.setdefault(outcome.key, []).append(outcome)
+        for key in self._order:
+            if key in self._by_key and not whole(self._by_key[key]):
+                del self._by_key[key]
 
     def holds(self, key: Hashable) -> bool:
         """Tell whether a chunk is there."""
@@ -118,6 +132,16 @@ def outcomes_from(text: str, name: str, kind: type[Row]) -> list[Row]:
             "Move it away, or name another folder."
         )
     return [
-        kind(*(read(value) for read, value in zip(kind.kinds, row, strict=True)))
-        for row in rows[1:]
+        _outcome(row, f"Line {number} of {name}", kind) for number, row in enumerate(rows[1:], 2)
     ]
+
+
+def _outcome(row: list[str], line: str, kind: type[Row]) -> Row:
+    try:
+        return kind(*(read(value) for read, value in zip(kind.kinds, row, strict=True)))
+    except ValueError as error:
+        raise FileProblem(
+            f"{line} must hold {', '.join(kind.columns)} as this study wrote them, but it is "
+            f"{','.join(row)[:_SHOWN]!r}. The table was changed or cut: move it away, or name "
+            "another folder."
+        ) from error

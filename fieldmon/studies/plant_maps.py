@@ -8,21 +8,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import FileProblem, ObservationError
+from fieldmon.infestation.observations import PRESENT
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
 from fieldmon.io.options import ReadOptions
+from fieldmon.io.parse.result_words import meaning
+from fieldmon.io.parse.values import number
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from fieldmon.io.formats.layer import Layer
 
-_CLEAN = frozenset({"", "0", "n", "no", "na", "nan", "none"})
+# nobody knows of these plants, or they are not there: they count as not infested
+_UNKNOWN = frozenset({"", "na", "nan"})
 _MOST_PLANTS = 1_000_000
 
 
@@ -73,7 +78,8 @@ class MapColumns:
     Parameters
     ----------
     row, plant, state
-        Number of the row, number of the plant in it, and its state (0, N or NA: not infested).
+        Number of the row, number of the plant in it, and its state: a count or a severity, or a
+        word for infested or clean. NA and an empty cell count as not infested.
     row_m, plant_m
         Distances between rows and between plants.
     date, part
@@ -99,27 +105,69 @@ PUBLIC_MAPS = {
     "DidymellaWatermelon.csv": MapColumns("EW_row", "NS_col", "severity", 2.0, 1.0, date="dap"),
 }
 """Public maps by file name."""
+# what a map of one's own must be called, and has to hold
+_OWN_ENDING, _OWN_COLUMNS = ".map.csv", ("row", "plant", "infested", "row_m", "plant_m")
 
 
-def read_plant_maps(folder: Path) -> list[PlantMap]:
-    """Return the maps of a folder and its folders, by file name; raise `FileProblem` if none."""
+def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) -> list[PlantMap]:
+    """Return the maps of a folder and its folders, by file name; raise `FileProblem` if none.
+
+    Read are the `public` maps, and maps of one's own: tables ``NAME.map.csv`` with the columns row,
+    plant, infested, row_m and plant_m (the distances in metres), and date and plot where there are
+    several.
+    """
     if not folder.is_dir():
         raise FileProblem(f"The folder of maps {folder} must exist, but it does not.")
-    files = sorted(path for path in folder.rglob("*") if path.name in PUBLIC_MAPS)
+    files = sorted(
+        path for path in folder.rglob("*") if path.name in public or path.name.endswith(_OWN_ENDING)
+    )
     if not files:
         raise FileProblem(
-            f"The folder {folder} must hold a map of plants, one of {', '.join(PUBLIC_MAPS)}, "
-            "but it holds none."
+            f"The folder {folder} must hold a map of plants, one of {', '.join(public)}, or one of "
+            f"your own: NAME{_OWN_ENDING} with the columns {', '.join(_OWN_COLUMNS)} (and date and "
+            "plot if there are several). But it holds none."
         )
-    return [each for path in files for each in read_plant_map(path, PUBLIC_MAPS[path.name])]
+    return [each for path in files for each in read_plant_map(path, _columns_of(path))]
+
+
+def _columns_of(path: Path) -> MapColumns:
+    """Return the columns of a public map, or of one's own."""
+    if path.name in PUBLIC_MAPS:
+        return PUBLIC_MAPS[path.name]
+    layer = _table(path)
+    missing = [name for name in _OWN_COLUMNS if name not in layer.columns]
+    if missing:
+        raise FileProblem(
+            f"{path.name} must have the columns {', '.join(_OWN_COLUMNS)}, but "
+            f"{', '.join(missing)} is missing."
+        )
+    row_m, plant_m = (_distance(layer, name, path.name) for name in _OWN_COLUMNS[3:])
+    date, part = (name if name in layer.columns else "" for name in ("date", "plot"))
+    return MapColumns("row", "plant", "infested", row_m, plant_m, date, part)
+
+
+def _distance(layer: Layer, column: str, file: str) -> float:
+    """Return a distance, which is the same in each line."""
+    values = {number(text(value)) for value in layer.columns[column]}
+    (value,) = values if len(values) == 1 else (float("nan"),)
+    if not 0.0 < value < float("inf"):
+        raise FileProblem(
+            f"The column {column} of {file} must hold one distance in metres, the same in each "
+            f"line, but it holds {', '.join(sorted(map(str, values))[:3])}."
+        )
+    return value
+
+
+def _table(path: Path) -> Layer:
+    try:
+        return read_text_table(path, path.name, ReadOptions())
+    except OSError as error:
+        raise FileProblem(f"{path} must be readable, but it is not ({error.strerror}).") from error
 
 
 def read_plant_map(path: Path, columns: MapColumns) -> list[PlantMap]:
     """Return the plots of one file, each with all its dates."""
-    try:
-        layer = read_text_table(path, path.name, ReadOptions())
-    except OSError as error:
-        raise FileProblem(f"{path} must be readable, but it is not ({error.strerror}).") from error
+    layer = _table(path)
     needed = [name for name in vars(columns).values() if isinstance(name, str) and name]
     missing = [name for name in needed if name not in layer.columns]
     if missing:
@@ -128,7 +176,8 @@ def read_plant_map(path: Path, columns: MapColumns) -> list[PlantMap]:
             f"but {', '.join(missing)} is missing."
         )
     parts = _texts(layer, columns.part)
-    named = path.stem if columns.part == "" else f"{path.stem} "
+    stem = path.name.removesuffix(_OWN_ENDING).removesuffix(path.suffix)
+    named = stem if columns.part == "" else f"{stem} "
     return [
         _map(named + part, layer.take(parts == part), columns, path.name)
         for part in np.unique(parts).tolist()
@@ -145,8 +194,18 @@ def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
             f"{n_plants}."
         )
     infested = np.zeros((len(dates), n_rows * n_plants), np.bool_)
-    state = np.array([value.lower() not in _CLEAN for value in _texts(layer, columns.state)])
-    infested[date, (row - 1) * n_plants + plant - 1] = state
+    at = date, (row - 1) * n_plants + plant - 1
+    lines = np.zeros(infested.shape, np.int64)
+    np.add.at(lines, at, 1)
+    if (lines != 1).any():
+        when, which = np.argwhere(lines != 1)[0]
+        raise FileProblem(
+            f"{file} must have one line for each of its {n_rows} rows of {n_plants} plants"
+            f"{' and each date' if columns.date else ''}, but row {which // n_plants + 1}, plant "
+            f"{which % n_plants + 1}{f' on {dates[when]}' if columns.date else ''} has "
+            f"{lines[when, which]}. Write NA as the state of a plant that nobody knows of."
+        )
+    infested[at] = [_is_infested(value, columns.state, file) for value in _state(layer, columns)]
     order = sorted(range(len(dates)), key=lambda k: (len(dates[k]), dates[k]))
     return PlantMap(
         name=name,
@@ -159,6 +218,25 @@ def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
     )
 
 
+def _state(layer: Layer, columns: MapColumns) -> list[str]:
+    return [str(value) for value in _texts(layer, columns.state)]
+
+
+def _is_infested(state: str, column: str, file: str) -> bool:
+    """Tell what a state says: a count or a severity, or a word."""
+    if state.casefold() in _UNKNOWN:
+        return False
+    if (said := meaning(state)) is not None:
+        return said == PRESENT
+    value = number(state)
+    if not 0.0 <= value < float("inf"):
+        raise FileProblem(
+            f"The column {column} of {file} must say of each plant whether it is infested: a "
+            f"number from 0, a word as yes or clean, or NA; but it holds {state!r}."
+        )
+    return value > 0.0
+
+
 def _texts(layer: Layer, column: str) -> NDArray[np.str_]:
     if column == "":
         return np.full(len(layer), "")
@@ -166,12 +244,13 @@ def _texts(layer: Layer, column: str) -> NDArray[np.str_]:
 
 
 def _numbers(layer: Layer, column: str, file: str) -> NDArray[np.int64]:
-    try:
-        numbers = np.array([int(text(value)) for value in layer.columns[column]], np.int64)
-    except ValueError as error:
+    numbers = np.array([number(text(value)) for value in layer.columns[column]])
+    whole = (numbers >= 1.0) & (numbers <= _MOST_PLANTS) & (numbers == np.round(numbers))
+    if not whole.all():
+        wrong = text(layer.columns[column][np.argmin(whole)])
         raise FileProblem(
-            f"The column {column} of {file} must hold whole numbers, but {error}."
-        ) from error
-    if not numbers.size or numbers.min() < 1:
-        raise FileProblem(f"The column {column} of {file} must count plants from 1.")
-    return numbers
+            f"The column {column} of {file} must count rows or plants, with whole numbers from 1 "
+            f"to {_MOST_PLANTS}, but it holds {wrong!r}. Positions in metres or degrees are no "
+            "such numbers."
+        )
+    return numbers.astype(np.int64)

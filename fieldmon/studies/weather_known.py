@@ -134,9 +134,9 @@ class WorthOfWeather:
         """Return it in words."""
         return (
             f"{self.shape:22} {self.knows:7.0f} infested plant-days knowing it, "
-            f"{self.averages:7.0f} by averages: x {self.ratio.mean:.3f} "
-            f"({self.ratio.low:.3f} to {self.ratio.high:.3f}); the interval of 90 % holds on "
-            f"{self.held:.0%} and {self.held_by_averages:.0%} of mornings"
+            f"{self.averages:7.0f} by averages: season by season x {self.ratio.mean:.2f} "
+            f"({self.ratio.low:.2f} to {self.ratio.high:.2f}, 95 %); the interval of 90 % holds on "
+            f"{100 * self.held:.0f} and {100 * self.held_by_averages:.0f} % of mornings"
         )
 
 

@@ -2,6 +2,7 @@
 
 from datetime import date, time
 
+import pandas as pd
 import pytest
 
 from fieldmon.monitoring import Season
@@ -47,3 +48,28 @@ def test_what_cannot_begin_is_a_sentence_and_no_file(run, words, says):
     code, _, err, made = run("init", "s.gpkg", ZIP, "--feature", "Nursery", *words)
     assert (code, made) == (2, set())
     assert says in err
+
+
+def test_a_season_begins_with_what_an_earlier_one_learnt(run, tmp_path):
+    last = ["init", "last.gpkg", ZIP, "--feature", "Nursery", "--begins", BEGINS]
+    begin = ["init", "s.gpkg", ZIP, "--feature", "Nursery", "--begins", BEGINS]
+    assert run(*last)[0] == 0
+    code, _, err, made = run(*begin, "--earlier", "last.gpkg")
+    assert (code, made) == (2, set())
+    assert "last.gpkg nothing was inspected" in err
+    assert run("plan", "last.gpkg", "--date", BEGINS, "-o", "day.csv")[0] == 0
+    day = tmp_path / "day.csv"
+    seen = pd.read_csv(day).head(30)
+    seen["result"] = "clean"
+    seen.to_csv(day, index=False)
+    code, _, err, _ = run("record", "last.gpkg", "day.csv")
+    assert code == 0, err
+    code, out, err, _ = run(*begin, "--earlier", "last.gpkg")
+    assert code == 0, err
+    said = f"Begun with what was learnt on Nursery until {BEGINS}, which counts little"
+    assert said in out
+    assert said in run("status", "s.gpkg")[1]
+    # another pest teaches nothing of this one, and that is said
+    begin[1] = "mites.gpkg"
+    _, out, _, _ = run(*begin, "--earlier", "last.gpkg", "--pest", "spider-mite")
+    assert "does not count: it was of another pest" in out

@@ -19,9 +19,12 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     now = kept.status(kept.last_date())
     ahead = f"  forecast               {kept.forecast(now.on).sentence()}"
     assert out.splitlines() == [*lines(kept, now), ahead]
+    assert "found of all                0 % (0 to 0 %), as believed" in out
     assert f"{now.plants} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
-    assert "learnt so far          detection 84 %" in out
+    assert "believed at first      An inspection finds 84 % of what is there" in out
+    kept.record(Inspections.of(np.array([1]), np.array([0]), np.datetime64(BEGINS)), "x")
+    assert "learnt so far          An inspection finds " in run("status", season)[1]
     assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
 
 

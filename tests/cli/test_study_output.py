@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.cli.study_output import can_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.errors import FileProblem
 
 
@@ -12,6 +12,15 @@ def test_all_texts_are_written_and_said(tmp_path, capsys):
     assert (tmp_path / "b.html").read_text(encoding="utf-8") == "שלום"
     said = [f"Written: {tmp_path / name}" for name in ("a.csv", "b.html")]
     assert capsys.readouterr().out.splitlines() == said
+
+
+def test_who_stops_a_study_is_told_that_it_goes_on(tmp_path, capsys):
+    with pytest.raises(KeyboardInterrupt), going_on(tmp_path / "samplers.csv"):
+        raise KeyboardInterrupt
+    assert f"kept in {tmp_path / 'samplers.csv'}; the same command" in capsys.readouterr().err
+    with going_on(tmp_path / "samplers.csv"):
+        pass
+    assert capsys.readouterr().err == ""
 
 
 def test_a_folder_is_made_when_there_is_something_to_write(tmp_path):

@@ -1,7 +1,9 @@
 """`fieldmon study run`: a study of one's own plots."""
 
+import pyarrow as pa
 import pytest
 
+from fieldmon.cli.study_run import _tell
 from fieldmon.simulation import results
 from tests.cli.estate import ZIP
 
@@ -14,6 +16,8 @@ def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):
     assert code == 0, err
     assert "http://127.0.0.1:" in err
     assert sum(line.startswith(("naive", "dynamic")) for line in out.splitlines()) == 4
+    assert sum("(best)" in line for line in out.splitlines()) == 2
+    assert "one that holds 0 is no sure difference" in out
     table = results.seasons(tmp_path / "mine")
     assert table.num_rows == 2 * 2 * 3
     assert set(table["plot"].to_pylist()) == {"Nursery"}
@@ -33,3 +37,19 @@ def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", "run", ZIP, *words)
     assert (code, made) == (2, set())
     assert says in err
+
+
+def test_how_much_more_a_sampler_loses_is_told_season_by_season(capsys):
+    alike = {"hours": 4.0, "look_s": 40.0, "infested": 0.02, "spread": 0.1, "plot": "A"}
+    lost = {"naive": [12, 25, 33], "dynamic": [10, 20, 30]}
+    rows = [
+        {"sampler": name, **alike, "seed": seed, "detection_pct": 90.0, "infested_plant_days": n}
+        for name, each in lost.items()
+        for seed, n in enumerate(each)
+    ]
+    _tell(pa.Table.from_pylist(rows[::-1]))
+    _, dynamic, naive, _ = capsys.readouterr().out.splitlines()
+    assert dynamic.startswith("dynamic")
+    assert dynamic.endswith(" 20  (best)")
+    # differences 2, 5 and 3: mean 3.3, and by Student's t 4.30 * 1.53 / sqrt(3) to each side
+    assert naive.endswith(" 23  +3.3 (-0.5 to +7.1)")

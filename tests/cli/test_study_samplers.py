@@ -11,7 +11,7 @@ from tests.cli.estate import table
     [
         (["-o", __file__], "must be a folder"),
         (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
-        (["--maps", "."], "must hold one of"),
+        (["--maps", "."], "must hold a map of plants"),
         (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),
         (["--pest", "whitefly", "--scenario", "world"], "must begin with world"),
     ],
@@ -30,5 +30,10 @@ def test_with_a_pest_every_sampler_believes_the_one_map_that_follows_it(run, tmp
     assert "A, whitefly, clusters, prior none" in out
     assert {path.name for path in made} == {"samplers.csv", "samplers.html"}
     rows = table(tmp_path / "samplers.csv")
+    whole = (tmp_path / "samplers.csv").read_bytes()
+    lines = whole.splitlines(keepends=True)
+    (tmp_path / "samplers.csv").write_bytes(b"".join(lines[:-1]))  # a season lost a row
+    assert run("study", "samplers", *words)[0] == 0
+    assert (tmp_path / "samplers.csv").read_bytes() == whole
     assert {row["who"] for row in rows} == {each.name for each in OF_PESTS}
     assert "nan" not in (tmp_path / "samplers.html").read_text(encoding="utf-8")

@@ -21,4 +21,14 @@ def test_a_map_of_two_dates_is_scored(run, tmp_path):
 def test_a_folder_without_maps_is_told(run, tmp_path):
     code, _, err, _ = run("study", "spread", str(tmp_path))
     assert code != 0
-    assert "must hold one of" in err
+    assert "must hold a map of plants" in err
+
+
+def test_maps_between_whose_dates_nothing_happens_are_told(run, tmp_path):
+    rows = [f"1,{p},{int(p == 1)},2,1,{t}" for t in (1, 2) for p in range(1, 21)]
+    head = "row,plant,infested,row_m,plant_m,date"
+    (tmp_path / "vines.map.csv").write_text("\n".join([head, *rows]))
+    code, out, err, _ = run("study", "spread", str(tmp_path))
+    assert (code, out) == (2, "")
+    assert "must have two dates" in err
+    assert err.rstrip().endswith("None of these has: vines.")

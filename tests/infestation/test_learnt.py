@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fieldmon.infestation.learnt import _length, learnt_from
+from fieldmon.infestation.learnt import Learnt, _length, learnt_from, worth_saying
 from fieldmon.infestation.origins import ANYWHERE, AT_START, AT_START_ELSEWHERE, BY_EDGE, JUMPED
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.reach import kernel_means
@@ -23,7 +23,9 @@ def test_at_first_it_is_what_was_believed_with_wide_intervals():
     assert told["detection"].value == 0.84
     assert told["infested at the start"].value == pytest.approx(1.62)
     assert all(one.low <= one.value <= one.high for one in told.values())
-    assert told["infested at the start"].sentence() == "infested at the start 1.6 (0.1 to 4.9)"
+    said = "1.6 plants were infested at the start (0.1 to 4.9)."
+    assert told["infested at the start"].sentence() == said
+    assert told["hiding"].value == pytest.approx(0.15)
     assert told["jumps beyond neighbours"].is_share
     assert 1.0 <= told["length of jumps"].low < 4.0 < told["length of jumps"].high + 1.0
 
@@ -88,3 +90,25 @@ def test_jumps_that_are_all_of_one_kernel_are_as_long_as_it_without_a_doubt(k):
     mean = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)[k]
     length = _length(alone)
     assert (length.value, length.low, length.high) == pytest.approx((mean, mean, mean))
+
+
+def test_estimates_have_the_digits_of_all_estimates_and_shares_are_in_percent():
+    assert Learnt("infested at the start", 306.04, 253.5, 1363.3).sentence() == (
+        "306 plants were infested at the start (254 to 1,363)."
+    )
+    assert Learnt("hiding", 0.153, 0.153, 0.153).sentence().endswith("with a chance of 15 %.")
+
+
+def test_how_far_insects_jump_is_said_where_they_may():
+    length = Learnt("length of jumps", 3.4, 3.1, 3.8)
+    for chance, n in ((0.004, 1), (0.3, 2)):
+        jumps = Learnt("jumps beyond neighbours", chance, chance, chance)
+        assert len(worth_saying((jumps, length))) == n
+
+
+def test_hiding_is_learnt_where_no_pest_says_it():
+    traced = TracedPairs.of(GRID, FLAT)
+    mite = traced.of_pest(Pest("mite"))
+    names = [[one.name for one in learnt_from(belief, 0.84)] for belief in (traced, mite)]
+    assert "hiding" in names[0]
+    assert "hiding" not in names[1]

@@ -178,4 +178,4 @@ def test_a_rebuilt_file_says_the_same(season):
 def test_what_the_inspections_tell_is_kept_with_its_intervals(season):
     kept = rows(season, "SELECT name, value, low, high FROM learnt ORDER BY fid")
     assert kept == [(one.name, one.value, one.low, one.high) for one in season.learnt(BEGINS)]
-    assert len(kept) == 5
+    assert len(kept) == 6

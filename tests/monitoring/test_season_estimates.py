@@ -5,6 +5,7 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
 from tests.monitoring.seasons import (
     BEGINS,
@@ -59,3 +60,30 @@ def test_the_status_counts(season):
 def test_advice_is_asked_with_settings_or_a_sentence(season):
     with pytest.raises(SettingError, match=r"must be AdviceSettings, but it is 0\.05"):
         season.advice(BEGINS, 0.05)
+
+
+def test_a_season_begins_with_what_an_earlier_one_learnt_and_keeps_it(tmp_path):
+    last = a_season(tmp_path / "last.gpkg")
+    last.record(some_results(last, n=40, found=range(12)), "x")
+    earlier = last.as_earlier()
+    alone = a_season(tmp_path / "alone.gpkg")
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(earlier=earlier))
+    again = Season(season.path)
+    assert again.settings.belief.earlier == earlier
+    assert again.taught() == earlier.sentence(earlier.believed)
+    assert alone.taught() is None
+    assert np.array_equal(season.morning(BEGINS), alone.morning(BEGINS))  # the same plants
+    told, other = ({each.name: each.value for each in one.learnt(BEGINS)} for one in (again, alone))
+    assert told["jumps beyond neighbours"] != other["jumps beyond neighbours"]
+    season.record(some_results(season, n=20, found=[0]), "y")
+    assert Season(season.path).verify() == ()
+
+
+def test_a_season_in_which_nothing_was_inspected_or_traced_teaches_nothing(tmp_path):
+    unseen = a_season(tmp_path / "unseen.gpkg")
+    with pytest.raises(SettingError, match=r"unseen\.gpkg nothing was inspected"):
+        unseen.as_earlier()
+    near = a_season(tmp_path / "near.gpkg", belief=BeliefSettings(traces=False))
+    near.record(some_results(near, n=4), "x")
+    with pytest.raises(SettingError, match="traced to neighbours only"):
+        near.as_earlier()

@@ -107,7 +107,7 @@ def test_every_label_is_text_and_the_chart_is_safe_to_put_into_a_page(text):
         assert isinstance(chart, Markup)
         page = held(chart, [text])
         assert set(page.tags) <= {
-            *("figure", "figcaption", "svg", "line", "circle", "text", "polyline", "title")
+            *("figure", "figcaption", "div", "svg", "line", "circle", "text", "polyline", "title")
         }
         assert page.text.count(text) >= 3
         (drawing,) = page.all("svg")
@@ -125,3 +125,28 @@ def test_in_powers_every_step_up_is_ten_times_the_last():
     (short,) = points_of(Page(line_chart("t", [Line("l", [0, 1, 2], [0, 10, 100])], ("x", "y"),
                                          powers=True)))  # fmt: skip
     assert len(short) == 2
+
+
+def test_long_words_stay_within_the_drawing():
+    """Labels, legends and titles of axes, however long."""
+    label, axis = "B, spread 30% to one, clusters, prior records 5 %, records wrong", "ratio " * 9
+    for chart in (
+        range_chart("t", [Range(label, 1, 2, 3)], axis),
+        line_chart("t", [Line(label, [0, 1], [0, 1])], ("x", "y")),
+    ):
+        (width,) = re.findall(r'viewBox="0 0 ([\d.]+) ', chart)
+        for x, anchor, said in re.findall(
+            r'x="([\d.-]+)" y="[^"]*" text-anchor="(\w+)">([^<]*)', chart
+        ):
+            share = {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
+            begins = float(x) - share * 6.6 * len(said)
+            assert begins >= 0.0
+            assert begins + 6.6 * len(said) <= float(width) + 1e-6
+
+
+def test_a_line_runs_where_neither_is_ahead():
+    chart = Page(range_chart("t", [Range("a", 2, 3, 4)], "ratio", even=1.0))
+    (even,) = chart.all("line", "even")
+    ticks = {said: x for said, x, _ in ticks_of(chart.source, "middle")}
+    assert float(even["x1"]) == float(even["x2"]) == ticks[1.0]
+    assert not Page(range_chart("t", [Range("a", 2, 3, 4)], "ratio")).all("line", "even")

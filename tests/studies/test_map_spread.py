@@ -65,5 +65,5 @@ def test_scores_of_nothing_and_of_evenly_are_as_by_hand(told):
 
 
 def test_a_folder_without_dated_maps_is_told(tmp_path):
-    with pytest.raises(FileProblem, match="must hold one of"):
+    with pytest.raises(FileProblem, match="must hold a map of plants"):
         intervals_in(tmp_path)

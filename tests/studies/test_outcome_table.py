@@ -33,6 +33,28 @@ def test_another_table_is_refused(text):
         outcomes_from(text, "samplers.csv", SeasonOutcome)
 
 
+@pytest.mark.parametrize("line", ["A,0,naive,x,2,3,4,5,6.5", "A,0,naive,1", "A,0,na\ufffd"])
+def test_a_line_that_was_changed_or_cut_is_named(line):
+    text = csv_text(outcomes("A", 0), SeasonOutcome) + line
+    with pytest.raises(FileProblem, match=r"^Line 4 of samplers\.csv must hold cell, seed, .*cut"):
+        outcomes_from(text, "samplers.csv", SeasonOutcome)
+
+
+def test_a_table_that_is_no_text_is_refused(tmp_path):
+    file = tmp_path / "samplers.csv"
+    file.write_bytes(b"\xff\xfe" + csv_text(outcomes("A", 0), SeasonOutcome).encode())
+    with pytest.raises(FileProblem, match="must be a table of this study"):
+        OutcomeTable(file, [], SeasonOutcome)
+
+
+def test_a_chunk_that_lost_rows_is_made_again_but_others_are_left(tmp_path):
+    file = tmp_path / "samplers.csv"
+    rows = [*outcomes("A", 0), *outcomes("A", 1)[:1], *outcomes("B", 0)[:1]]
+    file.write_text(csv_text(rows, SeasonOutcome))
+    table = OutcomeTable(file, [("A", 0), ("A", 1)], SeasonOutcome, lambda rows: len(rows) == 2)
+    assert [table.holds(key) for key in (("A", 0), ("A", 1), ("B", 0))] == [True, False, True]
+
+
 def test_it_is_written_when_it_is_left_even_by_an_error(tmp_path):
     file = tmp_path / "samplers.csv"
 

@@ -16,7 +16,11 @@ def write(path, *lines):
 
 def test_states_stand_where_row_and_plant_say(tmp_path):
     head = "plant,row,year,state"
-    rows = ["3,1,2001,1", "1,2,2001,0", "1,2,2002,1", "2,1,2002,NA"]
+    seen = {("3", "1", "2001"): "1", ("1", "2", "2002"): "1", ("2", "1", "2002"): "NA"}
+    rows = [
+        f"{p},{r},{t},{seen.get((p, r, t), '0')}" for t in ("2001", "2002") for r in "12"
+        for p in "321"
+    ]  # fmt: skip
     (made,) = read_plant_map(write(tmp_path / "a.csv", head, *rows), DATED)
     assert (made.n_rows, made.n_plants, made.dates) == (2, 3, ("2001", "2002"))
     assert made.infested.tolist() == [
@@ -50,6 +54,12 @@ def test_several_plots_in_a_file_are_several_maps(tmp_path):
         (["row,plant,year,state", "x,1,2001,1"], "whole numbers"),
         (["row,plant,year,state", "0,1,2001,1"], "from 1"),
         (["row,plant,year,state", "99999,99999,2001,1"], "at most"),
+        (["row,plant,year,state", "1.5,1,2001,1"], r"whole numbers .* holds '1\.5'\. Positions"),
+        (["row,plant,year,state", f"{10**20},1,2001,1"], "whole numbers"),
+        (["row,plant,year,state", "1,1,2001,-1"], "holds '-1'"),
+        (["row,plant,year,state", "1,1,2001,perhaps"], "holds 'perhaps'"),
+        (["row,plant,year,state", "1,1,1,1", "2,2,1,0"], r"row 1, plant 2 on 1 has 0\. Write NA"),
+        (["row,plant,year,state", "1,1,1,1", "1,1,1,0"], "row 1, plant 1 on 1 has 2"),
     ],
 )
 def test_files_that_are_no_maps_are_refused_in_a_sentence(tmp_path, lines, says):
@@ -71,3 +81,40 @@ def test_known_maps_are_found_by_name_in_folders(tmp_path):
     write(tmp_path / "other.csv", "a", "b")
     (made,) = read_plant_maps(tmp_path)
     assert made.infested.tolist() == [[True, False]]
+
+
+@pytest.mark.parametrize(
+    ("state", "infested"),
+    [("0.0", False), ("0", False), ("NA", False), ("clean", False), ("N", False), ("", False),
+     ("3", True), ("0.5", True), ("infested", True), ("Y", True)],
+)  # fmt: skip
+def test_a_state_is_a_number_or_a_word(tmp_path, state, infested):
+    file = write(tmp_path / "a.csv", "row;plant;year;state", f"1;1.0;2001;{state}")
+    (made,) = read_plant_map(file, DATED)
+    assert made.infested.tolist() == [[infested]]
+
+
+OWN = ("row,plant,infested,row_m,plant_m,plot,date", "1,1,1,3.5,1.2,A,2025", "1,1,0,3.5,1.2,B,2025")
+
+
+def test_a_map_of_ones_own_is_read_with_its_distances(tmp_path):
+    write(tmp_path / "vines.map.csv", *OWN)
+    write(tmp_path / "other.csv", *OWN)
+    made = read_plant_maps(tmp_path)
+    assert [each.name for each in made] == ["vines A", "vines B"]
+    assert (made[0].row_m, made[0].plant_m, made[0].dates) == (3.5, 1.2, ("2025",))
+    assert [each.infested.tolist() for each in made] == [[[True]], [[False]]]
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        (["row,plant,infested", "1,1,1"], "row_m, plant_m is missing"),
+        ([*OWN[:2], OWN[2].replace("3.5", "3.6")], r"one distance .* it holds 3\.5, 3\.6"),
+        ([OWN[0], OWN[1].replace("1.2", "0")], "one distance in metres"),
+    ],
+)
+def test_a_map_of_ones_own_that_lacks_something_is_a_sentence(tmp_path, lines, says):
+    write(tmp_path / "vines.map.csv", *lines)
+    with pytest.raises(FileProblem, match=says):
+        read_plant_maps(tmp_path)

@@ -52,5 +52,8 @@ def test_what_it_brings_is_said_with_an_interval():
     (worth,) = worth_of_weather(range(3), ["steady wind"], n_days=3)
     assert worth.ratio.low <= worth.ratio.mean <= worth.ratio.high
     assert worth.sentence().startswith("steady wind ")
+    ratio = worth.ratio
+    said = f"season by season x {ratio.mean:.2f} ({ratio.low:.2f} to {ratio.high:.2f}, 95 %)"
+    assert said in worth.sentence()
     with pytest.raises(SettingError, match="must be one of as usual"):
         worth_of_weather(range(1), ["hail"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, replace
 from functools import partial
@@ -51,6 +52,8 @@ CLEAN_EDGES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 _SUSPICIOUS = 0.5
 _LEAST = 1e-6
 _FEW = 50
+# of fewer seasons than these it is not sure how often intervals hold (our choice)
+_ROUGH = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,8 +258,21 @@ def _reliability(
     return said, np.bincount(group, y, len(edges) - 1) / some, count
 
 
-def report_html(made: dict[str, Calibration], about: str) -> str:
-    """Return the calibrations of some beliefs as one HTML document."""
+def _percent(value: float) -> str:
+    """Return a share in percent with two digits that mean something."""
+    if math.isnan(value):
+        return "-"
+    pct = 100.0 * value
+    return f"{pct:.0f} %" if pct >= 10.0 or pct == 0.0 else f"{pct:.2g} %"
+
+
+def _so(share: float, count: int) -> str:
+    """Return the share that was so: of few plants how many, for a share of them is no more."""
+    return _percent(share) if count >= _FEW else f"{round(share * count)} of {count}"
+
+
+def report_html(made: dict[str, Calibration], about: str, seasons: int = _ROUGH) -> str:
+    """Return the calibrations of some beliefs, of so many seasons, as one HTML document."""
     lines = [Line("as often as said", (0.0, 1.0), (0.0, 1.0))]
     clean = list(lines)
     for name, c in made.items():
@@ -267,6 +283,10 @@ def report_html(made: dict[str, Calibration], about: str) -> str:
     return page(
         "fieldmon/studies/samplers/calibration.html.j2",
         about=about,
+        seasons=seasons,
+        few=seasons < _ROUGH,
+        share=_percent,
+        so=_so,
         made=made,
         charts=[
             line_chart(f"Plants ({_FEW} mornings or more a dot)", lines, axes),

@@ -29,6 +29,23 @@ ADAPTIVE, WORDED, TUNED = "adaptive", "dynamic, as worded", "dynamic, tuned"
 PAIRS, NAIVE = "adaptive, pairs only", "naive"
 NO_TRAVEL, CLAIRVOYANT = "no travel", "clairvoyant"
 SOME = 10
+#: what no sampler can reach, and samplers that take part in every tenth season only
+BOUNDS = (
+    NO_TRAVEL, CLAIRVOYANT, "dynamic, independent plants", "adaptive, independent plants",
+)  # fmt: skip
+#: each in a sentence
+ABOUT = {
+    ADAPTIVE: "the default of fieldmon, on the map of chances that it uses.",
+    PAIRS: "the same sampler on a map that knows the plants next to each other only.",
+    WORDED: "the thesis's sampler as its text has it: plants next to a find, then suspicious ones.",
+    TUNED: "the same with its open choices searched.",
+    "dynamic, independent plants": "dynamic on a map without neighbours; every tenth season.",
+    "adaptive, independent plants": "adaptive on a map without neighbours; every tenth season.",
+    NAIVE: "a plain sweep: every plant, up one row and down the next.",
+    "bouncy": "every second plant of that sweep.",
+    NO_TRAVEL: "a bound: adaptive if driving took no time; every tenth season.",
+    CLAIRVOYANT: "a bound: drives, but knows which plants are infested; every tenth season.",
+}
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,10 @@ from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.samplers.sweeps import Naive
-from fieldmon.studies.plant_maps import PUBLIC_MAPS, read_plant_map
+from fieldmon.studies.plant_maps import read_plant_maps
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -36,6 +36,10 @@ _FLAT = 0.1
 # a day lasts for a twentieth of the plants, with some time to drive
 _DAY, _DRIVING = 0.05, 1.3
 _HOUR_S = 3600.0
+# less than a twentieth more or less is even
+_EVEN = (0.95, 1.05)
+# of fewer plants a twentieth is none
+_FEWEST = 20
 
 
 FILES = (
@@ -56,11 +60,14 @@ class DatedMap(NamedTuple):
 
 
 def plots_in(folder: Path) -> list[DatedMap]:
-    """Return the plots that a folder has public maps of, one for each date."""
-    files = [folder / name for name in FILES if (folder / name).is_file()]
-    if not files:
-        raise FileProblem(f"{folder} must hold one of {', '.join(FILES)}, but it does not.")
-    maps = [each for file in files for each in read_plant_map(file, PUBLIC_MAPS[file.name])]
+    """Return the plots that a folder has maps of, one for each date; `FileProblem` if none."""
+    maps = read_plant_maps(folder, FILES)
+    small = next((each for each in maps if each.n_rows * each.n_plants < _FEWEST), None)
+    if small is not None:
+        raise FileProblem(
+            f"A map must have {_FEWEST} plants or more, of which the first {SHARES[0]:.0%} are "
+            f"inspected, but {small.name} has {small.n_rows * small.n_plants}."
+        )
     return [
         DatedMap(_name(each, date), each.aisles(), infested)
         for each in maps
@@ -69,9 +76,9 @@ def plots_in(folder: Path) -> list[DatedMap]:
 
 
 def _name(of: PlantMap, date: str) -> str:
-    """Return the name of a map's file without its ending, and its part or its date."""
+    """Return the name of a map's file without its ending, its part and its date."""
     file, _, part = of.name.partition(" ")
-    return f"{file.split('.', maxsplit=1)[0]} {part or date}".strip()
+    return " ".join(word for word in (file.split(".", maxsplit=1)[0], part, date) if word)
 
 
 def found_at(plot: DatedMap, sampler: Sampler) -> tuple[list[int], list[float]]:
@@ -161,6 +168,29 @@ def table(plots: list[DatedMap]) -> list[MapRow]:
         expected = [float(each.infested.mean())] * len(SHARES)
         rows.append(MapRow(each.name, alike, "random", expected, []))
     return rows
+
+
+def sentences(rows: Sequence[MapRow]) -> list[str]:
+    """Return what Adaptive finds per hour in proportion to each other, whichever way it falls."""
+    by = {(row.name, row.who): row.per_hour[-1] for row in rows if row.per_hour}
+    said = []
+    for who, called in (("naive", "a sweep (naive)"), ("dynamic", "dynamic"), ("tuned", "tuned")):
+        ratios = {
+            row.name: by[row.name, "adaptive"] / by[row.name, who]
+            for row in rows
+            if row.who == who and by[row.name, who] > 0.0
+        }
+        if not ratios:
+            continue
+        low, high = (pick(ratios, key=ratios.__getitem__) for pick in (min, max))
+        fewer = sum(value < _EVEN[0] for value in ratios.values())
+        more = sum(value > _EVEN[1] for value in ratios.values())
+        said.append(
+            f"After {SHARES[-1]:.0%} of the plants adaptive finds {ratios[low]:.2f} ({low}) to "
+            f"{ratios[high]:.2f} ({high}) of the finds per hour of {called}: over "
+            f"{_EVEN[1]:.2f} on {more} of {len(ratios)} maps, under {_EVEN[0]:.2f} on {fewer}."
+        )
+    return said
 
 
 def table_csv(rows: list[MapRow]) -> str:

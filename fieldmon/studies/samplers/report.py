@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import estimate
 from fieldmon.io.html import page
 from fieldmon.studies.charts import Range, range_chart
-from fieldmon.studies.samplers.contenders import ADAPTIVE, NAMES
+from fieldmon.studies.samplers.contenders import ABOUT, ADAPTIVE, NAMES
 from fieldmon.studies.samplers.summary import OTHERS, means, ratios, sentences
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ def report_html(outcomes: Sequence[SeasonOutcome]) -> str:
         seeds=len({outcome.seed for outcome in outcomes}),
         sentences=sentences(outcomes),
         charts=[_chart(outcomes, other) for other in OTHERS if other in took_part],
+        about={name: ABOUT[name] for name in NAMES if name in took_part},
+        estimate=estimate,
         names=tuple(name for name in NAMES if name in took_part),
         tables=[(_WORDS[measure], by_name) for measure, by_name in means(outcomes).items()],
     )
@@ -46,4 +49,4 @@ def _chart(outcomes: Sequence[SeasonOutcome], other: str) -> Markup:
         if other in made
     ]
     title = f"Infested plant-days: {ADAPTIVE} over {other} (mean and 95 % interval)"
-    return range_chart(title, rows, "ratio; left of 1 the adaptive sampler is ahead")
+    return range_chart(title, rows, "ratio; left of 1 adaptive is ahead", even=1.0)

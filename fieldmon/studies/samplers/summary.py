@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.studies.samplers.contenders import (
     ADAPTIVE,
+    BOUNDS,
     NAIVE,
     NAMES,
     PAIRS,
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 OTHERS = (PAIRS, WORDED, TUNED, NAIVE)
 _RESAMPLES = 2000
 _NEVER_WORSE = 1.05
+# so many seasons before an interval drawn from them means what it says (our choice)
+_ENOUGH = 20
 
 
 @dataclass(frozen=True)
@@ -80,9 +83,11 @@ def ratios(outcomes: Sequence[SeasonOutcome]) -> dict[str, dict[str, Ratio]]:
 
 def ratio_lines(outcomes: Sequence[SeasonOutcome]) -> list[str]:
     """Return the ratios as lines of text, a scenario each, after a heading."""
-    lines = [f"{'Infested plant-days of adaptive over those of':46}" + _columns(OTHERS)]
-    for name, others in ratios(outcomes).items():
-        lines.append(f"{name:46}" + _columns(str(others.get(other, "")) for other in OTHERS))
+    made, head = ratios(outcomes), "Infested plant-days of adaptive over those of"
+    width = 2 + max(len(name) for name in (head, *made))
+    lines = [f"{head:{width}}" + _columns(OTHERS)]
+    for name, others in made.items():
+        lines.append(f"{name:{width}}" + _columns(str(others.get(other, "")) for other in OTHERS))
     return lines
 
 
@@ -93,7 +98,7 @@ def _columns(values: Iterable[str]) -> str:
 def sentences(outcomes: Sequence[SeasonOutcome]) -> list[str]:
     """Return what the study found, with the numbers, whichever way they fall."""
     loss = by_scenario(outcomes, "infested_plant_days")
-    said = []
+    said = verdict(outcomes)
     for other in (WORDED, TUNED):
         ratios = {name: ratio(who[ADAPTIVE], who[other]).value for name, who in loss.items()}
         half = sum(value <= 0.5 for value in ratios.values())
@@ -117,6 +122,39 @@ def sentences(outcomes: Sequence[SeasonOutcome]) -> list[str]:
             f"{len(days) - len(later)} of {len(days)} scenarios" + _but(later)
         )
     return [*said, _looks(outcomes)]
+
+
+def verdict(outcomes: Sequence[SeasonOutcome]) -> list[str]:
+    """Return who loses fewest plant-days, and against whom that is sure, before all else."""
+    loss = by_scenario(outcomes, "infested_plant_days")
+    taking_part = {
+        name: {who: values for who, values in each.items() if who not in BOUNDS and len(values)}
+        for name, each in loss.items()
+    }
+    least = [
+        min(each, key=lambda who, each=each: float(each[who].mean()))  # type: ignore[misc]
+        for each in taking_part.values()
+    ]
+    counts = sorted(((least.count(who), who) for who in set(least)), key=lambda one: -one[0])
+    first = "; ".join(f"{who} in {n}" for n, who in counts)
+    said = [f"Fewest infested plant-days, of {len(loss)} scenarios: {first}."]
+    made = ratios(outcomes)
+    for other in OTHERS:
+        held = [each[other] for each in made.values() if other in each]
+        if held:
+            fewer = sum(one.high < 1.0 for one in held)
+            more = sum(one.low > 1.0 for one in held)
+            said.append(
+                f"{ADAPTIVE} against {other}: surely fewer in {fewer}, surely more in {more}, not "
+                f"sure in {len(held) - fewer - more} (95 % interval of the ratio)."
+            )
+    seeds = len({outcome.seed for outcome in outcomes})
+    if seeds < _ENOUGH:
+        said.append(
+            f"With {seeds} seasons intervals come out too narrow. Choose nothing by fewer than "
+            f"{_ENOUGH} (--seeds)."
+        )
+    return said
 
 
 def _looks(outcomes: Sequence[SeasonOutcome]) -> str:

@@ -2,9 +2,12 @@
 
 from datetime import date
 
+import numpy as np
 import pytest
 
-from tests.app.driving import begun, headline, layer, opened, plants, plot_name, texts_of
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
+from tests.app.driving import begun, go, headline, layer, opened, plants, plot_name, press, texts_of
 
 
 def test_a_season_begins_and_is_found_again_by_a_new_session(season):
@@ -33,3 +36,24 @@ def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(s
         assert says in season_app.error[0].value
     assert season().path.read_bytes() == before
     assert [p.name for p in season().path.parent.iterdir()] == ["Gate 2026.gpkg"]
+
+
+def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
+    kept = season()
+
+    def begin_after_it():
+        season_app.selectbox(key="season").set_value("Sample estate").run()
+        go(season_app, "today")
+        season_app.selectbox(key="season_earlier").set_value(kept.path.stem)
+        season_app.text_input(key="season_name").set_value("Next year")
+        press(season_app, "Begin the season")
+
+    begin_after_it()
+    assert "nothing was inspected" in season_app.error[0].value
+    plants, results = np.arange(3, dtype=np.int32), np.array([1, 0, 0], np.int8)
+    kept.record(Inspections.of(plants, results, np.datetime64(kept.settings.begins)), "x")
+    begin_after_it()
+    assert not season_app.error
+    assert Season(kept.path.parent / "Next year.gpkg").settings.belief.earlier == kept.as_earlier()
+    go(season_app, "season")
+    assert "Begun with what was learnt on Gate" in texts_of(season_app)

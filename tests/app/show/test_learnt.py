@@ -1,47 +1,56 @@
 """What inspections tell of the insects, in words with intervals."""
 
+from types import SimpleNamespace
+
 import pytest
 import streamlit as st
 
 from app.show import learnt
 from app.words import texts
+from fieldmon.compute.wording import worded
 from fieldmon.infestation.learnt import Learnt
 from tests.app.driving import apart
+
+DETECTION = Learnt("detection", 0.84, 0.71, 0.94)
 
 
 @pytest.fixture
 def shown(monkeypatch):
     """Return what is shown of given estimates."""
 
-    def show(*estimates):
+    def show(*estimates, inspected=3, taught=None):
         lines = []
         monkeypatch.setattr(st, "markdown", lines.append)
         monkeypatch.setattr(st, "caption", lines.append)
         monkeypatch.setattr(learnt.chosen_day, "learnt", lambda _: estimates)
-        learnt.show(None)
+        progress = SimpleNamespace(inspected=inspected)
+        monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
+        learnt.show(SimpleNamespace(season=SimpleNamespace(taught=lambda: taught)))
         return apart("\n".join(lines[1:])).splitlines()
 
     return show
 
 
-def test_shares_are_in_percent_and_plants_are_numbers(shown):
-    assert shown(
-        Learnt("detection", 0.84, 0.71, 0.94),
-        Learnt("arrivals a night", 1.24, 0.3, 4.0),
-        Learnt("infested at the start", 306.04, 253.5, 1363.3),
-    ) == [
-        "- An inspection finds 84 % of what is there (71 % to 94 %).",
-        "- 1.2 plants a night are infested from outside (0.3 to 4.0).",
-        "- 306 plants were infested at the start (254 to 1,363).",
-    ]
+def test_it_is_the_sentence_that_the_status_prints(shown):
+    estimates = DETECTION, Learnt("infested at the start", 306.04, 253.5, 1363.3)
+    said = [f"- {one.sentence()}" for one in estimates]
+    assert shown(*estimates) == [apart(texts.LEARNT_INTERVALS), *said]
 
 
 def test_how_far_insects_jump_is_said_where_they_may(shown):
     length = Learnt("length of jumps", 3.4, 3.1, 3.8)
     for chance, lines in ((0.004, 1), (0.3, 2)):
-        assert (
-            len(shown(Learnt("jumps beyond neighbours", chance, chance, chance), length)) == lines
-        )
+        jumps = Learnt("jumps beyond neighbours", chance, chance, chance)
+        assert len(shown(jumps, length)) == 1 + lines
+
+
+def test_before_anything_was_inspected_it_is_said_to_be_believed_only(shown):
+    assert texts.LEARNT_AT_FIRST in shown(DETECTION, inspected=0)[0]
+    assert texts.LEARNT_AT_FIRST not in shown(DETECTION)[0]
+
+
+def test_an_earlier_season_is_named(shown):
+    assert shown(DETECTION, taught=worded("Begun with it."))[0].startswith("Begun with it. ")
 
 
 def test_a_season_that_traces_to_neighbours_only_says_so(shown):

@@ -11,6 +11,7 @@ def test_strategies_are_compared_and_the_best_is_put_to_use(app):
     go(app, "compare")
     app.number_input(key="seeds").set_value(3)
     app.number_input(key="n_days").set_value(4).run()
+    assert "Assumed: insects spread to the plants next to them only" in texts_of(app)
     assert "press Compare" in texts_of(app)
     app.button(key="run").click().run()
     for _ in range(300):

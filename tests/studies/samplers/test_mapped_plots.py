@@ -16,6 +16,7 @@ from fieldmon.studies.samplers.mapped_plots import (
     correlation,
     found_at,
     plots_in,
+    sentences,
     table,
     table_csv,
 )
@@ -76,19 +77,45 @@ def test_neighbours_of_a_chessboard_are_opposite_and_those_of_halves_alike():
 
 
 def test_plots_are_named_by_file_and_date_or_part(tmp_path):
-    (tmp_path / FILES[0]).write_text("x,y,t,i\n1,1,1991,1\n2,1,1991,0\n1,1,1992,1\n2,1,1992,1\n")
-    (tmp_path / FILES[2]).write_text("field\tquadrat\trow\tdisease\nF1\t1\t1\tY\nF2\t1\t1\tN\n")
-    made = [(each.name, each.infested.tolist()) for each in plots_in(tmp_path)]
-    assert made == [
-        ("citrus_ctv_IVI3and4 1991", [True, False]),
-        ("citrus_ctv_IVI3and4 1992", [True, True]),
-        ("gumpertz F1", [True]),
-        ("gumpertz F2", [False]),
+    dated = [f"{x},1,{t},{int(x <= t - 1990)}" for t in (1991, 1992) for x in range(1, 21)]
+    parts = [f"F{k}\t{q}\t1\t{'NY'[q == k]}" for k in (1, 2) for q in range(1, 21)]
+    both = [f"1,{p},{int(p == 3)},2,1,north,2025" for p in range(1, 21)]
+    (tmp_path / FILES[0]).write_text("\n".join(["x,y,t,i", *dated]))
+    (tmp_path / FILES[2]).write_text("\n".join(["field\tquadrat\trow\tdisease", *parts]))
+    own = ["row,plant,infested,row_m,plant_m,plot,date", *both]
+    (tmp_path / "vines.map.csv").write_text("\n".join(own))
+    made = {each.name: np.flatnonzero(each.infested).tolist() for each in plots_in(tmp_path)}
+    assert made == {
+        "citrus_ctv_IVI3and4 1991": [0],
+        "citrus_ctv_IVI3and4 1992": [0, 1],
+        "gumpertz F1": [0],
+        "gumpertz F2": [1],
+        "vines north 2025": [2],
+    }
+
+
+def test_of_fewer_plants_than_twenty_a_twentieth_is_none(tmp_path):
+    (tmp_path / FILES[3]).write_text("row\tcol\ty\n1\t1\t1\n1\t2\t0\n")
+    with pytest.raises(FileProblem, match=r"20 plants or more.*has 2"):
+        plots_in(tmp_path)
+
+
+def test_what_adaptive_comes_to_is_said_whichever_way_it_falls():
+    def row(name, who, per_hour):
+        return MapRow(name, 0.1, who, [0.0] * 4, [0.0] * 3 + per_hour if per_hour else [])
+
+    rows = [
+        *(row("a", "adaptive", [9.0]), row("a", "naive", [10.0]), row("a", "random", [])),
+        *(row("b", "adaptive", [15.0]), row("b", "naive", [10.0]), row("b", "random", [])),
+        *(row("c", "adaptive", [0.0]), row("c", "naive", [0.0])),
     ]
+    (said,) = sentences(rows)
+    assert "0.90 (a) to 1.50 (b) of the finds per hour of a sweep (naive)" in said
+    assert said.endswith("over 1.05 on 1 of 2 maps, under 0.95 on 1.")
 
 
 def test_a_folder_without_maps_is_refused(tmp_path):
-    with pytest.raises(FileProblem, match="must hold one of"):
+    with pytest.raises(FileProblem, match="must hold a map of plants, one of"):
         plots_in(tmp_path)
 
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from fieldmon.compute.wording import estimate
 from fieldmon.studies.outcome_table import outcomes_from
-from fieldmon.studies.samplers.calibration import Calibration
+from fieldmon.studies.samplers.calibration import Calibration, _percent
 from fieldmon.studies.samplers.calibration import report_html as beliefs_html
 from fieldmon.studies.samplers.contenders import NAMES
 from fieldmon.studies.samplers.report import report_html
@@ -37,16 +38,19 @@ def test_every_mean_stands_under_its_measure_scenario_and_sampler(made):
         assert heads == ["scenario", *NAMES]
         assert [row[0] for row in rows] == list(scenarios)
         for name, *shown in rows:
-            assert shown == [f"{scenarios[name][who]:.1f}" for who in NAMES]
+            assert shown == [estimate(scenarios[name][who]) for who in NAMES]
 
 
 def test_what_was_found_is_said_in_sentences_over_a_chart_a_rival(made):
     page = Page(report_html(made))
-    assert page.items == sentences(made)
+    said = sentences(made)
+    assert page.items[: len(said)] == said
+    assert [item.split(":")[0] for item in page.items[len(said) :]] == list(NAMES)
+    assert len(page.all("line", "even")) == len(page.all("svg"))
     rivals = len(page.all("svg"))
     assert rivals == 4
     assert len(page.all("circle")) == 2 * rivals  # a dot a scenario and chart
-    assert "3 seasons of 25 days a scenario" in page.text
+    assert "3 simulated seasons of 25 days a scenario" in page.text
     assert page.headings[0] == "Samplers compared"
     assert page.runs == page.asks_for == []
 
@@ -78,7 +82,7 @@ def test_every_score_of_a_belief_stands_in_its_row():
     (_, *rows), *reliability = page.tables
     for (name, c), row in zip(made.items(), rows, strict=True):
         scores = [f"{c.brier:.5f}", f"{c.log_score:.4f}", f"{c.suspicious_log_score:.4f}"]
-        held = [f"{c.covered:.0%}", f"{c.half_covered:.0%}"]
+        held = [_percent(c.covered), _percent(c.half_covered)]
         assert row[: len(scores) + 1] == [name, *scores]
         assert set(held) <= set(row)
         assert row[-1] == "12"
@@ -98,3 +102,20 @@ def test_names_of_beliefs_are_texts():
     made = {text: a_calibration(k) for k, text in enumerate(HOSTILE)}
     page = held(beliefs_html(made, " ".join(HOSTILE)))
     assert [row[0] for row in page.tables[0][1:]] == list(HOSTILE)
+
+
+def test_of_few_plants_it_says_how_many_were_so_and_of_few_seasons_that_shares_are_rough():
+    c = a_calibration(1)
+    c.said[:2], c.was[:2], c.count[:2] = (0.0006, 0.2753), (0.0, 2 / 7), (51_459, 7)
+    _, reliability = Page(beliefs_html({"pairs": c}, "about", 2)).tables
+    assert reliability[1:3] == [["0.06 %", "0 %", "51,459"], ["28 %", "2 of 7", "7"]]
+    rough = [" 2 seasons these shares" in beliefs_html({"pairs": c}, "", k) for k in (2, 20)]
+    assert rough == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("share", "said"),
+    [(0.0, "0 %"), (0.00061, "0.061 %"), (0.0149, "1.5 %"), (0.75, "75 %"), (float("nan"), "-")],
+)
+def test_shares_are_in_percent_with_two_digits(share, said):
+    assert _percent(share) == said

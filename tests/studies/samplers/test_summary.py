@@ -5,7 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.studies.samplers.contenders import ADAPTIVE, CLAIRVOYANT, NAMES, TUNED, WORDED
+from fieldmon.studies.samplers.contenders import (
+    ABOUT,
+    ADAPTIVE,
+    BOUNDS,
+    CLAIRVOYANT,
+    NAMES,
+    TUNED,
+    WORDED,
+)
 from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
 from fieldmon.studies.samplers.summary import (
     by_scenario,
@@ -14,6 +22,7 @@ from fieldmon.studies.samplers.summary import (
     ratio_lines,
     ratios,
     sentences,
+    verdict,
 )
 
 
@@ -90,3 +99,37 @@ def test_adaptive_is_held_against_each_other_that_took_part_in_all_seasons():
     assert WORDED in head
     assert [line.split()[0] for line in lines] == ["one", "other"]
     assert all(line.count("0.70 (") == 3 for line in lines)
+
+
+def test_who_loses_least_is_said_first_and_where_that_is_sure():
+    first, *against, few = verdict(MADE)
+    assert first == "Fewest infested plant-days, of 2 scenarios: adaptive in 2."
+    assert against[0].startswith(
+        f"adaptive against {WORDED}: surely fewer in 2, surely more in 0, not sure in 0 "
+    )
+    assert few.startswith("With 4 seasons intervals come out too narrow.")
+    better = [replace(o, infested_plant_days=1.0) if (o.scenario, o.contender) == ("one", TUNED)
+              else o for o in MADE]  # fmt: skip
+    first, _, tuned, *_ = verdict(better)
+    assert (
+        first == "Fewest infested plant-days, of 2 scenarios: adaptive in 1; dynamic, tuned in 1."
+    )
+    assert f"{TUNED}: surely fewer in 1, surely more in 1" in tuned
+    many = [replace(o, seed=o.seed + 4 * k) for k in range(5) for o in MADE]
+    assert not any("too narrow" in said for said in verdict(many))
+
+
+def test_a_bound_is_not_said_to_lose_least():
+    bound = [outcome(scenario, 0, CLAIRVOYANT, loss=0.1) for scenario in ("one", "other")]
+    assert verdict(MADE + bound)[0].endswith("adaptive in 2.")
+
+
+def test_each_who_takes_part_is_explained():
+    assert set(ABOUT) == set(NAMES)
+    assert set(BOUNDS) < set(NAMES)
+
+
+def test_ratios_stand_under_their_heads_however_long_a_name():
+    long = [replace(o, scenario="a name " * 12) for o in MADE if o.scenario == "one"]
+    head, line = ratio_lines(long)
+    assert head.index(WORDED) + len(WORDED) == line.index("(", line.index("0.70")) + 11

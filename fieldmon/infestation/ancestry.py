@@ -17,9 +17,9 @@ import numpy as np
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
 from fieldmon.infestation.drawn_ancestry import (
     NOBODY,
-    Believed,
-    Drawn,
+    DrawnSums,
     Infestations,
+    Weights,
     draw_ancestries,
 )
 from fieldmon.infestation.landing import landing_of
@@ -45,9 +45,13 @@ _SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
 _ARRIVAL_FINDS, _START_FINDS = 0.5, 1.0
 # the share of the start that came by the edge, and how many finds that is worth (our choice)
 _BY_EDGE, _BY_EDGE_FINDS = 0.1, 0.5
-# sweeps in a round of which rates are known, and in that of which chances are; a quarter is left
-# out. Of many infestations there are fewer, so that no more than so many pairs are looked at
-_SWEEPS, _LEAST_SWEEPS, _PAIRS = (34, 100), 4, 4e6
+# sweeps a night, of which a quarter is left out; of many infestations there are fewer, so that no
+# more than so many pairs are looked at. In the first nights there are two rounds, as rates are
+# little known before
+_SWEEPS, _LEAST_SWEEPS, _PAIRS = 100, 4, 2e6
+_EARLY = 3
+# finds older than so many days keep their origin
+_SETTLED = 10
 #: a plot of more plants does without: each night would take seconds
 MOST_PLANTS = 10_000
 # after so many days, or with so many infestations, an ancestry begins anew
@@ -188,9 +192,9 @@ class Ancestry:
         if not self.knows:
             return night, None
         many = max(int(np.count_nonzero(night.infestations.there)), 1)
+        sweeps = max(_LEAST_SWEEPS, min(_SWEEPS, int(_PAIRS / many**2)))
         hidden = unseen = np.zeros(n)
-        for k, most in enumerate(_SWEEPS):
-            sweeps = max(_LEAST_SWEEPS, min(most, int(_PAIRS / many**2)))
+        for k in range(2 if day < _EARLY else 1):
             draws = 2 * day + k, sweeps, sweeps // 4
             night, hidden, unseen = _drawn(night, landing_of(self.grid), draws, arrive)
         chance = np.clip(
@@ -277,13 +281,14 @@ def _drawn(
     so_far = np.cumsum(kernel) / kernel.sum()
     roots, by_edge = _roots(of, landing, t)
     lasting = np.exp(overlooked + unseen.offspring)
-    believed = Believed(landing.cells, kernel, so_far, sends, roots, _BEFORE, lasting)
+    settled = t - 1 - _SETTLED
+    weights = Weights(landing.cells, kernel, so_far, sends, roots, _BEFORE, settled, lasting)
     infestations = of.infestations.copied(0)
-    drawn = Drawn.none(t, n, len(kernel))
+    drawn = DrawnSums.none(t, n, len(kernel))
     at = _places(infestations, n)
     last_find = of.last_find + _BEFORE
-    kept = draw_ancestries(infestations, at, believed, last_find, draws, drawn)
-    mean = Drawn(*(sums / kept for sums in drawn))
+    kept = draw_ancestries(infestations, at, weights, last_find, draws, drawn)
+    mean = DrawnSums(*(sums / kept for sums in drawn))
     there = infestations.there & infestations.found
     taken = mean.active.copy()
     taken[infestations.ends[there], infestations.plant[there]] = 1.0
@@ -324,7 +329,7 @@ def _rates(
     landing: Landing,
     unseen: tuple[Unseen, Floats],
     night: tuple[Floats, float],
-    drawn: Drawn,
+    drawn: DrawnSums,
     by_edge: Floats,
 ) -> Rates:
     """Return the rates by what ancestries have, over what would have been seen of it."""

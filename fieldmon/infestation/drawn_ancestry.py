@@ -84,7 +84,7 @@ class Infestations(NamedTuple):
         return wider
 
 
-class Believed(NamedTuple):
+class Weights(NamedTuple):
     """What ancestries are weighed by, on t mornings.
 
     Parameters
@@ -98,8 +98,9 @@ class Believed(NamedTuple):
     roots
         ``(t, n)`` how many infestations come to a plant from none, by the morning on which they
         begin.
-    season
-        The first morning of the season.
+    season, settled
+        The first morning of the season, and that until which infestations have ended that stay as
+        they are.
     lasting
         ``(t, n)`` how likely it is that an infestation goes on from a morning to the last as it
         was seen, if it sends out only what the ancestry has: up to another morning it is the ratio
@@ -112,10 +113,11 @@ class Believed(NamedTuple):
     sends: Floats
     roots: Floats
     season: int
+    settled: int
     lasting: Floats
 
 
-class Drawn(NamedTuple):
+class DrawnSums(NamedTuple):
     """Sums over the ancestries drawn.
 
     Parameters
@@ -136,7 +138,7 @@ class Drawn(NamedTuple):
     roots: Floats
 
     @classmethod
-    def none(cls, t: int, n: int, d: int) -> Drawn:
+    def none(cls, t: int, n: int, d: int) -> DrawnSums:
         """Return sums of nothing."""
         return cls(np.zeros((t, n)), np.zeros(n), np.zeros((2, d, d)), np.zeros((t, n)))
 
@@ -156,10 +158,10 @@ class _Origins(NamedTuple):
 def draw_ancestries(
     infestations: Infestations,
     at: Ints,
-    believed: Believed,
+    weights: Weights,
     last_find: Ints,
     draws: tuple[int, int, int],
-    drawn: Drawn,
+    drawn: DrawnSums,
 ) -> int:
     """Draw ancestries, each from the one before, in place; return how many were summed up.
 
@@ -174,25 +176,27 @@ def draw_ancestries(
     """
     seed, sweeps, left_out = draws
     np.random.seed(seed)  # noqa: NPY002 - a compiled loop has no other
-    mornings, places = believed.roots.shape[0], infestations.plant.size
+    mornings, places = weights.roots.shape[0], infestations.plant.size
     origins = _Origins(np.empty(mornings + 1), np.empty(mornings + 1), np.empty(places))
     for sweep in range(sweeps):
         # as many in each sweep, however many infestations there are by then
         for _ in range(_MOVES * places):
             i, kind = np.random.randint(places), np.random.random()  # noqa: NPY002
             if kind >= _TIMES_AND_MORE:
-                _take_out(infestations, at, believed, origins)
-            elif infestations.there[i] and kind < _TIMES:
-                _move(infestations, i, believed, origins)
-            elif infestations.there[i]:
-                _put_in(infestations, i, (at, last_find), believed, origins)
+                _take_out(infestations, at, weights, origins)
+            elif not infestations.there[i] or infestations.ends[i] <= weights.settled:
+                continue
+            elif kind < _TIMES:
+                _move(infestations, i, weights, origins)
+            else:
+                _put_in(infestations, i, (at, last_find), weights, origins)
         if sweep >= left_out:
-            _sum_up(infestations, believed, drawn)
+            _sum_up(infestations, weights, drawn)
     return max(sweeps - left_out, 0)
 
 
 @part
-def _move(infestations: Infestations, i: int, believed: Believed, origins: _Origins) -> None:
+def _move(infestations: Infestations, i: int, weights: Weights, origins: _Origins) -> None:
     """Draw another beginning and parent of an infestation.
 
     The only child of one that was not found keeps its parent: that would be without a find.
@@ -207,7 +211,7 @@ def _move(infestations: Infestations, i: int, believed: Believed, origins: _Orig
     when = (infestations.plant[i], earliest, latest, infestations.ends[i])
     parent = infestations.parent[i]
     alone = parent >= 0 and _hangs_on_one(infestations, parent)
-    total = _weigh(infestations, when, (i, NOBODY), believed, origins)
+    total = _weigh(infestations, when, (i, NOBODY), weights, origins)
     if alone:
         infestations.begins[i] = _when_by(infestations, parent, when, origins)
         return
@@ -221,7 +225,7 @@ def _put_in(
     infestations: Infestations,
     i: int,
     places: tuple[Ints, Ints],
-    believed: Believed,
+    weights: Weights,
     origins: _Origins,
 ) -> None:
     """Try one that was not found as the parent of an infestation."""
@@ -229,7 +233,7 @@ def _put_in(
     parent = infestations.parent[i]
     if parent >= 0 and _hangs_on_one(infestations, parent):
         return
-    plant, many = _came_from(believed, infestations.plant[i])
+    plant, many = _came_from(weights, infestations.plant[i])
     if plant < 0 or at[plant] >= 0 or plant == infestations.plant[i]:
         return
     begins = infestations.begins[i]
@@ -237,10 +241,10 @@ def _put_in(
     place = _free(infestations)
     if latest < earliest or place < 0:
         return
-    last = believed.roots.shape[0] - 1
-    now = _explained(infestations, i, NOBODY, believed, origins)
+    last = weights.roots.shape[0] - 1
+    now = _explained(infestations, i, NOBODY, weights, origins)
     when = (plant, earliest, latest, last)
-    total = _weigh(infestations, when, (i, NOBODY), believed, origins)
+    total = _weigh(infestations, when, (i, NOBODY), weights, origins)
     other, since = _draw_origin(infestations, total, when, origins)
     removable = _n_removable(infestations) + 1
     if other != parent:
@@ -250,7 +254,7 @@ def _put_in(
         if other >= 0 and _hangs_on_one(infestations, other):
             removable -= 1
     # each place is drawn as often, taken or not
-    gain = believed.sends[begins - 1] * many * total * infestations.plant.size
+    gain = weights.sends[begins - 1] * many * total * infestations.plant.size
     if np.random.random() * now * removable >= gain:  # noqa: NPY002
         return
     infestations.plant[place], infestations.begins[place] = plant, since
@@ -263,7 +267,7 @@ def _put_in(
 
 
 @part
-def _take_out(infestations: Infestations, at: Ints, believed: Believed, origins: _Origins) -> None:
+def _take_out(infestations: Infestations, at: Ints, weights: Weights, origins: _Origins) -> None:
     """Try to do without one that was not found and has a single child."""
     removable = _n_removable(infestations)
     if removable == 0:
@@ -284,17 +288,19 @@ def _take_out(infestations: Infestations, at: Ints, believed: Believed, origins:
         if infestations.there[j] and infestations.parent[j] == place:
             child = j
             break
+    if infestations.ends[child] <= weights.settled:
+        return
     begins, plant = infestations.begins[child], infestations.plant[place]
     when = (plant, infestations.earliest[place], begins - 1, infestations.ends[place])
-    total = _weigh(infestations, when, (place, child), believed, origins)
-    now = _explained(infestations, child, place, believed, origins)
-    cell = believed.cells.of_plant[plant]
-    many = believed.cells.start[cell + 1] - believed.cells.start[cell]
-    loss = believed.sends[begins - 1] * many * total * infestations.plant.size
+    total = _weigh(infestations, when, (place, child), weights, origins)
+    now = _explained(infestations, child, place, weights, origins)
+    cell = weights.cells.of_plant[plant]
+    many = weights.cells.start[cell + 1] - weights.cells.start[cell]
+    loss = weights.sends[begins - 1] * many * total * infestations.plant.size
     if np.random.random() * loss >= now * removable:  # noqa: NPY002
         return
     when = (infestations.plant[child], begins, begins, infestations.ends[child])
-    total = _weigh(infestations, when, (child, place), believed, origins)
+    total = _weigh(infestations, when, (child, place), weights, origins)
     other, _ = _draw_origin(infestations, total, when, origins)
     _hang(infestations, child, other)
     _hang(infestations, place, NOBODY)
@@ -307,7 +313,7 @@ def _weigh(
     infestations: Infestations,
     when: tuple[int, int, int, int],
     without: tuple[int, int],
-    believed: Believed,
+    weights: Weights,
     origins: _Origins,
 ) -> float:
     """Weigh all origins of an infestation; return their sum.
@@ -319,10 +325,10 @@ def _weigh(
     origins.by_parent[0] = origins.by_none[0] = 0.0
     for k in range(latest - earliest + 1):
         begins = earliest + k
-        lasts = believed.lasting[begins, plant] / believed.lasting[ends, plant]
-        sends = believed.sends[begins - 1] if begins > 0 else 0.0
+        lasts = weights.lasting[begins, plant] / weights.lasting[ends, plant]
+        sends = weights.sends[begins - 1] if begins > 0 else 0.0
         origins.by_parent[k + 1] = origins.by_parent[k] + lasts * sends
-        origins.by_none[k + 1] = origins.by_none[k] + lasts * believed.roots[begins, plant]
+        origins.by_none[k + 1] = origins.by_none[k] + lasts * weights.roots[begins, plant]
     total = 0.0
     for j in range(infestations.plant.size):
         if infestations.there[j] and j != without[0] and j != without[1]:
@@ -330,7 +336,7 @@ def _weigh(
             last = min(infestations.ends[j], latest)
             if last >= first:
                 times = origins.by_parent[last - earliest + 1] - origins.by_parent[first - earliest]
-                total += times * _jumps(believed, infestations.plant[j], plant)
+                total += times * _jumps(weights, infestations.plant[j], plant)
         origins.so_far[j] = total
     return float(total + origins.by_none[latest - earliest + 1])
 
@@ -376,34 +382,34 @@ def _when_by(
 
 @part
 def _explained(
-    infestations: Infestations, i: int, without: int, believed: Believed, origins: _Origins
+    infestations: Infestations, i: int, without: int, weights: Weights, origins: _Origins
 ) -> float:
     """Return how well an infestation that begins when it does is explained by all others."""
     begins, ends, plant = infestations.begins[i], infestations.ends[i], infestations.plant[i]
-    total = _weigh(infestations, (plant, begins, begins, ends), (i, without), believed, origins)
-    return float(total * believed.lasting[ends, plant] / believed.lasting[begins, plant])
+    total = _weigh(infestations, (plant, begins, begins, ends), (i, without), weights, origins)
+    return float(total * weights.lasting[ends, plant] / weights.lasting[begins, plant])
 
 
 @part
-def _jumps(believed: Believed, sender: int, plant: int) -> float:
+def _jumps(weights: Weights, sender: int, plant: int) -> float:
     """Return how much of what a plant sends out lands on another."""
-    along, half = believed.cells.shape[1], believed.kernel.shape[0] // 2
-    one, other = believed.cells.of_plant[sender], believed.cells.of_plant[plant]
+    along, half = weights.cells.shape[1], weights.kernel.shape[0] // 2
+    one, other = weights.cells.of_plant[sender], weights.cells.of_plant[plant]
     y, x = other // along - one // along, other % along - one % along
     if -half <= y <= half and -half <= x <= half:
-        return float(believed.kernel[y + half, x + half])
+        return float(weights.kernel[y + half, x + half])
     return 0.0
 
 
 @part
-def _came_from(believed: Believed, plant: int) -> tuple[int, int]:
+def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
     """Return a plant from which something may have come to this one, drawn by the kernel.
 
     And how many stand in its cell; -1: none stands there.
     """
-    cells, d = believed.cells, believed.kernel.shape[0]
+    cells, d = weights.cells, weights.kernel.shape[0]
     across, along = cells.shape[0], cells.shape[1]
-    k = np.searchsorted(believed.so_far, np.random.random())  # noqa: NPY002
+    k = np.searchsorted(weights.so_far, np.random.random())  # noqa: NPY002
     y = cells.of_plant[plant] // along - (k // d - d // 2)
     x = cells.of_plant[plant] % along - (k % d - d // 2)
     if k >= d * d or y < 0 or y >= across or x < 0 or x >= along:
@@ -452,8 +458,8 @@ def _free(infestations: Infestations) -> int:
 
 
 @part
-def _sum_up(infestations: Infestations, believed: Believed, drawn: Drawn) -> None:
-    along, half = believed.cells.shape[1], believed.kernel.shape[0] // 2
+def _sum_up(infestations: Infestations, weights: Weights, drawn: DrawnSums) -> None:
+    along, half = weights.cells.shape[1], weights.kernel.shape[0] // 2
     for i in range(infestations.plant.size):
         if not infestations.there[i]:
             continue
@@ -465,7 +471,7 @@ def _sum_up(infestations: Infestations, believed: Believed, drawn: Drawn) -> Non
         if parent < 0:
             drawn.roots[begins, plant] += 1.0
             continue
-        one = believed.cells.of_plant[infestations.plant[parent]]
-        other = believed.cells.of_plant[plant]
+        one = weights.cells.of_plant[infestations.plant[parent]]
+        other = weights.cells.of_plant[plant]
         y, x = other // along - one // along, other % along - one % along
-        drawn.jumps[0 if begins <= believed.season else 1, y + half, x + half] += 1.0
+        drawn.jumps[0 if begins <= weights.season else 1, y + half, x + half] += 1.0

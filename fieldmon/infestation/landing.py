@@ -44,22 +44,24 @@ class Landing:
     padded: tuple[int, int]
     at_edge: Floats
 
-    def landed(self, sent: Floats, shares: Floats, *, back: bool = False) -> Floats:
+    def mixed(self, shares: Floats) -> NDArray[np.complex128]:
+        """Return the transform of the kernels' mixture, of which each has a share ``(8,)``."""
+        spectrum: NDArray[np.complex128] = np.einsum("k,kij->ij", shares, self.spectra)
+        return spectrum
+
+    def landed(self, sent: Floats, mixed: NDArray[np.complex128]) -> Floats:
         """Return what lands on each plant, ``(n,)``, of what all plants send out.
 
         Parameters
         ----------
         sent
             ``(n,)`` what each plant sends.
-        shares
-            ``(8,)`` how much of it goes by each kernel.
-        back
-            Whether it goes the other way: from where it would land to where it came from.
+        mixed
+            By what it goes, see `mixed`; conjugated it goes the other way, from where it would
+            land to where it came from.
         """
-        spectrum = np.einsum("k,kij->ij", shares, self.spectra)
-        spectrum = self._sent(sent) * (np.conj(spectrum) if back else spectrum)
         across, along = self.cells.shape
-        landed = fft.irfft2(spectrum, self.padded)[:across, :along]
+        landed = fft.irfft2(self._sent(sent) * mixed, self.padded)[:across, :along]
         brought: Floats = np.maximum(landed.ravel()[self.cells.of_plant], 0.0)
         return brought
 

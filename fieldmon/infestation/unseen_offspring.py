@@ -63,10 +63,10 @@ def stays_unseen(
     shares
         ``(k,)`` how much of it goes by each kernel.
     """
-    offspring = np.zeros_like(alone)
+    offspring, back = np.zeros_like(alone), np.conj(landing.mixed(shares))
     for night in range(len(alone) - 2, -1, -1):
         seen = 1.0 - np.exp(alone[night + 1] + offspring[night + 1])
-        caught = landing.landed(seen * (1.0 - taken[night + 1]), shares, back=True)
+        caught = landing.landed(seen * (1.0 - taken[night + 1]), back)
         offspring[night] = offspring[night + 1] - sends[night] * caught
     return Unseen(alone, offspring)
 
@@ -85,11 +85,12 @@ def unseen_now(
     sends, shares
         As for `stays_unseen`.
     """
-    chance, there = unseen.chance, np.zeros(active.shape[1])
+    chance, mixed = unseen.chance, landing.mixed(shares)
+    there = np.zeros(active.shape[1])
     for morning in range(len(active)):
         new = roots[morning]
         if morning:
             senders = active[morning - 1] + there
-            new = new + sends[morning - 1] * landing.landed(senders, shares)
+            new = new + sends[morning - 1] * landing.landed(senders, mixed)
         there = there + chance[morning] * new * np.maximum(1.0 - there, 0.0)
     return there

@@ -7,9 +7,9 @@ import pytest
 
 from fieldmon.infestation.drawn_ancestry import (
     NOBODY,
-    Believed,
-    Drawn,
+    DrawnSums,
     Infestations,
+    Weights,
     draw_ancestries,
 )
 from fieldmon.infestation.landing import landing_of
@@ -29,7 +29,7 @@ def believed(seed=0):
     sends = rng.uniform(0.5, 3.0, MORNINGS)
     lasting = rng.uniform(0.2, 1.0, (MORNINGS, N))
     roots = rng.uniform(0.01, 0.3, (MORNINGS, N))
-    return Believed(landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, lasting)
+    return Weights(landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, -1, lasting)
 
 
 def with_finds(finds):
@@ -100,7 +100,7 @@ def test_ancestries_are_drawn_as_often_as_they_are_likely(finds):
             active[begins:end, plant] += weight
             hidden[plant] += weight * (k >= len(finds))
             roots[begins, plant] += weight * (parent == NOBODY)
-    drawn = Drawn.none(MORNINGS, N, len(world.kernel))
+    drawn = DrawnSums.none(MORNINGS, N, len(world.kernel))
     kept = draw_ancestries(made, np.full(N, NOBODY), world, last_find, (1, 100_000, 1_000), drawn)
     assert kept == 99_000
     assert drawn.hidden / kept == pytest.approx(hidden / total, abs=0.015)
@@ -129,8 +129,8 @@ def test_an_ancestry_holds_together():
     roots = np.full((mornings, 144), 1e-4)
     sends = np.full(mornings, 0.3)
     so_far = np.cumsum(kernel) / kernel.sum()
-    world = Believed(landing.cells, kernel, so_far, sends, roots, 3, lasting)
-    at, drawn = np.full(144, NOBODY), Drawn.none(mornings, 144, len(kernel))
+    world = Weights(landing.cells, kernel, so_far, sends, roots, 3, -1, lasting)
+    at, drawn = np.full(144, NOBODY), DrawnSums.none(mornings, 144, len(kernel))
     draw_ancestries(made, at, world, last_find, (2, 50, 10), drawn)
     there = np.flatnonzero(made.there)
     children = np.bincount(made.parent[there] + 1, minlength=121)[1:]

@@ -21,22 +21,6 @@ def by_hand(shares):
     return kernel[half + y[None, :] - y[:, None], half + x[None, :] - x[:, None]]
 
 
-def test_jumps_land_as_the_kernels_have_it():
-    sent = np.random.default_rng(1).random(N)
-    mixed = LANDING.mixed(SHARES)
-    assert LANDING.landed(sent, mixed) == pytest.approx(sent @ by_hand(SHARES), abs=1e-12)
-    back = LANDING.landed(sent, np.conj(mixed))
-    assert back == pytest.approx(by_hand(SHARES) @ sent, abs=1e-12)
-
-
-def test_what_is_met_by_each_kernel_is_what_lands_there():
-    rng = np.random.default_rng(2)
-    sent, there = rng.random((2, 3, N))
-    for k, met in enumerate(LANDING.met(sent, there)):
-        landed = sent @ by_hand(np.eye(8)[k])
-        assert met == pytest.approx(float((landed * there).sum()))
-
-
 def test_nothing_is_seen_of_an_infestation_with_the_chance_of_a_branching_process():
     """Two nights, worked out plant by plant."""
     rng = np.random.default_rng(3)

@@ -287,7 +287,7 @@ class TracedPairs:
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
-            ancestry=self.ancestry.learn(plants, found, told)
+            ancestry=self.ancestry.learn(plants, found, shown)
             if self.ancestry is not None and learning.treated
             else None,
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),

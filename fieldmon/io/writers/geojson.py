@@ -66,7 +66,7 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
     """
     line_lonlat = np.round(route.line_lonlat(), _DECIMALS)
     features = [_line_feature(route, notes, line_lonlat), *_stop_features(route, notes)]
-    collection = {"type": "FeatureCollection", "features": features}
+    collection: dict[str, Any] = {"type": "FeatureCollection", "features": features}
     everything = np.concatenate([line_lonlat, np.round(route.stops_lonlat(), _DECIMALS)])
     if len(everything):
         collection["bbox"] = _bbox(everything)

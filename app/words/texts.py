@@ -780,7 +780,8 @@ NEVER_ROWS = Plural(
 )
 LEARNT_TITLE = "What the inspections tell of the insects"
 LEARNT = {
-    "detection": "An inspection finds {value} of what is there ({low} to {high}).",
+    "detection": "An inspection finds {value} of what is there ({low} to {high}). Chances "
+    "go by this; routes and their finds go by what is said of who inspects.",
     "infested at the start": "{value} plants were infested at the start ({low} to {high}).",
     "arrivals a night": "{value} plants a night are infested from outside ({low} to {high}).",
     "jumps beyond neighbours": "They jump beyond the next plant with a chance of {value}.",

@@ -6,13 +6,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import shapely
-from shapely import MultiLineString, MultiPolygon, Polygon
+from shapely import MultiLineString, MultiPolygon
 
 from fieldmon.compute.arguments import lonlat_of
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
+from fieldmon.plot.block import let_have_parts
 from fieldmon.plot.projection import Frame, goes_round, on_both_sides
 
 if TYPE_CHECKING:
@@ -81,8 +82,7 @@ class Field:
     in_rows: bool = True
 
     def __post_init__(self) -> None:
-        if isinstance(self.boundary, Polygon):
-            object.__setattr__(self, "boundary", MultiPolygon([self.boundary]))
+        let_have_parts(self, "boundary")
         must_hold_kinds(self, "A plot's")
         if self.boundary.is_empty or not self.boundary.is_valid:
             raise PlotError(

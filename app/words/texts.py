@@ -66,7 +66,7 @@ NO_MAP_DO = {
     "file": "Drop another file into its box, or take this one out.",
     "plot": "Change the rows, or take back what was drawn last, beside.",
 }
-NO_MAP_TAKE_OUT = "Take out {name}"
+NO_MAP_TAKE_OUT, NO_MAP_TAKE_OUT_ALL = "Take out {name}", "Take out {name} and {n} more"
 ROWS = "Rows"
 BEARING = "Row direction (degrees from north)"
 BEARING_HELP = "Leave empty to have it found from the boundary or the plants."

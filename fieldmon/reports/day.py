@@ -190,7 +190,7 @@ def legend_block(
     return Illustration(
         "", "",
         lambda size: maps.legend(size[0], route=route, by_state=by_state, zones=zones),
-        (8.0, 8.0),
+        (8.0, 8.0), is_read=True,
     )  # fmt: skip
 
 

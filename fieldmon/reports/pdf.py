@@ -274,7 +274,10 @@ class _Page:
             self._notes(block, y, high)
         elif isinstance(block, Illustration):
             y, high = self._title(block.title, y), high - _titled(block.title)
-            paint(self.pdf, self.fonts, block.draw((self.wide, high)), (_MARGIN, y))
+            drawn = block.draw((self.wide, high))
+            if self.mirrored and block.is_read:
+                drawn = drawn.turned()
+            paint(self.pdf, self.fonts, drawn, (_MARGIN, y))
 
     def _title(self, text: str, y: float) -> float:
         """Write a block's title; return where what follows begins."""

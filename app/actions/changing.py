@@ -86,11 +86,11 @@ def _wanted(
     if who != was:
         robot = scout() if who == SCOUT else Robot()
         key = f"{key} {who}"
-    # a command, or "one hour more", may have set what is beyond the usual
-    usual_s = robot.look_s
+    # a command, or "one hour more", may have set what is beyond the usual; a program whole numbers
+    usual_h, usual_s = float(robot.hours), float(robot.look_s)
     place = work.hours()
     with place:
-        hours = st.slider(texts.HOURS, min(0.5, robot.hours), max(16.0, robot.hours), robot.hours,
+        hours = st.slider(texts.HOURS, min(0.5, usual_h), max(16.0, usual_h), usual_h,
                           0.5, format=in_hours(), key=f"hours {key}")  # fmt: skip
     inspection_s = st.slider(texts.INSPECTION_S, min(20.0, usual_s), max(60.0, usual_s), usual_s,
                              5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip

@@ -11,9 +11,10 @@ import streamlit as st
 
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.monitoring import scouts
 
 from ..show import qr_code
-from ..state import chosen_day, phone
+from ..state import chosen_day, morning, phone
 from ..words import texts
 from . import inviting
 
@@ -36,6 +37,13 @@ def show(choices: Choices, plan: DayPlan) -> None:
     _files(choices, HandoffPlan(chosen_day.with_bound(choices, plan).route, notes))
 
 
+def is_out(choices: Choices) -> bool:
+    """Return whether a phone has the day without more: by a person's code, or by the address."""
+    if choices.season is None:
+        return phone.address().reachable
+    return bool(scouts.scouts_of(choices.season))
+
+
 def _show_address() -> None:
     where = phone.address()
     if where.reachable:
@@ -55,7 +63,8 @@ def _files(choices: Choices, plan: HandoffPlan) -> None:
     ending = f".{name}.zip" if chosen.several else chosen.endings[0]
     st.download_button(
         texts.DOWNLOAD_AS.format(reader=_reader(name)), partial(made, chosen, plan),
-        f"route_{choices.day}{ending}", key="download_format", type="primary", on_click="ignore",
+        f"route_{choices.day}{ending}", key="download_format", type="primary",
+        on_click=morning.note, args=(choices, morning.SEND),
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ import streamlit as st
 from fieldmon.monitoring import scouts
 
 from ..show import qr_code
-from ..state import notices, phone, scout_page
+from ..state import morning, notices, phone, scout_page
 from ..words import language, texts
 
 if TYPE_CHECKING:
@@ -77,6 +77,7 @@ def _invite(choices: Choices) -> str:
     lines = int(choices.season.label.line.max())
     rows = None if whole else (int(first or 1), int(last or lines))
     state[_SHOWN] = name.strip(), let_in(choices, name, rows)
+    morning.note(choices, morning.SEND)
     return ""
 
 

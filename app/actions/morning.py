@@ -133,10 +133,16 @@ def _begin(choices: Choices, _: DayPlan, step: Step) -> None:
     acting.once(_pressed(step, texts.STEP_BUTTONS[BEGIN]), beginning.begin, choices)
 
 
+def _note_sent(choices: Choices) -> None:
+    """Note that the day is taken along where who looks at the codes has it already."""
+    if handing_out.is_out(choices):
+        morning.note(choices, SEND)
+
+
 def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
     kind = "primary" if step.next else "secondary"
     if st.button(texts.STEP_BUTTONS[SEND], key="do_send", type=kind,
-                 on_click=morning.note, args=(choices, SEND)):  # fmt: skip
+                 on_click=_note_sent, args=(choices,)):  # fmt: skip
         st.dialog(texts.SEND_TITLE)(handing_out.show)(choices, plan)
 
 

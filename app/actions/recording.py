@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
@@ -177,7 +177,7 @@ def _source(
 
     Of a copy only what is new is read: what was corrected there is no new finding.
     """
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         copy = Path(folder) / "copy.gpkg"
         if data.startswith(_GEOPACKAGE):
             copy.write_bytes(data)

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring.settings import seconds
 
 from ..show import recorded_batches
 from ..state import chosen_day, notices
 from ..words import texts
-from ..words.language import in_words, number
+from ..words.language import in_words, number, of_error
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -23,9 +24,18 @@ SOURCE = "scout mode"
 
 
 def give_out(choices: Choices) -> None:
-    """Keep the day's route with the season when the scouting begins."""
-    if not len(chosen_day.given_out(choices)):
+    """Keep the day's route with the season when the scouting begins.
+
+    Where it cannot be kept, as on a full disk, that is said, and the map is there all the same.
+    """
+    if len(chosen_day.given_out(choices)):
+        return
+    try:
         choices.season.plan(choices.on, wishes=choices.wishes)
+    except FileProblem as problem:
+        st.error(of_error(problem))
+        # a press runs the page again, and that is trying again
+        st.button(texts.TRY_AGAIN, key="scout_again", type="primary")
 
 
 def _second(choices: Choices) -> float:

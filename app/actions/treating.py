@@ -118,7 +118,7 @@ def _treat(choices: Choices, area: MultiPolygon | None, advised: str) -> str:
         return texts.TREATED_BEFORE
     beware = [
         in_words(one.sentence)
-        for one in season.cautions(choices.on, choices.units.of_library)
+        for one in season.cautions(choices.on, choices.units.in_sentences(choices.on))
         if one.batch == done.batch
     ]
     return "\n- ".join([texts.TREATED, *beware])

@@ -37,12 +37,18 @@ def show(problem: FieldmonError | None) -> None:
         if case in texts.NO_MAP_DO:
             st.caption(texts.NO_MAP_DO[case])
         if case == "file" and file:
-            name = texts.isolated(brought_files.brought()[file].name)
-            st.button(texts.NO_MAP_TAKE_OUT.format(name=name), key="no_map_take_out",
+            st.button(_take_out(brought_files.brought()[file]), key="no_map_take_out",
                       on_click=brought_files.take_out, args=(file,))  # fmt: skip
         elif case == "season":
             # a press runs the page again, and that is trying again
             st.button(texts.TRY_AGAIN, key="no_map_again", type="primary")
+
+
+def _take_out(file: brought_files.File) -> str:
+    name = texts.isolated(file.name)
+    if file.files == 1:
+        return texts.NO_MAP_TAKE_OUT.format(name=name)
+    return texts.NO_MAP_TAKE_OUT_ALL.format(name=name, n=file.files - 1)
 
 
 def _case(problem: FieldmonError | None) -> tuple[str, str]:

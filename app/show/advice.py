@@ -150,6 +150,6 @@ def _numbers(advice: Advice) -> list[Label]:
     """Return each zone's number in its middle."""
     inner = [area.representative_point() for area in advice.outlines[:_MOST_NUMBERS]]
     return [
-        {"p": [round(point.x, 7), round(point.y, 7)], "t": f"{k}", "k": "leg"}
+        {"p": [round(point.x, 7), round(point.y, 7)], "t": f"{k}", "k": "zone"}
         for k, point in enumerate(inner, start=1)
     ]

@@ -17,7 +17,7 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
     """Show what to beware of on the chosen day; `kinds`: of these alone."""
     if choices.season is None:
         return
-    found = choices.season.cautions(choices.on, choices.units.of_library)
+    found = choices.season.cautions(choices.on, choices.units.in_sentences(choices.on))
     said = [in_words(one.sentence) for one in found if not kinds or one.kind in kinds]
     if said:
         st.warning("\n".join(f"- {sentence}" for sentence in dict.fromkeys(said)))
@@ -32,7 +32,7 @@ def show_today(choices: Choices) -> None:
 
 def show_treatments(choices: Choices) -> None:
     """Show when harvest may begin, and what inspections tell of each treatment."""
-    season, units = choices.season, choices.units.of_library
+    season, units = choices.season, choices.units.in_sentences(choices.on)
     first = season.harvest_from(choices.on)
     if first is not None:
         st.markdown(texts.HARVEST_FROM.format(day=choices.units.said_day(first[0], choices.on)))

@@ -60,18 +60,21 @@ def said(plot: PlotState) -> str:
 def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapContent:
     """Return the map of the plots, with the routes of a day's plan."""
     parts = [
-        (number, ring)
+        (number, part)
         for number, plot in enumerate(plots)
-        for ring in shapely.get_exterior_ring(shapely.get_parts(plot.outline))
+        for part in shapely.get_parts(plot.outline)
     ]
     rows = [
         {
-            "p": np.round(shapely.get_coordinates(ring), 7).tolist(),
+            "p": [
+                np.round(shapely.get_coordinates(ring), 7).tolist()
+                for ring in (part.exterior, *part.interiors)
+            ],
             "t": said(plots[number]),
             "n": number,
             "c": [*_COLOURS[state_of(plots[number])], 200],
         }
-        for number, ring in parts
+        for number, part in parts
     ]
     bounds = shapely.total_bounds([plot.outline for plot in plots]).tolist()
     areas = Layer(

@@ -27,6 +27,6 @@ def show(choices: Choices) -> None:
     notes = [] if taught is None else [in_words(taught)]
     if not chosen_day.progress(choices).inspected:
         notes.append(texts.LEARNT_AT_FIRST)
-    notes.append(texts.LEARNT_INTERVALS)
+    notes += [texts.LEARNT_COUNTS_FOR, texts.LEARNT_INTERVALS]
     st.caption(" ".join(notes))
     st.markdown("\n".join(f"- {in_words(one.sentence())}" for one in worth_saying(estimates)))

@@ -44,7 +44,8 @@ def to_come(choices: Choices) -> Callable[[], Report]:
     season, shown = choices.season, chosen_day.route(choices)
     facts = DayFacts(
         choices.plot.field.name, shown.begins, shown.route, chosen_day.chance(choices),
-        chosen_day.states(choices), chosen_day.hot_spots(choices), _settings(choices),
+        chosen_day.states(choices), chosen_day.hot_spots(choices),
+        _settings(choices, worked=shown.worked),
         0 if season is None else chosen_day.progress(choices).inspected_today,
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
@@ -53,9 +54,11 @@ def to_come(choices: Choices) -> Callable[[], Report]:
     return lambda: day_report(facts, units).said_in(of_paper)
 
 
-def _settings(choices: Choices) -> WorkSettings:
+def _settings(choices: Choices, *, worked: bool) -> WorkSettings:
     if choices.season is not None:
-        return WorkSettings.of_season(choices.season)
+        return WorkSettings.of_season(
+            choices.season, choices.on, worked=worked, learnt=chosen_day.learnt(choices)
+        )
     grid, said = choices.plot.grid, (one.message for one in choices.messages)
     return WorkSettings(
         choices.robot, choices.sampler, choices.prior, (grid.row_spacing_m, grid.plant_spacing_m),

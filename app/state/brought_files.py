@@ -43,6 +43,11 @@ class File:
         first = self.source[0] if isinstance(self.source, tuple) else self.source
         return first.name
 
+    @property
+    def files(self) -> int:
+        """Return how many files make it up."""
+        return len(self.source) if isinstance(self.source, tuple) else 1
+
 
 @dataclass(frozen=True, eq=False)
 class FileMessage:

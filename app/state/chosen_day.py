@@ -52,11 +52,11 @@ def starts(choices: Choices, plan: DayPlan) -> datetime:
     return _work_begins(choices) + gone
 
 
-def _work_begins(choices: Choices) -> datetime:
+def _work_begins(choices: Choices, *, worked: bool = False) -> datetime:
     """Return the local time at which the day's work starts for the one whose day is shown."""
-    if choices.season is None:
+    if (season := choices.season) is None:
         return datetime.combine(choices.on, STARTS)
-    settings = choices.season.settings
+    settings = season.settings_on(choices.on) if worked else season.settings
     late_s = settings.member(choices.who).starts_s if choices.who else 0.0
     return datetime.combine(choices.on, settings.starts) + timedelta(seconds=late_s)
 
@@ -67,7 +67,7 @@ def route(choices: Choices) -> DayRoute:
     if season is not None and day_was_worked(season, choices.on, plan.route):
         of = choices.day, choices.who
         done = cached.worked(choices.key, choices.revision, of, season)
-        return DayRoute(done, _work_begins(choices), worked=True)
+        return DayRoute(done, _work_begins(choices, worked=True), worked=True)
     return DayRoute(plan.route, starts(choices, plan))
 
 

@@ -66,7 +66,7 @@ NO_MAP_DO = {
     "file": "Drop another file into its box, or take this one out.",
     "plot": "Change the rows, or take back what was drawn last, beside.",
 }
-NO_MAP_TAKE_OUT = "Take out {name}"
+NO_MAP_TAKE_OUT, NO_MAP_TAKE_OUT_ALL = "Take out {name}", "Take out {name} and {n} more"
 ROWS = "Rows"
 BEARING = "Row direction (degrees from north)"
 BEARING_HELP = "Leave empty to have it found from the boundary or the plants."
@@ -786,6 +786,9 @@ NEVER_ROWS = Plural(
 LEARNT_TITLE = "What the inspections tell of the insects"
 LEARNT_AT_FIRST = "Nothing was inspected yet: this is what is believed at first."
 LEARNT_INTERVALS = "In brackets: intervals that hold with a chance of 90 %."
+LEARNT_COUNTS_FOR = (
+    "Chances go by the detection learnt; routes and their finds go by what is said of who inspects."
+)
 AHEAD_TITLE, AHEAD_AXIS = "If nobody inspects from now on", "infested (expected)"
 AHEAD = (
     "About {last} plants are infested after {nights} nights without inspections ({low} to {high} "

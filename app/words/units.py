@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import date
 
 from fieldmon.compute import units as library
@@ -16,6 +17,18 @@ __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 _HALF_A_YEAR_DAYS = 182
 
 
+@dataclass(frozen=True)
+class _InSentences(library.Units):
+    """The library's units for sentences that the page shows among its own."""
+
+    seen_from: date | None = None
+
+    def day(self, on: date | str) -> str:
+        """Return a date as the page says it."""
+        own = UnitsInLanguage(self.length, self.area, self.date_like)
+        return own.said_day(on, self.seen_from)
+
+
 class UnitsInLanguage(library.Units):
     """How numbers are written, in the session's language."""
 
@@ -23,6 +36,10 @@ class UnitsInLanguage(library.Units):
     def of_library(self) -> library.Units:
         """Return the same units as the library writes them, in English."""
         return library.Units(self.length, self.area, self.date_like)
+
+    def in_sentences(self, seen_from: date) -> library.Units:
+        """Return those of the library, with days as sentences of the page say them."""
+        return _InSentences(self.length, self.area, self.date_like, seen_from)
 
     def metres(self, value_m: float, decimals: int = 0) -> str:
         """Return a length; long ones in kilometres or miles."""

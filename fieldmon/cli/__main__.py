@@ -1,6 +1,6 @@
 """`python -m fieldmon.cli`: the same as the command `fieldmon`."""
 
-from fieldmon.cli.main import main
+from fieldmon.cli.start import main
 
 if __name__ == "__main__":
     main()

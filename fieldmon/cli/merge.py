@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +9,7 @@ import typer
 
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import SettingError
 
 OtherCopy = Annotated[Path, typer.Argument(help="The other copy of the season; it is not changed.")]
@@ -29,7 +29,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     if other.exists() and other.samefile(season):
         raise SettingError(f"{other} must be another copy of the season, but it is the same file.")
     kept = Season(season)
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         copy = Path(folder) / "other.gpkg"
         copy_season(other, copy)  # an older one is brought up to date in the copy
         done = kept.merge(Season(copy))

@@ -57,8 +57,23 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     done = f"{len(seen)} done, " if len(seen) else ""
     typer.echo(f"{on}: {done}{day_in_words(route)}")
     tell_assumed(season.assumed())
+    _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, today.chance)
+
+
+def _tell_detection(season: Season, on: date) -> None:
+    """Print what the season learnt that inspections find, where routes go by another value."""
+    from fieldmon.compute.wording import written
+
+    told = written(season.settings.robot.detects, ".0%")
+    for one in season.learnt(on):
+        if one.name == "detection" and (learnt := written(one.value, ".0%")) != told:
+            typer.echo(
+                f"seen: Inspections find {learnt} of what is there, as this season learnt. Chances "
+                f"go by that; routes and their finds go by the {told} of who inspects.",
+                err=True,
+            )
 
 
 def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
@@ -82,6 +97,7 @@ def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
     if options.bound and (said := bound_of_days(days)):
         typer.echo(said)
     tell_assumed(season.assumed())
+    _tell_detection(season, on)
     for member, today, paths in zip(team, days, files, strict=True):
         write_member(member.name, today.route, paths)
     write_chance_map(options.chance_map, season.plot, days[0].chance)

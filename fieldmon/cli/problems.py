@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import typer
 
+from fieldmon.cli.stopped import STOPPED, STOPPED_CODE
 from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import FieldmonError
 
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
 # of a name that cannot be one
 _LONGEST = 80
-# the exit code of a command that was stopped by a person
-_STOPPED = 130
 
 
 def run(command: Callable[..., object]) -> None:
@@ -26,7 +25,7 @@ def run(command: Callable[..., object]) -> None:
     try:
         with WAITING:
             code = command(standalone_mode=False)
-        if code == _STOPPED:  # which typer makes of Ctrl-C
+        if code == STOPPED_CODE:  # which typer makes of Ctrl-C
             _stopped()
         sys.exit(code if isinstance(code, int) else 0)
     except FieldmonError as error:
@@ -52,7 +51,7 @@ def run(command: Callable[..., object]) -> None:
 
 
 def _stopped() -> NoReturn:
-    _end("Stopped; nothing was written that is not complete.", _STOPPED)
+    _end(STOPPED, STOPPED_CODE)
 
 
 def _unexpected(error: Exception) -> NoReturn:

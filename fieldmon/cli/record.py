@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ChoiceNeeded, ContradictionError
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
         options = options.choose("day", str(day(flags.on)))
     options = chosen(options, flags.finding_option).on(kept.plot.field)
     tell_drafts(kept.drafts)
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         copies = _copies(files, Path(folder))
         last, read = None, _read(kept, files, options, copies)
         if not flags.contradicting:
@@ -157,7 +157,7 @@ def _read(
     from fieldmon.io.readers.inspections import dated, read_inspections
     from fieldmon.monitoring import counting_copy
 
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         sources = dict(zip(files, files, strict=True))
         for k, (file, copy) in enumerate(copies.items()):
             (Path(folder) / str(k)).mkdir()

@@ -203,6 +203,11 @@ def must_be_shaped(whose: str, arrays: Mapping[str, tuple[Any, tuple[int, ...]]]
             )
 
 
+def must_hold_shapes(holder: object, whose: str, shapes: Mapping[str, tuple[int, ...]]) -> None:
+    """Raise `SettingError` unless a holder's arrays, by their names, have these `shapes`."""
+    must_be_shaped(whose, {name: (getattr(holder, name), one) for name, one in shapes.items()})
+
+
 def must_be_in(what: str, allowed: AllowedRange, given: float) -> None:
     """Raise `SettingError` unless a number is in a range."""
     if rule := allowed.broken(given):

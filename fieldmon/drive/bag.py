@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fieldmon.compute.wording import worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.drive.bag_layouts import foxglove_layout, rviz_layout
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
@@ -67,7 +67,7 @@ def write_bag(recording: Recording, begins: datetime, to: Path) -> tuple[Path, P
             )
         )
     writer, store = _rosbags()
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         inner = Path(folder) / "bag"
         with writer(inner) as bag:
             _Pen(bag, store, begins.timestamp()).write(recording)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.drive.account import STOP_COLUMNS
 from fieldmon.drive.bag import colour_says, east_north_yaw, read_bag
 from fieldmon.drive.day import place_m, way_m
@@ -194,7 +194,7 @@ def trace_of_bag(bag: bytes, aisles: Aisles, robot: Robot) -> Trace:
         If the library that reads bags is not installed.
     """
     recording = Recording(aisles, robot)
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         path = Path(folder) / "day.mcap"
         path.write_bytes(bag)
         for topic, at_s, message in read_bag(path, ("/tf", "/finds")):

@@ -21,7 +21,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.arguments import array_of, must_be, must_be_shaped
+from fieldmon.compute.arguments import array_of, must_be, must_hold_shapes
 from fieldmon.compute.jit import routine
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
@@ -136,7 +136,7 @@ class HotSpots:
         h = self.found.size
         counted_ = ("found", "inspected", "plants", "expected", "p", "q")
         shapes = dict.fromkeys(counted_, (h,)) | {"centre_m": (h, 2)}
-        must_be_shaped("Hot spots'", {name: (getattr(self, name), s) for name, s in shapes.items()})
+        must_hold_shapes(self, "Hot spots'", shapes)
         for value in vars(self).values():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)

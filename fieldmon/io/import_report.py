@@ -108,6 +108,26 @@ class ImportMessage:
         return f"{self.severity}: {place}{self.sentence}{way_out}"
 
 
+@dataclass(frozen=True)
+class WrongRows(ImportMessage):
+    """A doubt that a column says of a plot's rows what no rows are.
+
+    Parameters
+    ----------
+    column, setting
+        The file's name for it, and `Planting`'s.
+    rule
+        What it must be.
+    value
+        What it is.
+    """
+
+    column: str = ""
+    setting: str = ""
+    rule: str = ""
+    value: float = 0.0
+
+
 def gathered(messages: Iterable[ImportMessage]) -> tuple[ImportMessage, ...]:
     """Return messages with those of one kind, about many features, as one with their number."""
     kinds: dict[object, list[ImportMessage]] = {}

@@ -9,6 +9,7 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful
 from fieldmon.plot.local_clock import at_sea
+from fieldmon.plot.projection import goes_round, on_both_sides
 
 if TYPE_CHECKING:
     from fieldmon.plot.field import Field
@@ -17,9 +18,12 @@ if TYPE_CHECKING:
 def said_of_place(field: Field) -> tuple[ImportMessage, ...]:
     """Doubt a plot in the open sea; offer to exchange its axes where that brings it ashore.
 
-    Coastal waters count as land: a plot may well lie on an island that no map of zones shows.
+    Coastal waters count as land: a plot may well lie on an island that no map of zones shows. The
+    middle of a plot on both sides of longitude 180 lies nowhere near it: that is doubted instead.
     """
     west, south, east, north = field.boundary.bounds
+    if goes_round([west, east]):
+        return (doubtful(on_both_sides(), field.name),)
     lon, lat = float(np.mean([west, east])), float(np.mean([south, north]))
     if not at_sea(lon, lat):
         return ()

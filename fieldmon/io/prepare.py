@@ -16,7 +16,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
-from fieldmon.io.import_report import ImportMessage, gathered, guessed
+from fieldmon.io.import_report import ImportMessage, WrongRows, gathered, guessed
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import source_name
 from fieldmon.io.plot_records import MOST_NAMED, records_of, records_on
@@ -30,7 +30,7 @@ from fieldmon.io.read import (
 )
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
-from fieldmon.plot.planting import PLANTED, Planting
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot, planting_of
 
 if TYPE_CHECKING:
@@ -118,16 +118,19 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
 def _refuse_wrong_rows(field: Field, by_hand: PlantingChoices, hearing: _Hearing) -> None:
     """Raise `FileProblem` where a column says what no rows are, unless it is said by hand."""
     for said in hearing.messages:
-        values = getattr(said.message.sentence, "values", {})
-        setting, of_plot = values.get("setting"), (said.message.feature or "").split(" / ")[0]
-        if setting in PLANTED and setting not in by_hand.given() and of_plot == field.name:
+        wrong = said.message
+        if not isinstance(wrong, WrongRows) or wrong.setting in by_hand.given():
+            continue
+        if (wrong.feature or "").split(" / ")[0] == field.name:
             raise FileProblem(
                 worded(
                     "{file}: of plot {name!r}, column {column!r} must be {rule}, but it is "
                     "{value:g}. Correct it, or say it by hand.",
                     file=said.source,
                     name=field.name,
-                    **values,
+                    column=wrong.column,
+                    rule=wrong.rule,
+                    value=wrong.value,
                 )
             )
 

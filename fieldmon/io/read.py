@@ -7,11 +7,11 @@ stands in the messages. The file itself is opened in a process of its own (`sand
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
 from fieldmon.io.readers.nearby import of_plot
@@ -38,7 +38,7 @@ def _read(task: str, source: Source, *arguments: Any) -> Any:  # noqa: ANN401 - 
     if isinstance(source, str | Path):
         source = Path(source).absolute()
     # the folder is made and removed here: a reading process that was stopped cannot tidy up
-    with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
+    with working_folder() as folder:
         return process.call(f"fieldmon.io.sandbox.tasks:{task}", folder, source, *arguments)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
+from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.transactions import copy_season
@@ -123,6 +123,17 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
                 "A count must be 0 or more, but result {value} says {found}.",
                 value=bad[0] + 1,
                 found=inspections.count[bad[0]],
+            )
+        )
+    elsewhere = np.flatnonzero((inspections.result != FOUND) & (count > 0))
+    if elsewhere.size:
+        raise ObservationError(
+            worded(
+                "Only a find has a count of pests, but result {value} is {said!r} and counts "
+                "{found:g}. Say found, or give no count.",
+                value=elsewhere[0] + 1,
+                said=RESULT_NAMES[int(inspections.result[elsewhere[0]])],
+                found=count[elsewhere[0]],
             )
         )
     second = inspections.second

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
-import tempfile
 import time
 from contextlib import closing
 from pathlib import Path
 
 from fieldmon.compute.wording import worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem
 
 #: where a file says that changes may lie beside it, and how it says so
@@ -109,7 +109,7 @@ def _is_of_a_broken_transaction(journal: Path) -> bool:
 
 def _undoes(path: Path, journal: Path) -> bool:
     """Tell whether a journal leads back to the season's state before it, whole; in a copy."""
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         copy = Path(folder) / "season.gpkg"
         try:
             shutil.copyfile(journal, copy.with_name("season.gpkg-journal"))
@@ -144,7 +144,7 @@ def _is_of_the_last_transaction(head: bytes, journal: bytes) -> bool:
 
 def _fit(path: Path, more: Path) -> bool:
     """Tell whether a season is whole with the changes beside it, and no older; in a copy."""
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         copy = Path(folder) / "season.gpkg"
         shutil.copyfile(path, copy)
         shutil.copyfile(more, wal_of(copy))

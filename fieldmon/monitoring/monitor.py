@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from numbers import Real
-from types import NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
 from fieldmon.compute.arguments import array_of, must_be, shown
-from fieldmon.compute.kinds import checked
+from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.observations import Observations
@@ -133,11 +132,8 @@ class Monitor:
     ) -> None:
         must_be_plot(plot)
         must_be_robot(robot)
-        must_be(
-            "What insects are taken to do must be BeliefSettings", belief_settings,
-            (BeliefSettings, NoneType), "Give BeliefSettings(spread=Spread(0.3)).",
-        )  # fmt: skip
-        must_be("A seed must be a whole number", seed, (int, np.integer), "Give seed=1.", (bool,))
+        must_be_of("'belief_settings' of Monitor", "BeliefSettings | None", belief_settings)
+        must_be_of("A seed", "int", seed)
         self.plot = plot
         self.robot = robot or Robot()
         self.belief_settings = belief_settings or BeliefSettings()

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import shutil
 import sqlite3
-import tempfile
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.wording import worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.monitoring import schema, season_log
 from fieldmon.monitoring.geopackage import insert
@@ -66,7 +66,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
             )
         )
     rows, lost = {}, []
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         copy = _padded_copy(source, Path(folder))
         with closing(sqlite3.connect(copy)) as db, Store.new(to) as new:
             new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")

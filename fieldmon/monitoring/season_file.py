@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -179,9 +180,12 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
             season_log.begin(db, f"a season on {plot.field.name}")
         return cls(path)
 
-    def assumed(self) -> tuple[Assumed, ...]:
-        """Return what the season's figures rest on though nobody said it."""
-        settings = self.settings
+    def assumed(self, settings: MonitoringSettings | None = None) -> tuple[Assumed, ...]:
+        """Return what the season's figures rest on though nobody said it.
+
+        `settings` are those that count, as of an earlier day; None: those of now.
+        """
+        settings = settings or self.settings
         made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
         if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
@@ -215,6 +219,25 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                 )
             self._log_change(db, settings_log.write(db, as_json(settings)), who)
             self._refresh(db)
+
+    def settings_on(self, on: date) -> MonitoringSettings:
+        """Return what counts, with who worked on a day, from when, and who chose, as it was then.
+
+        As when the day was planned last or, if it never was, first recorded. What is believed is
+        of now, for all days; so is a team.
+        """
+        with self.store.reading() as db:
+            now, moment = settings_of(db), season_log.planned_last(db, str(on))
+            parts = {} if moment is None else settings_log.at(db, moment)
+        if not parts:
+            return now
+        then = from_json(parts)
+        if now.team or then.team:
+            return now
+        return replace(
+            now, robot=then.robot, starts=then.starts, sampler=then.sampler,
+            sampler_settings=then.sampler_settings,
+        )  # fmt: skip
 
     def before_change(self) -> MonitoringSettings | None:
         """Return what counted before the last change of settings; None: nothing was changed."""

@@ -247,6 +247,23 @@ def entries(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
     return tuple(made)
 
 
+def planned_last(db: sqlite3.Connection, on: str) -> str | None:
+    """Return when a day (ISO) was planned last or, if it never was, when it was first recorded.
+
+    UTC, as the log has it; None where the log says nothing of the day.
+    """
+    (planned, seen) = db.execute(
+        "SELECT max(iif(kind = 'planned', at, NULL)), min(iif(kind = 'seen', at, NULL)) FROM ("
+        " SELECT json_extract(entry, '$.kind') AS kind, json_extract(entry, '$.at') AS at,"
+        " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.from')) AS low,"
+        " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.to')) AS high"
+        " FROM log) WHERE ? BETWEEN low AND high",
+        (on,),
+    ).fetchone()
+    moment: str | None = planned or seen
+    return moment
+
+
 def refuse_changed(
     db: sqlite3.Connection, checked: tuple[int, str] | None = None
 ) -> tuple[int, str]:

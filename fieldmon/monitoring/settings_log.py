@@ -30,6 +30,12 @@ def now(db: sqlite3.Connection) -> Parts:
     return dict(db.execute("SELECT name, value FROM settings ORDER BY fid").fetchall())
 
 
+def at(db: sqlite3.Connection, moment: str) -> Parts:
+    """Return what counted at a moment (UTC, as `utc_now` writes it); nothing before the first."""
+    counted = "SELECT name, value FROM settings WHERE changed <= ? ORDER BY fid"
+    return dict(db.execute(counted, (moment,)).fetchall())
+
+
 def begun(db: sqlite3.Connection) -> str:
     """Return the day (ISO) on which the season began; "" where a file says nothing of it."""
     said: str = json.loads(now(db).get("season", "{}")).get("begins", "")

@@ -203,10 +203,9 @@ def read_plot(db: sqlite3.Connection) -> Plot:
     except (KeyError, TypeError, ValueError) as error:
         raise FileProblem(
             worded(
-                "The season's plants must be in its file, but they cannot be "
-                "read ({error}). Save what can be saved with: fieldmon "
-                "salvage",
-                error=error,
+                "The season's plants must be in its file, but not all that says where they stand "
+                "can be read. Save what can be saved with: fieldmon salvage. If it was saved so, "
+                "begin a new season with fieldmon init, and record the layer inspections into it."
             )
         ) from error
     gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]

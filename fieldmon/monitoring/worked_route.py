@@ -34,11 +34,12 @@ def day_was_worked(season: Season, on: date, ahead: Route) -> bool:
 def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     """Return the way from plant to plant as a day was worked, at the times noted.
 
+    By the settings of then: who worked, and from when.
     Where a time is missing, all are those that driving and inspecting cost. Chances are those by
     which the day's first route is planned. Empty if nothing was recorded. Of a team it is the way
     of the one named; None: that of all results in turn.
     """
-    settings, aisles = season.settings, season.plot.aisles
+    settings, aisles = season.settings_on(on), season.plot.aisles
     robot, starts_s = settings.robot, seconds(settings.starts)
     if who is not None and settings.team:
         member = settings.member(who)

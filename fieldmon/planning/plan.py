@@ -160,7 +160,8 @@ def plan_day(
         Dated pest records; None: every plant has the chance of a plot without any.
     on
         The day, as ``"2026-11-18"``, a date, or a datetime that says when work starts (else
-        06:00), in the plot's time zone unless it names one; None: today, there.
+        06:00), in the plot's time zone unless it names one; None: today, there. A pandas
+        timestamp at midnight is a date: pandas has no other.
     robot
         Who inspects; None: the usual `Robot`, 12 h. `scout()` is a person on foot.
     sampler
@@ -212,6 +213,8 @@ def _starts(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> dat
     if on is None:
         return datetime.combine(clock.today(), _STARTS)
     text = str(on)
+    if isinstance(on, datetime) and type(on).__module__.startswith("pandas"):
+        text = text.removesuffix(" 00:00:00")
     try:
         if len(text) <= len("2026-11-18"):
             return datetime.combine(date.fromisoformat(text), _STARTS)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_shaped
+from fieldmon.compute.arguments import must_hold_shapes
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.planning.bound_wording import bound_sentence
@@ -86,7 +86,7 @@ class Route:
         k, m = self.plant.size, len(self.line_m)
         stops = ("plant", "arrive_s", "leave_s", "chance", "detects", "line_stop")
         shapes = dict.fromkeys(stops, (k,)) | {"line_m": (m, 2), "line_s": (m,)}
-        must_be_shaped("A route's", {name: (getattr(self, name), s) for name, s in shapes.items()})
+        must_hold_shapes(self, "A route's", shapes)
 
     def __repr__(self) -> str:
         length_km, hours = self.drive_m / 1000, self.end_s / 3600

@@ -18,7 +18,7 @@ from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.routes import best
 from fieldmon.planning.sections import sections_of
-from fieldmon.planning.team_bound import MemberTask, team_bound
+from fieldmon.planning.team_bound import PRICES, MemberTask, team_bound
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.base import NEVER, Scene
@@ -117,7 +117,8 @@ def plan_team(
     done
         ``(n,)`` plants that are not visited again today; None: none.
     progress
-        Told how many routes were looked for, and of how many.
+        Told how many routes were looked for and prices of plants tried for the bound, and of how
+        many.
     passing_m
         Metres of headland that two need to pass each other: where it is narrower nobody meets
         another head-on, but begins later. 0: they pass each other anywhere.
@@ -175,7 +176,8 @@ def plan_team(
     days = tuple(replace(day, scene=_seen(day.scene, chance, done)) for day in timed.days)
     days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)
     held = _expected(days)
-    most = max(team_bound(tasks, held), held)
+    most = max(team_bound(tasks, held, search.proving), held)
+    search.proving(PRICES)  # it may have ended sooner
     return TeamPlan(tuple(members), days, timed.late_s, most, passing_m)
 
 
@@ -218,8 +220,12 @@ class _StopSearch:
         task, others = self.tasks[k], () if known is None else (known,)
         found = best(task.aisles, np.where(free, task.value, 0.0), task.robot, others=others)
         self.looked += 1
-        self.progress(self.looked, max(self.expected, self.looked))
+        self.progress(self.looked, max(self.expected, self.looked) + PRICES)
         return found.plant.astype(np.int64)
+
+    def proving(self, prices: int) -> None:
+        """Tell how far the bound is, which is looked for after all routes."""
+        self.progress(self.looked + prices, self.looked + PRICES)
 
     def in_turn(self) -> list[Int]:
         """Return stops for each task, the best in the aisles that those before it leave.

@@ -13,7 +13,7 @@ from fieldmon.planning.routes import bound
 from fieldmon.planning.routes.best_route import bounded
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 # so many prices of plants are tried for a bound, for so long; a step that gained nothing so often
 # is halved; directions are remembered so far
-_PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 60, 20.0, 5, 0.7
+PRICES, _WITHIN_S, _PATIENCE, _MEMORY = 60, 20.0, 5, 0.7
 
 
 class MemberTask(NamedTuple):
@@ -36,7 +36,11 @@ class MemberTask(NamedTuple):
     starts_s: float = 0.0
 
 
-def team_bound(tasks: Sequence[MemberTask], held: float = 0.0) -> float:
+def team_bound(
+    tasks: Sequence[MemberTask],
+    held: float = 0.0,
+    tried: Callable[[int], None] = lambda _prices: None,
+) -> float:
     """Return what no routes of a team can hold together: the least of some bounds.
 
     Whatever is paid once for each plant, no more than all that and what each member could hold
@@ -46,10 +50,11 @@ def team_bound(tasks: Sequence[MemberTask], held: float = 0.0) -> float:
     aisles once more than they do.
 
     `held` is what routes are known to hold: the better it is known, the sooner prices are found.
+    `tried` is told how many prices were tried, of `PRICES` at most.
     """
     values = np.array([task.value for task in tasks])
     most = values.max(axis=0)
-    least = _by_prices(tasks, most, held)
+    least = _by_prices(tasks, most, held, tried)
     robots = [task.robot for task in tasks]
     one_gate = all(task.aisles is tasks[0].aisles for task in tasks)
     if not one_gate or not all(robot.returns for robot in robots):
@@ -66,7 +71,12 @@ def team_bound(tasks: Sequence[MemberTask], held: float = 0.0) -> float:
     return min(least, bound(tasks[0].aisles, most, quickest, seconds))
 
 
-def _by_prices(tasks: Sequence[MemberTask], most: Float, held: float) -> float:
+def _by_prices(
+    tasks: Sequence[MemberTask],
+    most: Float,
+    held: float,
+    tried: Callable[[int], None] = lambda _prices: None,
+) -> float:
     """Return the least bound of many prices of plants.
 
     A plant that is visited by more than one gets dearer, one that is visited by none cheaper, by
@@ -75,10 +85,11 @@ def _by_prices(tasks: Sequence[MemberTask], most: Float, held: float) -> float:
     until = FIRST_USE.work_clock() + _WITHIN_S
     price = direction = np.zeros(len(most))
     least, kept, step, in_vain = np.inf, price, 1.0, 0
-    for _ in range(_PRICES):
+    for number in range(PRICES):
         alone = [
             bounded(task.aisles, np.maximum(task.value - price, 0.0), task.robot) for task in tasks
         ]
+        tried(number + 1)
         value = float(price.sum()) + sum(each.value for each in alone)
         if value < least:
             least, kept, in_vain = value, price, 0

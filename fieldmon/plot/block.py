@@ -12,6 +12,12 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 
 
+def let_have_parts(holder: object, name: str) -> None:
+    """Let a holder's area, by its name, be of parts where it is a single one."""
+    if isinstance(area := getattr(holder, name), Polygon):
+        object.__setattr__(holder, name, MultiPolygon([area]))
+
+
 @dataclass(frozen=True, eq=False)
 class Block:
     """A part of a plot with rows of its own.
@@ -41,8 +47,7 @@ class Block:
     plant_spacing_m: float | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.area, Polygon):
-            object.__setattr__(self, "area", MultiPolygon([self.area]))
+        let_have_parts(self, "area")
         must_hold_kinds(self, "A block's")
         if self.area.is_empty or not self.area.is_valid:
             raise PlotError(

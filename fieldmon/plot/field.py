@@ -6,14 +6,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import shapely
-from shapely import MultiLineString, MultiPolygon, Polygon
+from shapely import MultiLineString, MultiPolygon
 
 from fieldmon.compute.arguments import lonlat_of
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
-from fieldmon.plot.projection import Frame
+from fieldmon.plot.block import let_have_parts
+from fieldmon.plot.projection import Frame, goes_round, on_both_sides
 
 if TYPE_CHECKING:
     import numpy as np
@@ -81,8 +82,7 @@ class Field:
     in_rows: bool = True
 
     def __post_init__(self) -> None:
-        if isinstance(self.boundary, Polygon):
-            object.__setattr__(self, "boundary", MultiPolygon([self.boundary]))
+        let_have_parts(self, "boundary")
         must_hold_kinds(self, "A plot's")
         if self.boundary.is_empty or not self.boundary.is_valid:
             raise PlotError(
@@ -123,9 +123,15 @@ class Field:
         return (*said.values(), *(part for block in self.blocks for part in block.content))
 
     def frame(self, bearing_deg: float = 90.0) -> Frame:
-        """Return the plane in metres centred on this plot, x along ``bearing_deg``."""
+        """Return the plane in metres centred on this plot, x along ``bearing_deg``.
+
+        Raise `PlotError` where its longitudes jump from 180 to -180.
+        """
         west, south, east, north = self.boundary.bounds
-        return Frame((west + east) / 2, (south + north) / 2, bearing_deg)
+        if goes_round([west, east]):
+            raise PlotError(on_both_sides())
+        lon = (west + east) / 2  # an area drawn on across 180 has its middle there or beyond
+        return Frame(lon - 360 if lon > 180 else lon, (south + north) / 2, bearing_deg)
 
     def drivable(self) -> MultiPolygon:
         """Return the boundary without the no-go areas, lon/lat.

@@ -24,6 +24,20 @@ _FARTHEST_M = 200_000.0
 _ROUND_DEG = 350.0
 
 
+def goes_round(lon: ArrayLike) -> bool:
+    """Return whether longitudes lie on both sides of 180, where they jump to -180."""
+    return bool(np.ptp(lon) > _ROUND_DEG)
+
+
+def on_both_sides() -> str:
+    """Return what to say of a plot that does."""
+    return worded(
+        "A plot must lie on one side of longitude 180, but this one lies on both, and longitudes "
+        "jump from 180 to -180 there. Bring what lies east of it and what lies west of it as two "
+        "plots."
+    )
+
+
 @lru_cache(maxsize=64)
 def _transformer(lon: float, lat: float) -> Transformer:
     # what PROJ makes of EPSG:4326 and this plane; found anew, it takes each thread 16 ms, and every
@@ -86,14 +100,8 @@ class Frame:
             x, y = (east * axis[0] + north * axis[1] for axis in (along, across))
         xy = np.stack([x, y], axis=1)
         if xy.size and not (np.abs(xy) < _FARTHEST_M).all():
-            if np.ptp(degrees[:, 0]) > _ROUND_DEG:
-                raise PlotError(
-                    worded(
-                        "A plot must lie on one side of longitude 180, but this one lies on both, "
-                        "and longitudes jump from 180 to -180 there. Part it there: each part is "
-                        "a plot of its own."
-                    )
-                )
+            if goes_round(degrees[:, 0]):
+                raise PlotError(on_both_sides())
             raise PlotError(
                 worded(
                     "Everything on a plot must lie within {value:.0f} km of "

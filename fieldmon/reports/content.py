@@ -106,12 +106,15 @@ class Illustration:
         Draws it on so many millimetres.
     heights
         The least that it needs and the most that it is worth, millimetres.
+    is_read
+        Whether it is read as a line of words: from the right where the report is.
     """
 
     title: str
     alt: str
     draw: Callable[[Size], Drawing]
     heights: tuple[float, float]
+    is_read: bool = False
 
 
 Block = Paragraph | KeyFigures | Listing | Table | TickList | NoteLines | Illustration

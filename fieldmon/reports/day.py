@@ -91,17 +91,19 @@ class DayFacts:
     def of_season(cls, season: Season, on: date) -> DayFacts:
         """Return what a season knows of a day; nothing is kept by it."""
         with season.one_moment():
-            settings, plan = season.settings, season.plan(on, keep=False)
-            day = settings.day(on)
+            plan = season.plan(on, keep=False)
             route = plan.route
+            worked = day_was_worked(season, on, route)
+            settings = season.settings_on(on) if worked else season.settings
+            day = settings.day(on)
             gone = timedelta(seconds=settings.robot.day_s - plan.scene.seconds_left)
             begins = datetime.combine(on, settings.starts)
-            worked = day_was_worked(season, on, route)
             state, done = season.history.known(day), season.history.on(day).inspected
             return cls(
                 season.plot.field.name, begins if worked else begins + gone,
                 worked_route(season, on) if worked else route, season.evening(on), state,
-                hot_spots(season.plot.grid, state), WorkSettings.of_season(season),
+                hot_spots(season.plot.grid, state),
+                WorkSettings.of_season(season, on, worked=worked),
                 len(done), np.unique(done.plant[done.result == FOUND]),
                 worked, results_on(season, on),
             )  # fmt: skip
@@ -188,7 +190,7 @@ def legend_block(
     return Illustration(
         "", "",
         lambda size: maps.legend(size[0], route=route, by_state=by_state, zones=zones),
-        (8.0, 8.0),
+        (8.0, 8.0), is_read=True,
     )  # fmt: skip
 
 

@@ -5,7 +5,7 @@ x runs to the right and y downwards, from the drawing's upper left corner.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -93,6 +93,34 @@ class Drawing:
     height: float
     parts: tuple[Part, ...]
 
+    def turned(self) -> Drawing:
+        """Return it as it is read from the right: what was at the left is at the right."""
+        return replace(self, parts=tuple(_turned(part, self.width) for part in self.parts))
+
     def words(self) -> list[str]:
         """Return every text in it."""
         return [part.text for part in self.parts if isinstance(part, Lettering)]
+
+
+_OTHER_END = {"start": "end", "end": "start", "middle": "middle"}
+
+
+def _turned(part: Part, width: float) -> Part:
+    if isinstance(part, Lettering):
+        return replace(part, x=width - part.x, anchor=_OTHER_END[part.anchor])
+    if isinstance(part, Bitmap):
+        return replace(part, x=width - part.x - part.width)
+    if isinstance(part, Strokes):
+        return replace(part, lines=tuple(_from_right(line, width) for line in part.lines))
+    if isinstance(part, Areas):
+        return replace(part, rings=tuple(_from_right(ring, width) for ring in part.rings))
+    if isinstance(part, Discs):
+        return replace(part, places=_from_right(part.places, width))
+    return replace(part, ends=_from_right(part.ends, width))
+
+
+def _from_right(places: Floats, width: float) -> Floats:
+    """Return places ``(k, 2)``, or two beside each other ``(k, 4)``, counted from the right."""
+    turned = places.copy()
+    turned[:, ::2] = width - turned[:, ::2]
+    return turned

@@ -5,13 +5,13 @@ Nothing in it depends on the clock: the same report is the same file, byte for b
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import SettingError
 from fieldmon.reports import colours, words
 from fieldmon.reports.content import (
@@ -84,7 +84,7 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
 
     fonts = FontSet.of([*report.words(), *_own_words(report.language)])
     pdf = FPDF(format=PAPERS[paper])
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         for font in fonts.fonts:
             file = Path(folder) / f"{font.family}{font.style}.ttf"
             file.write_bytes(font.data)
@@ -274,7 +274,10 @@ class _Page:
             self._notes(block, y, high)
         elif isinstance(block, Illustration):
             y, high = self._title(block.title, y), high - _titled(block.title)
-            paint(self.pdf, self.fonts, block.draw((self.wide, high)), (_MARGIN, y))
+            drawn = block.draw((self.wide, high))
+            if self.mirrored and block.is_read:
+                drawn = drawn.turned()
+            paint(self.pdf, self.fonts, drawn, (_MARGIN, y))
 
     def _title(self, text: str, y: float) -> float:
         """Write a block's title; return where what follows begins."""

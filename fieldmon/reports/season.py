@@ -77,6 +77,10 @@ class _Facts:
         return self.season.plot.field.name
 
     @property
+    def goes_by(self) -> WorkSettings:
+        return WorkSettings.of_season(self.season, self.on, learnt=self.status.learnt)
+
+    @property
     def state(self) -> NDArray[np.int8]:
         return self.season.history.states(self.status.day)
 
@@ -133,7 +137,7 @@ def _stands(facts: _Facts) -> Iterator[Block]:
         said.append(worded(words.STANDS_HOT, n=counted(len(status.hot_spots), "hot spot")))
     yield Paragraph(joined(" ", said), lead=True)
     yield _figures(facts)
-    assumed = assumed_sentence(WorkSettings.of_season(facts.season), facts.units)
+    assumed = assumed_sentence(facts.goes_by, facts.units)
     if assumed:
         yield Paragraph(assumed)
     beware = facts.season.cautions(facts.on, facts.units)
@@ -267,8 +271,7 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
     told = [one for one in facts.season.effects(facts.on, facts.units) if one.before.inspected]
     if told:
         yield Listing("", tuple(one.sentence() for one in told[-_MOST_EFFECTS:]))
-    season = facts.season
-    yield from settings_blocks(WorkSettings.of_season(season), facts.units)
+    yield from settings_blocks(facts.goes_by, facts.units)
     yield Listing(words.MEANING, words.MEANINGS)
     yield NoteLines(words.NOTES)
 

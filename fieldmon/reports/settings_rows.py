@@ -14,9 +14,11 @@ from fieldmon.reports.content import Listing, Table
 from fieldmon.samplers import USUAL, kind_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
+    from datetime import date
 
     from fieldmon.compute.units import Units
+    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.spread import Spread
@@ -49,6 +51,8 @@ class WorkSettings:
         What the import of the plot had to guess, in sentences.
     pest_in_weather
         The pest in its weather, by which nights go; None: as `belief` has them.
+    learnt_detection
+        What inspections detect, as the season learnt; None: it learnt nothing.
     """
 
     robot: Robot
@@ -59,16 +63,31 @@ class WorkSettings:
     belief: BeliefSettings | None = None
     guessed: tuple[str, ...] = ()
     pest_in_weather: PestInWeather | None = None
+    learnt_detection: float | None = None
 
     @classmethod
-    def of_season(cls, season: Season) -> WorkSettings:
-        """Return what a season goes by, and what had to be guessed when it began."""
-        settings, grid = season.settings, season.plot.grid
+    def of_season(
+        cls,
+        season: Season,
+        on: date,
+        *,
+        worked: bool = False,
+        learnt: Sequence[Learnt] | None = None,
+    ) -> WorkSettings:
+        """Return what a season goes by on a day, and what had to be guessed when it began.
+
+        Of a day that was `worked` it is what counted then. `learnt` is what is known already of
+        what the season learnt until then; None: nothing.
+        """
+        settings, grid = season.settings_on(on) if worked else season.settings, season.plot.grid
+        if learnt is None:
+            learnt = season.learnt(on)
         guessed = (one for one in season.messages() if one.severity == Severity.GUESSED)
         return cls(
             settings.robot, settings.sampler, settings.prior,
-            (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(), settings.belief,
-            tuple(one.sentence for one in guessed), settings.pest_in_weather(),
+            (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(settings),
+            settings.belief, tuple(one.sentence for one in guessed), settings.pest_in_weather(),
+            next((one.value for one in learnt if one.name == "detection"), None),
         )  # fmt: skip
 
     def origin(self, setting: str) -> str:
@@ -125,7 +144,10 @@ def _of_work(settings: WorkSettings) -> Iterator[Row]:
     yield words.HOURS, figure(robot.hours, "g"), _from(robot.hours == usual.hours)
     yield words.LOOK, figure(robot.look_s, "g"), _from(robot.look_s == usual.look_s)
     yield words.SPEED, worded("{n:.1f} km/h", n=robot.speed_m_s * 3.6), settings.origin("speed_m_s")
-    yield words.DETECTS, figure(robot.detects, ".0%"), settings.origin("detects")
+    told, learnt = figure(robot.detects, ".0%"), settings.learnt_detection
+    yield words.DETECTS, told, settings.origin("detects")
+    if learnt is not None and (said := figure(learnt, ".0%")) != told:
+        yield words.DETECTS_LEARNT, said, words.FROM_LEARNT
 
 
 def _of_belief(settings: WorkSettings, units: Units) -> Iterator[Row]:

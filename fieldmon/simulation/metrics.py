@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_shaped
+from fieldmon.compute.arguments import must_hold_shapes
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 
@@ -67,8 +67,7 @@ class SeasonMetrics:
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A season's")
-        days = (self.found.size,)
-        must_be_shaped("A season's", {name: (column, days) for name, column in vars(self).items()})
+        must_hold_shapes(self, "A season's", dict.fromkeys(vars(self), (self.found.size,)))
 
     def __repr__(self) -> str:
         days, finds = counted(len(self.left), "day"), counted(int(self.found.sum()), "find")

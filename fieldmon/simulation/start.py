@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_be_shaped
+from fieldmon.compute.arguments import must_hold_shapes
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
@@ -42,10 +42,7 @@ class Start:
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A start's")
-        plants = (self.infested.size,)
-        must_be_shaped(
-            "A start's", {"infested": (self.infested, plants), "chance": (self.chance, plants)}
-        )
+        must_hold_shapes(self, "A start's", dict.fromkeys(vars(self), (self.infested.size,)))
 
     def __repr__(self) -> str:
         plants = counted(len(self.infested), "plant")

@@ -5,6 +5,7 @@ from datetime import date, timedelta
 
 import numpy as np
 
+from fieldmon.compute.wording import written
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, filled_in
@@ -63,3 +64,20 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         with_library.record(Inspections.of(np.array(plants), found, np.datetime64(on)), "app")
         assert np.array_equal(with_library.evening(on), Season(season).evening(on))
     assert len(with_library.history.inspections) == 120
+
+
+def test_a_plan_says_which_detection_counts_for_what_once_the_season_learnt_another(run, season):
+    code, _, err, _ = run("plan", season, "--date", BEGINS, "--no-bound")
+    assert code == 0, err
+    assert "as this season learnt" not in err
+    kept, on = Season(season), date.fromisoformat(BEGINS)
+    plants = kept.plan(on, keep=False).route.plant[:40]
+    for day in range(2):  # what is found on the second day was overlooked on the first
+        today, found = on + timedelta(days=day), np.full(40, day, np.int8)
+        kept.record(Inspections.of(plants, found, np.datetime64(today)), f"{day}")
+    (learnt,) = [one for one in kept.learnt(today) if one.name == "detection"]
+    assert written(learnt.value, ".0%") != "84 %"
+    code, _, err, _ = run("plan", season, "--date", today + timedelta(days=1), "--no-bound")
+    assert code == 0, err
+    assert f"find {written(learnt.value, '.0%')} of what is there, as this season learnt" in err
+    assert "routes and their finds go by the 84 %" in err

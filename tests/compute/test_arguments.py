@@ -2,6 +2,7 @@
 
 from datetime import date, datetime
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -20,6 +21,7 @@ from fieldmon.compute.arguments import (
     must_be_name_of_file,
     must_be_shaped,
     must_be_zone,
+    must_hold_shapes,
     shown,
 )
 from fieldmon.compute.ranges import AllowedRange
@@ -112,6 +114,13 @@ def test_arrays_have_their_shapes():
     )
     with pytest.raises(SettingError, match=r"A route's line_m must have the shape \(4, 2\), but"):
         must_be_shaped("A route's", {"line_m": (np.zeros(4), (4, 2))})
+
+
+def test_what_holds_arrays_is_held_to_their_shapes_by_name():
+    holder = SimpleNamespace(plant=np.zeros(3), line_m=np.zeros(4))
+    must_hold_shapes(holder, "A route's", {"plant": (3,)})
+    with pytest.raises(SettingError, match=r"A route's line_m must have the shape \(4, 2\), but"):
+        must_hold_shapes(holder, "A route's", {"plant": (3,), "line_m": (4, 2)})
 
 
 def test_a_number_is_in_its_range():

@@ -28,3 +28,10 @@ def test_another_one_is_doubted_without_a_way_out(place):
     (said,) = said_of_place(plot_at(*place))
     assert "Check the coordinate system" in said.sentence
     assert said.remedy is None
+
+
+def test_a_plot_cut_at_longitude_180_is_doubted_for_that_and_not_where_its_middle_lies():
+    parts = shapely.box(179.9995, -16.801, 180, -16.8), shapely.box(-180, -16.801, -179.9995, -16.8)
+    (said,) = said_of_place(Field("Taveuni", MultiPolygon(parts)))
+    assert "on one side of longitude 180" in said.sentence
+    assert "sea" not in said.sentence

@@ -210,3 +210,27 @@ def test_settings_are_changed_by_settings_or_a_sentence(season):
     for settings, seen in ((None, season.settings), (season.settings, {"hours": 4})):
         with pytest.raises(SettingError, match="must be MonitoringSettings"):
             season.change(settings, seen)
+
+
+def test_a_day_worked_before_a_change_keeps_who_worked_when_and_who_chose(season):
+    first = season.settings
+    season.plan(BEGINS)
+    season.record(some_results(season))
+    later = first.robot.with_hours(6.0)
+    season.change(
+        replace(first, robot=later, starts=time(9), sampler="naive", harvest=BEGINS), first
+    )
+    then = season.settings_on(BEGINS)
+    assert then == replace(first, harvest=BEGINS)  # what is not of the work is of now
+    tomorrow = BEGINS + timedelta(days=1)
+    assert season.settings_on(tomorrow) == season.settings  # neither planned nor recorded
+    season.plan(BEGINS)  # what was left of it, as is chosen by now
+    assert season.settings_on(BEGINS).robot == later
+
+
+def test_a_day_recorded_without_a_plan_was_worked_by_what_counted_at_first(season):
+    first = season.settings
+    season.record(some_results(season, n=2))
+    season.change(replace(first, starts=time(9)), first)
+    season.record(some_results(season, n=4))
+    assert season.settings_on(BEGINS).starts == first.starts

@@ -306,3 +306,15 @@ def test_a_batch_is_of_whom_its_entry_names(path):
     told, seen = season.batches(), [one for one in season.log() if one.kind == "seen"]
     assert [one.who for one in told][::-1][-2:] == [one.who for one in seen][-2:]
     assert [one.who for one in told][:2] == ["Dan", "Ann, Ben"]
+
+
+def test_when_a_day_was_planned_last_or_first_recorded_is_told(db):
+    assert season_log.planned_last(db, "2026-04-07") is None
+    season_log.append(db, "seen", **{"from": "2026-04-06", "to": "2026-04-08"})
+    season_log.append(db, "planned", date="2026-04-07")
+    season_log.append(db, "seen", **{"from": "2026-04-07", "to": "2026-04-07"})
+    season_log.append(db, "advised", date="2026-04-07")
+    seen, planned, _, _ = season_log.entries(db)
+    assert season_log.planned_last(db, "2026-04-07") == planned.at
+    assert season_log.planned_last(db, "2026-04-08") == seen.at
+    assert season_log.planned_last(db, "2026-04-09") is None

@@ -5,6 +5,7 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import settings_log
 from fieldmon.monitoring.settings import MonitoringSettings, as_json
+from fieldmon.monitoring.tables import utc_now
 from tests.monitoring.seasons import BEGINS, ROBOT
 
 FIRST = as_json(MonitoringSettings(BEGINS, robot=ROBOT))
@@ -47,3 +48,12 @@ def test_whoever_goes_back_by_hand_has_taken_the_change_back(db):
     for parts in (FIRST, LONGER, FIRST):
         settings_log.write(db, parts)
     assert settings_log.before_now(db) is None
+
+
+def test_what_counted_at_a_moment_is_told(db):
+    settings_log.write(db, FIRST)
+    between = utc_now()
+    settings_log.write(db, OTHER)
+    assert settings_log.at(db, between) == FIRST
+    assert settings_log.at(db, utc_now()) == OTHER
+    assert settings_log.at(db, "2000-01-01T00:00:00.000000Z") == {}

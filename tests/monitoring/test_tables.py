@@ -1,5 +1,8 @@
 """What a season's file holds comes back bit for bit."""
 
+import re
+import sqlite3
+from contextlib import closing
 from dataclasses import fields, replace
 
 import numpy as np
@@ -23,6 +26,25 @@ from fieldmon.plot.grid import row_label
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from tests.monitoring.seasons import a_plot
+
+
+@pytest.mark.parametrize(
+    "lost",
+    [
+        "DELETE FROM arrays",
+        "DELETE FROM arrays WHERE name = 'grid.xy_m'",
+        "DELETE FROM arrays WHERE name = 'stated'",
+        "DELETE FROM plots",
+    ],
+)
+def test_a_season_whose_plants_are_lost_says_so_without_a_word_of_python(path, lost):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("DROP TRIGGER IF EXISTS changed_outside_plots")
+        db.execute(lost)
+        db.commit()
+    with pytest.raises(FileProblem, match="not all that says where they stand") as problem:
+        Season(path)
+    assert re.search(r"__|None|'|argument", str(problem.value).replace("season's", "")) is None
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -1,5 +1,8 @@
 """The route of a day as it was worked: in the order of the times noted, else as recorded."""
 
+from dataclasses import replace
+from datetime import time
+
 import numpy as np
 import pytest
 
@@ -92,3 +95,9 @@ def test_a_day_worked_as_planned_has_the_plans_times_and_chances(tmp_path, pest)
     assert done.plant.tolist() == route.plant.tolist()
     for name in ("arrive_s", "leave_s", "chance", "end_s"):
         assert getattr(done, name) == pytest.approx(getattr(route, name)), name
+
+
+def test_a_start_that_was_changed_later_moves_no_time_of_a_day_worked_before(tmp_path):
+    season, route = worked(tmp_path, [25_200.0, 21_660.0, 28_800.0])
+    season.change(replace(season.settings, starts=time(9)), season.settings)
+    assert worked_route(season, BEGINS).leave_s.tolist() == route.leave_s.tolist()

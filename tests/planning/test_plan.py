@@ -4,6 +4,7 @@ from datetime import UTC, date, datetime
 from itertools import pairwise
 
 import numpy as np
+import pandas as pd
 import pytest
 import shapely
 import shapely.affinity
@@ -50,13 +51,22 @@ def day(plot):
 
 
 @pytest.mark.parametrize(
-    "on", ["2026-11-18", date(2026, 11, 18), np.datetime64("2026-11-18"), datetime(2026, 11, 18, 6)]
+    "on",
+    [
+        *("2026-11-18", date(2026, 11, 18), np.datetime64("2026-11-18"), datetime(2026, 11, 18, 6)),
+        *(pd.Timestamp("2026-11-18"), pd.Timestamp(2026, 11, 18, 6)),
+    ],
 )
 def test_a_day_is_named_in_any_usual_way(plot, day, on):
     same = plan_day(plot, on=on, robot=ROBOT)
     assert same.route.plant.tolist() == day.route.plant.tolist()
     assert same.route.notes == day.route.notes
     assert same.route.notes.start == datetime(2026, 11, 18, 6)
+
+
+@pytest.mark.parametrize("on", ["2026-11-18 00:00", datetime(2026, 11, 18)])
+def test_who_says_midnight_starts_then(plot, on):
+    assert plan_day(plot, on=on, robot=ROBOT).route.notes.start == datetime(2026, 11, 18)
 
 
 def test_no_day_is_today(plot):

@@ -24,7 +24,7 @@ from fieldmon.planning.team import (
     bound_of_days,
     plan_team,
 )
-from fieldmon.planning.team_bound import MemberTask
+from fieldmon.planning.team_bound import PRICES, MemberTask
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -249,7 +249,7 @@ def test_routes_are_looked_for_where_the_others_are_not_and_never_get_worse():
     # the first has the plot to itself
     assert in_turn[0].tolist() == search.look(0, np.ones(64, np.bool_)).tolist()
     assert [done for done, _ in told] == [*range(1, len(told) + 1)]
-    assert all(of == 10 for done, of in told if done <= 10)
+    assert all(of == 10 + PRICES for done, of in told if done <= 10)
     there = aisle == aisle[shared[0][0]]
     value = sum(tasks[0].value[plant] for plant in shared[0] if there[plant])
     assert _of(tasks[0], shared[0], there) == pytest.approx(value)
@@ -299,3 +299,17 @@ def test_where_two_would_meet_the_poorer_looks_elsewhere_and_the_other_stays():
     assert not set(poor.tolist()) & set(here.tolist())
     assert len(poor) > 0
     assert meetings([day.route for day in search.turned([rich, poor])], np.zeros(2)) == []
+
+
+def test_progress_goes_on_while_the_bound_is_looked_for_and_ends_at_the_end():
+    told = []
+    plot = plot_of()
+    plan_team(
+        plot, chances(plot), team_of(2, Robot(hours=0.3)), progress=lambda *one: told.append(one)
+    )
+    done, of = (np.array(column) for column in zip(*told, strict=True))
+    assert (np.diff(done) >= 0).all()
+    assert (done <= of).all()
+    assert done[-1] == of[-1]
+    # all routes are looked for before the first price is tried
+    assert np.count_nonzero(done > of - PRICES) >= 2

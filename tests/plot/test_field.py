@@ -112,3 +112,21 @@ def test_what_was_added_later_is_told_only_where_it_is_said():
     assert len(replace(field, plant_rows=rows).content) == len(field.content) + 1
     assert replace(field, plant_rows=rows).content[-1] is rows
     assert set(map(type, field.content)) <= {type(value) for value in vars(field).values()}
+
+
+def test_a_plot_cut_at_longitude_180_is_refused_for_that():
+    # RFC 7946, 3.1.9 writes an area across it so
+    west, east = box(179.9995, -16.801, 180, -16.8), box(-180, -16.801, -179.9995, -16.8)
+    with pytest.raises(PlotError, match="one side of longitude 180, but this one lies on both"):
+        Field("Taveuni", MultiPolygon([west, east])).frame()
+    # each part is a plot
+    for part in (west, east):
+        assert Field("Taveuni", part).frame().lon == pytest.approx(part.centroid.x)
+
+
+def test_an_area_drawn_on_across_longitude_180_has_its_middle_beyond():
+    frame = Field("Taveuni", box(179.9995, -16.801, 180.0015, -16.8)).frame()
+    assert frame.lon == pytest.approx(-179.9995)
+    assert np.abs(frame.xy_m([[180.0015, -16.8], [-179.9985, -16.8]])[:, 0]) == pytest.approx(
+        106.6, abs=0.1
+    )

@@ -91,7 +91,7 @@ def test_a_bearing_must_be_a_number():
         Frame(35.0, 30.0, float("nan"))
 
 
-def test_a_plot_on_both_sides_of_longitude_180_is_to_be_parted_there():
+def test_a_plot_on_both_sides_of_longitude_180_is_to_be_brought_as_two():
     both = np.array([[179.9995, -16.8], [-179.9995, -16.8], [-179.9995, -16.799]])
     with pytest.raises(PlotError, match="on one side of longitude 180"):
         Frame(0.0, -16.8).xy_m(both)

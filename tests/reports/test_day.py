@@ -1,7 +1,7 @@
 """A day on one page: what it says, planned or worked."""
 
 from dataclasses import replace
-from datetime import timedelta
+from datetime import time, timedelta
 
 import numpy as np
 import pytest
@@ -9,6 +9,7 @@ import pytest
 from fieldmon.compute.units import Units
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.robot import Robot
 from fieldmon.reports.content import (
     Illustration,
     KeyFigures,
@@ -162,3 +163,18 @@ def test_the_fullest_day_stays_on_its_page(done):
     (page,) = texts(data)
     assert "Notes" in page
     assert "Plants found are" in page
+
+
+def test_the_report_of_a_day_that_is_over_says_what_was_chosen_then(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    season.plan(BEGINS)
+    season.record(some_results(season, n=3))
+    season.plan(BEGINS + timedelta(days=1))
+    before, now = season.settings, Robot(hours=7.0, detection=0.5)
+    season.change(replace(before, robot=now, starts=time(9)), before)
+    facts = DayFacts.of_season(season, BEGINS)
+    assert facts.worked
+    assert facts.begins.time() == before.starts
+    assert facts.settings.robot == before.robot
+    ahead = DayFacts.of_season(season, BEGINS + timedelta(days=1))
+    assert (ahead.settings.robot, ahead.begins.time()) == (now, time(9))

@@ -83,10 +83,18 @@ def test_without_a_season_nothing_is_said_of_nights():
 
 
 def test_a_season_s_own_are_taken(worked):
-    made = WorkSettings.of_season(worked)
+    made = WorkSettings.of_season(worked, worked.last_date())
     assert made.assumed == worked.assumed()
     assert made.robot == worked.settings.robot
     assert made.spacing_m == (worked.plot.grid.row_spacing_m, worked.plot.grid.plant_spacing_m)
+
+
+def test_a_detection_that_the_season_learnt_stands_beside_the_one_told_where_they_differ():
+    told, name = rows(replace(TOLD, learnt_detection=0.841)), "The same, as the season learnt"
+    assert name not in told
+    learnt = rows(replace(TOLD, learnt_detection=0.96))
+    assert learnt[name] == ("96 %", "for chances, not for routes")
+    assert learnt["Finds what is there"] == told["Finds what is there"]
 
 
 def test_of_what_was_guessed_three_sentences_are_shown():

@@ -1,12 +1,12 @@
 // Words and numbers on the map, as the page's own text: any script, any direction, never crowded.
 
 // which switch a kind of label belongs to
-const SWITCH = { hot: "hot", leg: "numbers", stop: "numbers", row: "rows", place: "plan", block: "rows" };
+const SWITCH = { hot: "hot", leg: "numbers", stop: "numbers", zone: "numbers", row: "rows", place: "plan", block: "rows" };
 
 // every so many rows have their numbers, where there is not room for each
 const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
-const NUMBERS = new Set(["leg", "stop"]);
+const NUMBERS = new Set(["leg", "stop", "zone"]);
 const numbered = new WeakMap();
 
 // Return the labels with the numbers of the hot spots that are shown: after those of stops, which

@@ -7,7 +7,6 @@ files or at the network is no raster here.
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +15,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.wording import worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem
 from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Source, source_name
@@ -95,7 +95,7 @@ def _read(task: str, source: Source, options: RasterOptions | None, near: Field 
             )
     if isinstance(source, str | Path):
         source = Path(source).absolute()
-    with tempfile.TemporaryDirectory(prefix="fieldmon-", ignore_cleanup_errors=True) as folder:
+    with working_folder() as folder:
         return process.call(f"fieldmon.io.rasters.{task}", folder, source, options, bounds)
 
 

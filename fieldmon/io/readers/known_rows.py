@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, doubtful, seen
+from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
 from fieldmon.plot.planting import PLANTED
@@ -76,15 +76,19 @@ def _out_of_range(
     """Return a doubt for each plot of which a column says what no rows are."""
     allowed = PLANTED[setting]
     return [
-        doubtful(
+        WrongRows(
+            Severity.DOUBTFUL,
             worded(
                 "Column {column!r} must be {rule}, but it is {value:g}.",
                 column=column,
                 rule=rule,
                 value=value,
-                setting=setting,
             ),
             name,
+            column=column,
+            setting=setting,
+            rule=rule,
+            value=value,
         )
         for name, value in zip(names, stated, strict=True)
         if value is not None and (rule := allowed.broken(value))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.projection import goes_round
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -65,11 +66,20 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
     """
     line_lonlat = np.round(route.line_lonlat(), _DECIMALS)
     features = [_line_feature(route, notes, line_lonlat), *_stop_features(route, notes)]
-    collection = {"type": "FeatureCollection", "features": features}
+    collection: dict[str, Any] = {"type": "FeatureCollection", "features": features}
     everything = np.concatenate([line_lonlat, np.round(route.stops_lonlat(), _DECIMALS)])
     if len(everything):
-        collection["bbox"] = [*everything.min(axis=0).tolist(), *everything.max(axis=0).tolist()]
+        collection["bbox"] = _bbox(everything)
     return json.dumps(collection, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def _bbox(lonlat: NDArray[np.float64]) -> list[float]:
+    """Return west, south, east, north; across longitude 180 west is the greater (RFC 7946, 5.2)."""
+    lon, lat = lonlat.T
+    west, east = lon.min(), lon.max()
+    if goes_round(lon):
+        west, east = lon[lon > 0].min(), lon[lon < 0].max()
+    return [float(one) for one in (west, lat.min(), east, lat.max())]
 
 
 def handed_geojson(plan: HandoffPlan) -> bytes:

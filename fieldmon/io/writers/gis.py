@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import sqlite3
-import tempfile
 import zipfile
 from contextlib import closing
 from pathlib import Path
@@ -16,6 +15,7 @@ import pyogrio
 from shapely import LineString, Point
 
 from fieldmon.compute.wording import worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers import qml
 from fieldmon.io.writers.day_file import plain_text
@@ -109,7 +109,7 @@ def _add_styles(path: Path, columns: Iterable[str]) -> None:
 def _made(write: Callable[[Path], bytes]) -> bytes:
     """Return what is written in a folder of its own, which is then gone."""
     try:
-        with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+        with working_folder() as folder:
             return write(Path(folder))
     except (OSError, pyogrio.errors.DataSourceError) as error:
         raise FileProblem(

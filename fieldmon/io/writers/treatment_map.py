@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import tempfile
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.wording import worded
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.writers.isoxml import isoxml_taskdata
@@ -151,7 +151,7 @@ def _kml(of: TreatmentMap) -> bytes:
 
 
 def _shapefile(of: TreatmentMap) -> bytes:
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         _write(_frame(of), Path(folder) / "treatment.shp", "ESRI Shapefile", encoding="UTF-8")
         packed = io.BytesIO()
         with zipfile.ZipFile(packed, "w") as archive:
@@ -164,7 +164,7 @@ def _shapefile(of: TreatmentMap) -> bytes:
 def _one_file(
     of: TreatmentMap, name: str, driver: str, frame: gpd.GeoDataFrame | None = None, **more: str
 ) -> bytes:
-    with tempfile.TemporaryDirectory(prefix="fieldmon-") as folder:
+    with working_folder() as folder:
         path = Path(folder) / name
         _write(_frame(of) if frame is None else frame, path, driver, **more)
         return path.read_bytes()

@@ -17,6 +17,14 @@ def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(sea
     assert not [one for one in season_app.button if one.key == "change_setup"]
 
 
+def test_whole_numbers_of_a_program_leave_the_page_whole(season_app, season):
+    project, settings = season(), season().settings
+    project.change(replace(settings, robot=replace(settings.robot, hours=3, look_s=40)), settings)
+    go(season_app, "today")
+    assert not season_app.exception
+    assert next(one for one in season_app.slider if one.key.startswith("hours ")).value == 3.0
+
+
 def test_other_hours_are_used_from_now_on_when_asked_for(season_app, season):
     hours = next(s for s in season_app.slider if s.label == "Working hours")
     hours.set_value(4.0).run()

@@ -5,7 +5,7 @@ from datetime import date
 import pytest
 
 from app.words import texts
-from tests.app.driving import go, opened, tap, texts_of
+from tests.app.driving import go, opened, press, tap, texts_of
 
 
 def test_without_a_season_one_button_begins_it(app):
@@ -35,3 +35,15 @@ def test_recording_is_one_button_away(season_app):
     assert season_app.number_input(key="one_row")
     go(season_app, "today")
     assert opened("Gate 2026").get("download_button")
+
+
+def test_to_look_at_the_ways_to_a_phone_is_not_yet_to_take_the_day_along(season_app):
+    def sent():
+        said = [one.value for one in season_app.markdown if texts.STEPS["send"] in one.value]
+        return [one.startswith(":green") for one in said]
+
+    tap(season_app, "do_send")
+    assert sent() == [False]
+    season_app.text_input(key="invite_name").set_value("Ann")
+    press(season_app, texts.INVITE_BUTTON)
+    assert sent() == [True]

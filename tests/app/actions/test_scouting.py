@@ -5,9 +5,11 @@ from datetime import date
 
 import numpy as np
 
+from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
 from fieldmon.plot.grid import row_label
-from tests.app.driving import go, opened, tap, texts_of
+from tests.app.driving import go, map_of, opened, tap, texts_of
 
 
 def place(app):
@@ -87,3 +89,21 @@ def test_one_hour_more_is_one_however_late_it_is(season_app, season):
     assert "Done for today" not in texts_of(season_app)
     assert season().settings.robot.hours == 12.5
     tap(season_app, "scout_clean")
+
+
+def test_on_a_full_disk_the_map_is_there_and_a_button_tries_again(season_app, season, monkeypatch):
+    def full(self, *_, **more):
+        if more.get("keep", True):
+            raise FileProblem("There must be room on the disk.")
+        return plan(self, *_, **more)
+
+    plan = Season.plan
+    with monkeypatch.context() as patch:
+        patch.setattr(Season, "plan", full)
+        go(season_app, "scout")
+        assert "room on the disk" in season_app.error[0].value
+        assert map_of(season_app)["layers"]
+        assert season_app.button(key="scout_found")
+    tap(season_app, "scout_again")
+    assert not season_app.error
+    assert len(season().kept_route(date(2026, 11, 16)))

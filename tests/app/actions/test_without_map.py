@@ -1,6 +1,9 @@
 """Where there is no map, a card says what is wrong and offers the next step."""
 
+from app.actions import without_map
+from app.state.brought_files import File
 from app.words import texts
+from fieldmon.io.options import Upload
 from tests.app.driving import map_of, opened, press, row_box, square, texts_of, upload, zipped
 
 
@@ -42,3 +45,11 @@ def test_a_question_with_nothing_to_look_at_points_to_its_answers(app):
     assert card(app) == []
     press(app, texts.TO_ROUTE)
     assert not app.exception
+
+
+def test_of_several_files_that_are_one_the_button_says_how_many_it_takes_out():
+    parts = tuple(Upload(f"vines.{ending}", b"") for ending in ("shp", "dbf", "prj"))
+    several, one = File("key", parts, "plot"), File("key", parts[0], "plot")
+    assert texts.isolated("vines.shp") in without_map._take_out(several)
+    assert without_map._take_out(several).endswith("and 2 more")
+    assert without_map._take_out(one).endswith(texts.isolated("vines.shp"))

@@ -39,7 +39,7 @@ def test_each_zone_is_outlined_and_numbered_on_the_map(made):
     assert (tint.id, edge.id) == ("zones", "zones-edge")
     assert len(edge.data) == 2
     numbers = shown._numbers(made)
-    assert [one["t"] for one in numbers] == ["1", "2"]
+    assert [(one["t"], one["k"]) for one in numbers] == [("1", "zone"), ("2", "zone")]
     for number, zone in zip(numbers, edge.data, strict=True):
         corners = np.array(zone["p"])
         assert (corners.min(axis=0) <= number["p"]).all()

@@ -6,6 +6,7 @@ import pytest
 
 from app.show import cautions
 from app.words import texts
+from app.words.units import UnitsInLanguage
 from tests.monitoring.seasons import BEGINS, a_season
 
 
@@ -27,7 +28,7 @@ def shown(monkeypatch):
 
 
 def choices(season):
-    units = SimpleNamespace(of_library=None, day=str)
+    units = UnitsInLanguage()
     return SimpleNamespace(season=season, on=BEGINS, units=units)
 
 

@@ -31,12 +31,21 @@ def test_a_plot_is_late_a_week_after_it_was_seen(days, expected, state):
     assert estate_map.state_of(a_plot("x", 35.0, days_since=days, expected=expected)) == state
 
 
+def test_a_pond_stays_a_hole():
+    pond = shapely.box(35.1, 30.1, 35.2, 30.2)
+    outline = shapely.MultiPolygon([shapely.box(35.0, 30.0, 35.5, 30.5).difference(pond)])
+    content = estate_map.content([PlotState("home", "home", outline)])
+    (layer,) = (one for one in content.layers if one.id == estate_map.PLOTS)
+    ((_, hole),) = (row["p"] for row in layer.data)
+    assert shapely.Polygon(hole).equals(pond)
+
+
 def test_every_part_of_a_plot_is_drawn_where_it_is_and_leads_to_it():
     (layer,) = (one for one in estate_map.content(PLOTS).layers if one.id == estate_map.PLOTS)
     assert len(layer.data) == 5
     for index, row in enumerate(layer.data):
         tapped = estate_map.plot_tapped(PLOTS, index)
-        middle = shapely.Point(np.mean(row["p"][:-1], axis=0))
+        middle = shapely.Point(np.mean(row["p"][0][:-1], axis=0))
         assert tapped.outline.contains(middle)
     assert estate_map.plot_tapped(PLOTS, 5) is None
     assert estate_map.plot_tapped(PLOTS, -1) is None

@@ -34,7 +34,8 @@ def shown(monkeypatch):
 def test_it_is_the_sentence_that_the_status_prints(shown):
     estimates = DETECTION, Learnt("infested at the start", 306.04, 253.5, 1363.3)
     said = [f"- {one.sentence()}" for one in estimates]
-    assert shown(*estimates) == [apart(texts.LEARNT_INTERVALS), *said]
+    notes = f"{texts.LEARNT_COUNTS_FOR} {texts.LEARNT_INTERVALS}"
+    assert shown(*estimates) == [apart(notes), *said]
 
 
 def test_how_far_insects_jump_is_said_where_they_may(shown):

@@ -47,3 +47,11 @@ def test_a_day_in_a_sentence_has_its_weekday_and_a_year_only_where_that_is_far_o
     for code, day in said.items():
         speaking(code)
         assert usual(code).said_day(on) == day
+
+
+def test_a_sentence_of_the_library_says_days_as_the_page_does():
+    units = UnitsInLanguage(length="ft")
+    said = units.in_sentences(date(2026, 11, 18))
+    assert said.day("2026-11-16") == units.said_day("2026-11-16") == "Mon 16 Nov"
+    assert said.day(date(2025, 1, 2)) == "Thu 2 Jan 2025"
+    assert (said.length, said.area) == (units.length, units.area)

@@ -6,13 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pyogrio
+import shapely
+from shapely import MultiPolygon
 
 from fieldmon.infestation.forecast import Forecast
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
-from tests.io.writers.handed import CM, apart_m, crooked, usual
+from fieldmon.plot.field import Field
+from fieldmon.plot.plot import Plot
+from tests.io.writers.handed import CM, apart_m, crooked, day, usual
 
 
 def no_constants(word):
@@ -31,6 +35,15 @@ def positions_of(geometry):
         return []
     inside = geometry["coordinates"]
     return [inside] if geometry["type"] == "Point" else inside
+
+
+def test_the_box_of_a_day_across_longitude_180_has_its_greater_longitude_in_the_west(tmp_path):
+    area = MultiPolygon([shapely.box(179.9995, -16.801, 180.0005, -16.8)])
+    root = geojson_of(day(Plot.of(Field("Taveuni", area, row_bearing_deg=90.0)).grid), tmp_path)
+    west, south, east, north = root["bbox"]  # RFC 7946, 5.2
+    assert 179.999 < west < 180.0
+    assert -180.0 < east < -179.999
+    assert south < north
 
 
 def test_geojson_keeps_the_rules_of_rfc_7946(tmp_path, plan):

@@ -8,7 +8,7 @@ import zlib
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -228,21 +228,29 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
             arrays = dict(file)
     except (zlib.error, zipfile.BadZipFile, ValueError, OSError, EOFError):
         return None
+    # one that ends with a find that is left where it is holds none
+    ancestry = _taken_out(arrays, _ANCESTRY)
     wanted = _arrays(first)
-    if wanted is None or wanted.keys() != arrays.keys():
+    if wanted is None:
         return None
-    ancestry = {
-        name[len(_ANCESTRY) :]: arrays.pop(name) for name in wanted if name.startswith(_ANCESTRY)
-    }
+    _taken_out(wanted, _ANCESTRY)
+    if wanted.keys() != arrays.keys():
+        return None
     if any(wanted[name].shape != values.shape for name, values in arrays.items()):
         return None
     counts = arrays.pop("counts", None)
     own: dict[str, object] = {}
     if counts is not None:
         own["counts"] = OriginCounts(*counts)
-    latency = [name for name in arrays if name.startswith(_LATENCY)]
+    latency = _taken_out(arrays, _LATENCY)
     if latency:
-        own["latency"] = Latency(**{name[len(_LATENCY) :]: arrays.pop(name) for name in latency})
-    if ancestry and isinstance(first, TracedPairs):
-        own["ancestry"] = Ancestry.of_arrays(first.grid, ancestry)
+        own["latency"] = Latency(**latency)
+    if isinstance(first, TracedPairs):
+        own["ancestry"] = Ancestry.of_arrays(first.grid, ancestry) if ancestry else None
     return replace(first, **arrays, **own)  # type: ignore[type-var]
+
+
+def _taken_out(arrays: Arrays, beginning: str) -> dict[str, Any]:
+    """Take out the arrays whose names begin so; return them by the rest of their names."""
+    names = [name for name in arrays if name.startswith(beginning)]
+    return {name[len(beginning) :]: arrays.pop(name) for name in names}

@@ -7,7 +7,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, inspection_lots, schema
 from tests.monitoring.seasons import BEGINS
 
@@ -33,13 +33,14 @@ def in_lots(recorded, tmp_path_factory):
             db.commit()
         season = Season(path)
         k, rng = 90, np.random.default_rng(1)
+        plants, results = rng.permutation(len(season.plot.grid))[:k], rng.integers(0, 3, k)
         season.record(
             Inspections.of(
-                rng.permutation(len(season.plot.grid))[:k],
-                rng.integers(0, 3, k),
+                plants,
+                results,
                 np.datetime64(BEGINS) + rng.integers(1, 5, k),
                 second=np.where(rng.random(k) < 0.5, np.nan, rng.integers(0, 86_400, k)),
-                count=np.where(rng.random(k) < 0.5, np.nan, 7.5),
+                count=np.where((rng.random(k) < 0.5) | (results != FOUND), np.nan, 7.5),
                 who=rng.choice(["Ann", "דנה", ""], k).astype(object),
                 notes=rng.choice(["", "ends in nothing\0", "🌿"], k).astype(object),
             ),

@@ -216,6 +216,22 @@ def test_a_morning_of_another_plot_is_not_taken():
     assert _unpacked(TracedPairs.of(rectangle(2, 10), np.full(20, 0.1)), kept) is None
 
 
+@pytest.mark.parametrize("treated", [True, False])
+def test_a_kept_morning_goes_on_as_the_one_that_was_worked_out(treated):
+    """Also where finds are left where they are, so that no ancestry is known of them."""
+    first, night = TracedPairs.of(rectangle(4, 5), np.full(20, 0.1)), Spread(0.3)
+    learning = Learning(0.8, treated=treated)
+
+    def a_day_later(morning, plants):
+        found = np.asarray(plants) % 2 == 0
+        return morning.learn(np.array(plants, np.int32), found, learning).overnight(night)
+
+    morning = a_day_later(first, [3, 4, 9])
+    kept = _unpacked(first, _packed(morning))
+    assert (kept.ancestry is None) == (not treated)
+    assert the_same(a_day_later(kept, [5, 8]), a_day_later(morning, [5, 8]))
+
+
 def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(path):
     history, day = Season(path).history, 9
     own = _causes(history, day)

@@ -135,7 +135,11 @@ def verdict(outcomes: Sequence[SeasonOutcome]) -> list[str]:
         min(each, key=lambda who, each=each: float(each[who].mean()))  # type: ignore[misc]
         for each in taking_part.values()
     ]
-    counts = sorted(((least.count(who), who) for who in set(least)), key=lambda one: -one[0])
+    # as often: as they take part
+    order = list(dict.fromkeys(who for each in taking_part.values() for who in each))
+    counts = sorted(
+        ((least.count(who), who) for who in order if who in least), key=lambda one: -one[0]
+    )
     first = "; ".join(f"{who} in {n}" for n, who in counts)
     said = [f"Fewest infested plant-days, of {len(loss)} scenarios: {first}."]
     made = ratios(outcomes)

@@ -147,11 +147,11 @@ class Ancestry:
         today = np.zeros((1, len(self.grid)))
         overlooked = np.log1p(-np.minimum(detects[~found], 1.0 - LEAST_CHANCE))
         np.add.at(today[0], plants[~found], overlooked)
-        new = tuple(dict.fromkeys(plants[found].tolist()))
+        new = tuple(dict.fromkeys((*self.new, *plants[found].tolist())))
         days = len(self.sends)
         before, first = self.missed[:days], self.missed[days:].sum(axis=0)
         missed = np.concatenate([before, (today + first).astype(np.float16)])
-        return replace(self, missed=missed, new=tuple(dict.fromkeys((*self.new, *new))))
+        return replace(self, missed=missed, new=new)
 
     def anew(self, chance: Floats) -> Ancestry:
         """Return an ancestry that begins today with other chances ``(n,)``, as after a treatment.
@@ -293,7 +293,7 @@ def _drawn(
     taken = mean.active.copy()
     taken[infestations.ends[there], infestations.plant[there]] = 1.0
     made = replace(of, infestations=infestations, taken=taken.astype(np.float16))
-    learnt = _rates(made, landing, (unseen, taken), (sends, arrive), mean, by_edge)
+    learnt = _rates(made, landing, (unseen, taken), (weights, arrive), mean, by_edge)
     expected = unseen_now(unseen, mean.active, roots, sends, rates.shares, landing)
     return replace(made, rates=learnt), mean.hidden, expected
 
@@ -328,17 +328,16 @@ def _rates(
     of: Ancestry,
     landing: Landing,
     unseen: tuple[Unseen, Floats],
-    night: tuple[Floats, float],
+    night: tuple[Weights, float],
     drawn: DrawnSums,
     by_edge: Floats,
 ) -> Rates:
     """Return the rates by what ancestries have, over what would have been seen of it."""
-    rates, told, (sends, arrive) = of.rates, _told(of), night
+    rates, told, (weights, arrive) = of.rates, _told(of), night
     seen = 1.0 - unseen[0].chance
     meets = seen * (1.0 - unseen[1])
-    sent = sends[:, None] * drawn.active
-    kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
-    all_jumps = drawn.jumps.sum(axis=0) / np.maximum(kernel, LEAST_CHANCE)
+    sent = weights.sends[:, None] * drawn.active
+    all_jumps = drawn.jumps.sum(axis=0) / np.maximum(weights.kernel, LEAST_CHANCE)
     jumps = rates.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
     shares = (_SHARES + jumps) / (_SHARES.sum() + landing.met(sent[:-1], meets[1:]))
     early = landing.met(sent[:_BEFORE], meets[1 : _BEFORE + 1]) @ rates.shares / rates.before

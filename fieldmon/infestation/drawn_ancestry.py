@@ -393,12 +393,19 @@ def _explained(
 @part
 def _jumps(weights: Weights, sender: int, plant: int) -> float:
     """Return how much of what a plant sends out lands on another."""
-    along, half = weights.cells.shape[1], weights.kernel.shape[0] // 2
-    one, other = weights.cells.of_plant[sender], weights.cells.of_plant[plant]
-    y, x = other // along - one // along, other % along - one % along
+    half = weights.kernel.shape[0] // 2
+    y, x = _apart(weights, sender, plant)
     if -half <= y <= half and -half <= x <= half:
         return float(weights.kernel[y + half, x + half])
     return 0.0
+
+
+@part
+def _apart(weights: Weights, one: int, other: int) -> tuple[int, int]:
+    """Return how many cells a plant stands from another, across and along."""
+    cells = weights.cells
+    a, b, along = cells.of_plant[one], cells.of_plant[other], cells.shape[1]
+    return b // along - a // along, b % along - a % along
 
 
 @part
@@ -459,7 +466,7 @@ def _free(infestations: Infestations) -> int:
 
 @part
 def _sum_up(infestations: Infestations, weights: Weights, drawn: DrawnSums) -> None:
-    along, half = weights.cells.shape[1], weights.kernel.shape[0] // 2
+    half = weights.kernel.shape[0] // 2
     for i in range(infestations.plant.size):
         if not infestations.there[i]:
             continue
@@ -471,7 +478,5 @@ def _sum_up(infestations: Infestations, weights: Weights, drawn: DrawnSums) -> N
         if parent < 0:
             drawn.roots[begins, plant] += 1.0
             continue
-        one = weights.cells.of_plant[infestations.plant[parent]]
-        other = weights.cells.of_plant[plant]
-        y, x = other // along - one // along, other % along - one % along
+        y, x = _apart(weights, infestations.plant[parent], plant)
         drawn.jumps[0 if begins <= weights.season else 1, y + half, x + half] += 1.0

@@ -92,22 +92,66 @@ def kernel_means(size_m: Floats, of: Floats | None = None) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class Reach:
-    """The kernels of a plot, ready to be used.
+class KernelsOnCells:
+    """Kernels on the cells of a plot, ready to be used.
 
     Parameters
     ----------
     cells
         The plants in cells.
     kernels
-        ``(6, d, d)`` as :func:`kernels` has them.
+        ``(k, d, d)`` how what is sent is shared out over the cells about a plant. Each sums to 1.
     spectra
-        ``(6, h, w)`` their Fourier transforms, on cells with room about them.
+        ``(k, h, w)`` their Fourier transforms, on cells with room about them.
     padded
         Cells across and along with that room.
     at_edge
         ``(n,)`` how much more arrives from outside at each plant than on average, if it comes by
         the edge.
+    """
+
+    cells: Cells
+    kernels: Floats
+    spectra: NDArray[np.complex128]
+    padded: tuple[int, int]
+    at_edge: Floats
+
+    def mixed(self, shares: Floats) -> NDArray[np.complex128]:
+        """Return the transform of the kernels' mixture, of which each has a share ``(k,)``."""
+        # not by a matrix library: its threads cost a hundred times what is added here
+        spectrum: NDArray[np.complex128] = np.einsum("k,kij->ij", shares, self.spectra)
+        return spectrum
+
+    def landed(self, sent: Floats, mixed: NDArray[np.complex128]) -> Floats:
+        """Return what lands on each plant, ``(n,)``, of what all plants send out.
+
+        Parameters
+        ----------
+        sent
+            ``(n,)`` what each plant sends.
+        mixed
+            By what it goes, see `mixed`; conjugated it goes the other way, from where it would
+            land to where it came from.
+        """
+        return self._landed(self._sent(sent) * mixed)
+
+    def _sent(self, values: Floats) -> NDArray[np.complex128]:
+        sent: NDArray[np.complex128] = fft.rfft2(self.cells.summed(values), self.padded)
+        return sent
+
+    def _landed(self, spectrum: NDArray[np.complex128]) -> Floats:
+        across, along = self.cells.shape
+        landed = fft.irfft2(spectrum, self.padded)[:across, :along]
+        brought: Floats = np.maximum(landed.ravel()[self.cells.of_plant], 0.0)
+        return brought
+
+
+@dataclass(frozen=True, eq=False)
+class Reach(KernelsOnCells):
+    """The kernels beyond the plants next to one, ``(6, d, d)`` as :func:`kernels` has them.
+
+    Parameters
+    ----------
     adjacent
         Share of what a plant sends that goes to the plants next to it.
     beyond
@@ -116,11 +160,6 @@ class Reach:
         Share that lands anywhere.
     """
 
-    cells: Cells
-    kernels: Floats
-    spectra: NDArray[np.complex128]
-    padded: tuple[int, int]
-    at_edge: Floats
     adjacent: float = TO_ADJACENT
     beyond: Floats = field(default_factory=lambda: BEYOND)
     anywhere: float = 0.0
@@ -137,24 +176,13 @@ class Reach:
         back
             Whether it goes the other way: from where it would land to where it came from.
         """
-        # not by a matrix library: its threads cost a hundred times what is added here
-        spectrum = np.einsum("k,kij->ij", shares, self.spectra)
-        return self._landed(self._sent(values) * (np.conj(spectrum) if back else spectrum))
+        mixed = self.mixed(shares)
+        return self.landed(values, np.conj(mixed) if back else mixed)
 
     def brought_by_each(self, values: Floats) -> Floats:
         """Return the same for each kernel by itself, ``(6, n)``."""
         sent = self._sent(values)
         return np.array([self._landed(sent * spectrum) for spectrum in self.spectra])
-
-    def _sent(self, values: Floats) -> NDArray[np.complex128]:
-        sent: NDArray[np.complex128] = fft.rfft2(self.cells.summed(values), self.padded)
-        return sent
-
-    def _landed(self, spectrum: NDArray[np.complex128]) -> Floats:
-        across, along = self.cells.shape
-        landed = fft.irfft2(spectrum, self.padded)[:across, :along]
-        brought: Floats = np.maximum(landed.ravel()[self.cells.of_plant], 0.0)
-        return brought
 
 
 @lru_cache(maxsize=2)

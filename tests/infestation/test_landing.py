@@ -3,21 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.landing import landing_of
-from fieldmon.plot.layout import rectangle
-
-PLOT = rectangle(9, 8)
-N = len(PLOT)
-LANDING = landing_of(PLOT)
-SHARES = np.array([0.3, 0.2, 0.2, 0.1, 0.05, 0.05, 0.05, 0.05])
-
-
-def by_hand(shares):
-    """Return what lands on each plant (columns) of what each sends (rows)."""
-    half = LANDING.kernels.shape[1] // 2
-    kernel = np.einsum("k,kij->ij", shares, LANDING.kernels)
-    y, x = np.divmod(LANDING.cells.of_plant, LANDING.cells.shape[1])
-    return kernel[half + y[None, :] - y[:, None], half + x[None, :] - x[:, None]]
+from tests.infestation.landing_by_hand import LANDING, SHARES, N, by_hand
 
 
 def test_jumps_land_as_the_kernels_have_it():

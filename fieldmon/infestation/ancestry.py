@@ -279,7 +279,7 @@ def _drawn(
     unseen = stays_unseen(alone, taken, sends, rates.shares, landing)
     kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
     so_far = np.cumsum(kernel) / kernel.sum()
-    roots, by_edge = _roots(of, landing, t)
+    roots = _roots(of, landing, t)
     lasting = np.exp(overlooked + unseen.offspring)
     settled = t - 1 - _SETTLED
     weights = Weights(landing.cells, kernel, so_far, sends, roots, _BEFORE, settled, lasting)
@@ -288,30 +288,36 @@ def _drawn(
     at = _places(infestations, n)
     last_find = of.last_find + _BEFORE
     kept = draw_ancestries(infestations, at, weights, last_find, draws, drawn)
-    mean = DrawnSums(*(sums / kept for sums in drawn))
+    for sums in drawn:
+        np.divide(sums, kept, out=sums)
     there = infestations.there & infestations.found
-    taken = mean.active.copy()
+    taken = drawn.active.copy()
     taken[infestations.ends[there], infestations.plant[there]] = 1.0
     made = replace(of, infestations=infestations, taken=taken.astype(np.float16))
-    learnt = _rates(made, landing, (unseen, taken), (weights, arrive), mean, by_edge)
-    expected = unseen_now(unseen, mean.active, roots, sends, rates.shares, landing)
-    return replace(made, rates=learnt), mean.hidden, expected
+    learnt = _rates(made, landing, (unseen, taken), (weights, arrive), drawn)
+    expected = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
+    return replace(made, rates=learnt), drawn.hidden, expected
 
 
-def _roots(of: Ancestry, landing: Landing, t: int) -> tuple[Floats, Floats]:
-    """Return how many infestations come to each plant from none, ``(t, n)``.
+def _roots(of: Ancestry, landing: Landing, t: int) -> Floats:
+    """Return how many infestations come to each plant from none, ``(t, n)``."""
+    roots = np.empty((t, len(of.grid)))
+    at_start, later = (sum(both) for both in _from_none(of, landing))
+    roots[: _BEFORE + 1] = _ages()[:, None] * at_start
+    roots[_BEFORE + 1 :] = later
+    return roots
 
-    And the share of them that comes by the edge.
+
+def _from_none(of: Ancestry, landing: Landing) -> tuple[tuple[Floats, Floats], ...]:
+    """Return how many come from none before the season and in each of its nights, ``(n,)`` each.
+
+    Of both first those that come as they were told or anywhere, then those that come by the edge.
     """
     rates, told = of.rates, _told(of)
-    ages = _ages()[:, None]
-    roots, by_edge = np.empty((2, t, len(of.grid)))
-    by_edge[: _BEFORE + 1] = ages * told.mean() * rates.start_by_edge * landing.at_edge
-    by_edge[_BEFORE + 1 :] = rates.by_edge * landing.at_edge
-    roots[: _BEFORE + 1] = ages * told * rates.start
-    roots[_BEFORE + 1 :] = rates.anywhere
-    roots += by_edge
-    return roots, by_edge / roots
+    return (
+        (told * rates.start, told.mean() * rates.start_by_edge * landing.at_edge),
+        (np.full(len(told), rates.anywhere), rates.by_edge * landing.at_edge),
+    )
 
 
 def _told(of: Ancestry) -> Floats:
@@ -330,7 +336,6 @@ def _rates(
     unseen: tuple[Unseen, Floats],
     night: tuple[Weights, float],
     drawn: DrawnSums,
-    by_edge: Floats,
 ) -> Rates:
     """Return the rates by what ancestries have, over what would have been seen of it."""
     rates, told, (weights, arrive) = of.rates, _told(of), night
@@ -342,23 +347,31 @@ def _rates(
     shares = (_SHARES + jumps) / (_SHARES.sum() + landing.met(sent[:-1], meets[1:]))
     early = landing.met(sent[:_BEFORE], meets[1 : _BEFORE + 1]) @ rates.shares / rates.before
     before = _SENT_BEFORE_FINDS + drawn.jumps[0].sum()
-    from_edge = drawn.roots * by_edge
     ages, first = _ages(), slice(0, _BEFORE + 1)
+    (at_start, at_start_by_edge), (arrived, arrived_by_edge) = (
+        _shared(drawn.roots[nights].sum(axis=0), *each)
+        for nights, each in zip(
+            (first, slice(_BEFORE + 1, None)), _from_none(of, landing), strict=True
+        )
+    )
     told_seen = float((ages @ seen[first]) @ told)
     edge_seen = float((ages @ seen[first]) @ landing.at_edge * told.mean())
-    at_start, at_start_by_edge = drawn.roots[first].sum(), from_edge[first].sum()
-    arrived, arrived_by_edge = drawn.roots[_BEFORE + 1 :].sum(), from_edge[_BEFORE + 1 :].sum()
     later = seen[_BEFORE + 1 :].sum(axis=0)
     return Rates(
         shares / shares.sum(),
         before / (_SENT_BEFORE_FINDS / _SENT_BEFORE + early),
-        (_START_FINDS * (1.0 - _BY_EDGE) + at_start - at_start_by_edge)
-        / (_START_FINDS + told_seen),
+        (_START_FINDS * (1.0 - _BY_EDGE) + at_start) / (_START_FINDS + told_seen),
         (_BY_EDGE_FINDS * _BY_EDGE + at_start_by_edge) / (_BY_EDGE_FINDS + edge_seen),
-        (_ARRIVAL_FINDS + arrived - arrived_by_edge) / (_ARRIVAL_FINDS / arrive + later.sum()),
+        (_ARRIVAL_FINDS + arrived) / (_ARRIVAL_FINDS / arrive + later.sum()),
         (_ARRIVAL_FINDS + arrived_by_edge)
         / (_ARRIVAL_FINDS / ARRIVE_BY_EDGE + later @ landing.at_edge),
     )
+
+
+def _shared(drawn: Floats, others: Floats, by_edge: Floats) -> tuple[float, float]:
+    """Share out those `drawn` ``(n,)`` at each plant as they are expected; return both sums."""
+    from_edge = float(drawn @ (by_edge / (others + by_edge)))
+    return float(drawn.sum()) - from_edge, from_edge
 
 
 def _places(infestations: Infestations, n: int) -> NDArray[np.int64]:

@@ -146,12 +146,27 @@ class DrawnSums(NamedTuple):
         return f"<Drawn: {self.jumps.sum():.0f} jumps>"
 
 
-class _Origins(NamedTuple):
-    """Room for what explains an infestation: running sums over mornings, and over parents."""
+class _Worked(NamedTuple):
+    """What is worked out on the way, and again at each move.
+
+    Parameters
+    ----------
+    by_parent, by_none
+        What explains an infestation, as running sums over mornings: by a parent, and by none.
+    so_far
+        The same as a running sum over parents.
+    across, along
+        The cell of each infestation.
+    removable
+        ``(1,)`` how many were not found and have a single child.
+    """
 
     by_parent: Floats
     by_none: Floats
     so_far: Floats
+    across: Ints
+    along: Ints
+    removable: Ints
 
 
 @routine
@@ -177,46 +192,58 @@ def draw_ancestries(
     seed, sweeps, left_out = draws
     np.random.seed(seed)  # noqa: NPY002 - a compiled loop has no other
     mornings, places = weights.roots.shape[0], infestations.plant.size
-    origins = _Origins(np.empty(mornings + 1), np.empty(mornings + 1), np.empty(places))
+    worked = _Worked(
+        np.empty(mornings + 1), np.empty(mornings + 1), np.empty(places),
+        np.zeros(places, np.int64), np.zeros(places, np.int64), np.zeros(1, np.int64),
+    )  # fmt: skip
+    for i in range(places):
+        if infestations.there[i]:
+            _stand(weights, infestations.plant[i], i, worked)
+            worked.removable[0] += _hangs_on_one(infestations, i)
     for sweep in range(sweeps):
         # as many in each sweep, however many infestations there are by then
         for _ in range(_MOVES * places):
             i, kind = np.random.randint(places), np.random.random()  # noqa: NPY002
             if kind >= _TIMES_AND_MORE:
-                _take_out(infestations, at, weights, origins)
+                _take_out(infestations, at, weights, worked)
             elif not infestations.there[i] or infestations.ends[i] <= weights.settled:
                 continue
             elif kind < _TIMES:
-                _move(infestations, i, weights, origins)
+                _move(infestations, i, weights, worked)
             else:
-                _put_in(infestations, i, (at, last_find), weights, origins)
+                _put_in(infestations, i, (at, last_find), weights, worked)
         if sweep >= left_out:
-            _sum_up(infestations, weights, drawn)
+            _sum_up(infestations, weights.season, worked, drawn)
+    for morning in range(1, mornings):
+        drawn.active[morning] += drawn.active[morning - 1]
     return max(sweeps - left_out, 0)
 
 
 @part
-def _move(infestations: Infestations, i: int, weights: Weights, origins: _Origins) -> None:
+def _move(infestations: Infestations, i: int, weights: Weights, worked: _Worked) -> None:
     """Draw another beginning and parent of an infestation.
 
     The only child of one that was not found keeps its parent: that would be without a find.
     """
-    latest = infestations.ends[i]
+    latest, left = infestations.ends[i], infestations.children[i]
     for j in range(infestations.plant.size):
+        if left == 0:
+            break
         if infestations.there[j] and infestations.parent[j] == i:
             latest = min(latest, infestations.begins[j] - 1)
+            left -= 1
     earliest = infestations.earliest[i]
     if latest < earliest:
         return
     when = (infestations.plant[i], earliest, latest, infestations.ends[i])
     parent = infestations.parent[i]
     alone = parent >= 0 and _hangs_on_one(infestations, parent)
-    total = _weigh(infestations, when, (i, NOBODY), weights, origins)
+    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     if alone:
-        infestations.begins[i] = _when_by(infestations, parent, when, origins)
+        infestations.begins[i] = _when_by(infestations, parent, when, worked)
         return
-    other, begins = _draw_origin(infestations, total, when, origins)
-    _hang(infestations, i, other)
+    other, begins = _draw_origin(infestations, total, when, worked)
+    _hang(infestations, i, other, worked)
     infestations.begins[i] = begins
 
 
@@ -226,7 +253,7 @@ def _put_in(
     i: int,
     places: tuple[Ints, Ints],
     weights: Weights,
-    origins: _Origins,
+    worked: _Worked,
 ) -> None:
     """Try one that was not found as the parent of an infestation."""
     at, last_find = places
@@ -242,11 +269,11 @@ def _put_in(
     if latest < earliest or place < 0:
         return
     last = weights.roots.shape[0] - 1
-    now = _explained(infestations, i, NOBODY, weights, origins)
+    now = _explained(infestations, i, NOBODY, weights, worked)
     when = (plant, earliest, latest, last)
-    total = _weigh(infestations, when, (i, NOBODY), weights, origins)
-    other, since = _draw_origin(infestations, total, when, origins)
-    removable = _n_removable(infestations) + 1
+    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+    other, since = _draw_origin(infestations, total, when, worked)
+    removable = worked.removable[0] + 1
     if other != parent:
         # the one before has a child less then, and the new one's parent one more
         if parent >= 0 and not infestations.found[parent] and infestations.children[parent] == 2:
@@ -261,15 +288,16 @@ def _put_in(
     infestations.ends[place], infestations.earliest[place] = last, earliest
     infestations.found[place], infestations.there[place] = False, True
     infestations.parent[place], infestations.children[place] = NOBODY, 0
+    _stand(weights, plant, place, worked)
     at[plant] = place
-    _hang(infestations, place, other)
-    _hang(infestations, i, place)
+    _hang(infestations, place, other, worked)
+    _hang(infestations, i, place, worked)
 
 
 @part
-def _take_out(infestations: Infestations, at: Ints, weights: Weights, origins: _Origins) -> None:
+def _take_out(infestations: Infestations, at: Ints, weights: Weights, worked: _Worked) -> None:
     """Try to do without one that was not found and has a single child."""
-    removable = _n_removable(infestations)
+    removable = worked.removable[0]
     if removable == 0:
         return
     wanted = np.random.randint(removable)  # noqa: NPY002
@@ -292,18 +320,18 @@ def _take_out(infestations: Infestations, at: Ints, weights: Weights, origins: _
         return
     begins, plant = infestations.begins[child], infestations.plant[place]
     when = (plant, infestations.earliest[place], begins - 1, infestations.ends[place])
-    total = _weigh(infestations, when, (place, child), weights, origins)
-    now = _explained(infestations, child, place, weights, origins)
+    total = _weigh(infestations, when, (place, child), weights, worked)
+    now = _explained(infestations, child, place, weights, worked)
     cell = weights.cells.of_plant[plant]
     many = weights.cells.start[cell + 1] - weights.cells.start[cell]
     loss = weights.sends[begins - 1] * many * total * infestations.plant.size
     if np.random.random() * loss >= now * removable:  # noqa: NPY002
         return
     when = (infestations.plant[child], begins, begins, infestations.ends[child])
-    total = _weigh(infestations, when, (child, place), weights, origins)
-    other, _ = _draw_origin(infestations, total, when, origins)
-    _hang(infestations, child, other)
-    _hang(infestations, place, NOBODY)
+    total = _weigh(infestations, when, (child, place), weights, worked)
+    other, _ = _draw_origin(infestations, total, when, worked)
+    _hang(infestations, child, other, worked)
+    _hang(infestations, place, NOBODY, worked)
     infestations.there[place] = False
     at[plant] = NOBODY
 
@@ -314,7 +342,7 @@ def _weigh(
     when: tuple[int, int, int, int],
     without: tuple[int, int],
     weights: Weights,
-    origins: _Origins,
+    worked: _Worked,
 ) -> float:
     """Weigh all origins of an infestation; return their sum.
 
@@ -322,23 +350,31 @@ def _weigh(
     `without` are two infestations from which it does not come.
     """
     plant, earliest, latest, ends = when
-    origins.by_parent[0] = origins.by_none[0] = 0.0
+    worked.by_parent[0] = worked.by_none[0] = 0.0
     for k in range(latest - earliest + 1):
         begins = earliest + k
         lasts = weights.lasting[begins, plant] / weights.lasting[ends, plant]
         sends = weights.sends[begins - 1] if begins > 0 else 0.0
-        origins.by_parent[k + 1] = origins.by_parent[k] + lasts * sends
-        origins.by_none[k + 1] = origins.by_none[k] + lasts * weights.roots[begins, plant]
+        worked.by_parent[k + 1] = worked.by_parent[k] + lasts * sends
+        worked.by_none[k + 1] = worked.by_none[k] + lasts * weights.roots[begins, plant]
+    half, y, x = weights.kernel.shape[0] // 2, *_cell(weights, plant)
     total = 0.0
     for j in range(infestations.plant.size):
-        if infestations.there[j] and j != without[0] and j != without[1]:
+        across, along = y - worked.across[j] + half, x - worked.along[j] + half
+        if (
+            0 <= across <= 2 * half
+            and 0 <= along <= 2 * half
+            and infestations.there[j]
+            and j != without[0]
+            and j != without[1]
+        ):
             first = max(infestations.begins[j] + 1, earliest)
             last = min(infestations.ends[j], latest)
             if last >= first:
-                times = origins.by_parent[last - earliest + 1] - origins.by_parent[first - earliest]
-                total += times * _jumps(weights, infestations.plant[j], plant)
-        origins.so_far[j] = total
-    return float(total + origins.by_none[latest - earliest + 1])
+                times = worked.by_parent[last - earliest + 1] - worked.by_parent[first - earliest]
+                total += times * weights.kernel[across, along]
+        worked.so_far[j] = total
+    return float(total + worked.by_none[latest - earliest + 1])
 
 
 @part
@@ -346,17 +382,17 @@ def _draw_origin(
     infestations: Infestations,
     total: float,
     when: tuple[int, int, int, int],
-    origins: _Origins,
+    worked: _Worked,
 ) -> tuple[int, int]:
     """Return a parent and a beginning, drawn from what was weighed."""
     _, earliest, latest, _ = when
     u = np.random.random() * total  # noqa: NPY002
-    if u < origins.so_far[-1]:
-        parent = int(np.searchsorted(origins.so_far, u, side="right"))
-        return parent, _when_by(infestations, parent, when, origins)
-    u = np.random.random() * origins.by_none[latest - earliest + 1]  # noqa: NPY002
+    if u < worked.so_far[-1]:
+        parent = int(np.searchsorted(worked.so_far, u, side="right"))
+        return parent, _when_by(infestations, parent, when, worked)
+    u = np.random.random() * worked.by_none[latest - earliest + 1]  # noqa: NPY002
     k = 0
-    while earliest + k < latest and origins.by_none[k + 1] <= u:
+    while earliest + k < latest and worked.by_none[k + 1] <= u:
         k += 1
     return NOBODY, earliest + k
 
@@ -366,46 +402,41 @@ def _when_by(
     infestations: Infestations,
     parent: int,
     when: tuple[int, int, int, int],
-    origins: _Origins,
+    worked: _Worked,
 ) -> int:
     """Return when an infestation by this parent began, drawn from what was weighed."""
     _, earliest, latest, _ = when
     first = max(infestations.begins[parent] + 1, earliest)
     last = min(infestations.ends[parent], latest)
-    low, high = origins.by_parent[first - earliest], origins.by_parent[last - earliest + 1]
+    low, high = worked.by_parent[first - earliest], worked.by_parent[last - earliest + 1]
     u = low + np.random.random() * (high - low)  # noqa: NPY002
     begins = first
-    while begins < last and origins.by_parent[begins - earliest + 1] <= u:
+    while begins < last and worked.by_parent[begins - earliest + 1] <= u:
         begins += 1
     return int(begins)
 
 
 @part
 def _explained(
-    infestations: Infestations, i: int, without: int, weights: Weights, origins: _Origins
+    infestations: Infestations, i: int, without: int, weights: Weights, worked: _Worked
 ) -> float:
     """Return how well an infestation that begins when it does is explained by all others."""
     begins, ends, plant = infestations.begins[i], infestations.ends[i], infestations.plant[i]
-    total = _weigh(infestations, (plant, begins, begins, ends), (i, without), weights, origins)
+    total = _weigh(infestations, (plant, begins, begins, ends), (i, without), weights, worked)
     return float(total * weights.lasting[ends, plant] / weights.lasting[begins, plant])
 
 
 @part
-def _jumps(weights: Weights, sender: int, plant: int) -> float:
-    """Return how much of what a plant sends out lands on another."""
-    half = weights.kernel.shape[0] // 2
-    y, x = _apart(weights, sender, plant)
-    if -half <= y <= half and -half <= x <= half:
-        return float(weights.kernel[y + half, x + half])
-    return 0.0
+def _cell(weights: Weights, plant: int) -> tuple[int, int]:
+    """Return in which cell a plant stands, across and along."""
+    cell, along = weights.cells.of_plant[plant], weights.cells.shape[1]
+    return cell // along, cell % along
 
 
 @part
-def _apart(weights: Weights, one: int, other: int) -> tuple[int, int]:
-    """Return how many cells a plant stands from another, across and along."""
-    cells = weights.cells
-    a, b, along = cells.of_plant[one], cells.of_plant[other], cells.shape[1]
-    return b // along - a // along, b % along - a % along
+def _stand(weights: Weights, plant: int, place: int, worked: _Worked) -> None:
+    """Note where the infestation at a place stands."""
+    worked.across[place], worked.along[place] = _cell(weights, plant)
 
 
 @part
@@ -417,8 +448,8 @@ def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
     cells, d = weights.cells, weights.kernel.shape[0]
     across, along = cells.shape[0], cells.shape[1]
     k = np.searchsorted(weights.so_far, np.random.random())  # noqa: NPY002
-    y = cells.of_plant[plant] // along - (k // d - d // 2)
-    x = cells.of_plant[plant] % along - (k % d - d // 2)
+    y, x = _cell(weights, plant)
+    y, x = y - (k // d - d // 2), x - (k % d - d // 2)
     if k >= d * d or y < 0 or y >= across or x < 0 or x >= along:
         return NOBODY, 0
     first, end = cells.start[y * along + x], cells.start[y * along + x + 1]
@@ -428,13 +459,17 @@ def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
 
 
 @part
-def _hang(infestations: Infestations, i: int, parent: int) -> None:
+def _hang(infestations: Infestations, i: int, parent: int, worked: _Worked) -> None:
     """Give an infestation another parent."""
     before = infestations.parent[i]
     if before >= 0:
+        worked.removable[0] -= _hangs_on_one(infestations, before)
         infestations.children[before] -= 1
+        worked.removable[0] += _hangs_on_one(infestations, before)
     if parent >= 0:
+        worked.removable[0] -= _hangs_on_one(infestations, parent)
         infestations.children[parent] += 1
+        worked.removable[0] += _hangs_on_one(infestations, parent)
     infestations.parent[i] = parent
 
 
@@ -442,15 +477,6 @@ def _hang(infestations: Infestations, i: int, parent: int) -> None:
 def _hangs_on_one(infestations: Infestations, j: int) -> bool:
     """Tell whether an infestation is only there for a single child."""
     return bool(not infestations.found[j] and infestations.children[j] == 1)
-
-
-@part
-def _n_removable(infestations: Infestations) -> int:
-    n = 0
-    for j in range(infestations.plant.size):
-        if infestations.there[j] and _hangs_on_one(infestations, j):
-            n += 1
-    return n
 
 
 @part
@@ -465,18 +491,19 @@ def _free(infestations: Infestations) -> int:
 
 
 @part
-def _sum_up(infestations: Infestations, weights: Weights, drawn: DrawnSums) -> None:
-    half = weights.kernel.shape[0] // 2
+def _sum_up(infestations: Infestations, season: int, worked: _Worked, drawn: DrawnSums) -> None:
+    """Add an ancestry to the sums; of who is active only where that begins and ends."""
+    half = drawn.jumps.shape[1] // 2
     for i in range(infestations.plant.size):
         if not infestations.there[i]:
             continue
         plant, begins = infestations.plant[i], infestations.begins[i]
-        for night in range(begins, infestations.ends[i]):
-            drawn.active[night, plant] += 1.0
+        drawn.active[begins, plant] += 1.0
+        drawn.active[infestations.ends[i], plant] -= 1.0
         drawn.hidden[plant] += 0.0 if infestations.found[i] else 1.0
         parent = infestations.parent[i]
         if parent < 0:
             drawn.roots[begins, plant] += 1.0
             continue
-        y, x = _apart(weights, infestations.plant[parent], plant)
-        drawn.jumps[0 if begins <= weights.season else 1, y + half, x + half] += 1.0
+        y, x = worked.across[i] - worked.across[parent], worked.along[i] - worked.along[parent]
+        drawn.jumps[0 if begins <= season else 1, y + half, x + half] += 1.0

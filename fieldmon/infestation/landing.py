@@ -37,7 +37,9 @@ class Landing(KernelsOnCells):
         """
         total = np.zeros(self.spectra.shape[1:], np.complex128)
         for one, other in zip(sent, there, strict=True):
-            total += self._sent(one) * np.conj(self._sent(other))
+            # over a night in which nothing is sent there is nothing to add
+            if one.any():
+                total += self._sent(one) * np.conj(self._sent(other))
         # half of a spectrum stands for all of it
         twice = np.full(self.spectra.shape[2], 2.0)
         twice[0] = 1.0

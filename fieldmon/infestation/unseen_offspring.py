@@ -28,23 +28,17 @@ class Unseen(NamedTuple):
 
     Parameters
     ----------
-    alone
-        That no inspection shows it, as a logarithm.
+    chance
+        That nothing is seen of it and of all that comes from it.
     offspring
         That nothing is seen of what it sends out, as a logarithm.
     """
 
-    alone: Floats
+    chance: Floats
     offspring: Floats
 
     def __repr__(self) -> str:
-        return f"<Unseen on {len(self.alone)} mornings>"
-
-    @property
-    def chance(self) -> Floats:
-        """That nothing is seen of it and of all that comes from it."""
-        chance: Floats = np.exp(self.alone + self.offspring)
-        return chance
+        return f"<Unseen on {len(self.chance)} mornings>"
 
 
 def stays_unseen(
@@ -55,7 +49,8 @@ def stays_unseen(
     Parameters
     ----------
     alone
-        ``(t, n)`` see `Unseen`; minus infinity where the plant was found since.
+        ``(t, n)`` that no inspection shows an infestation, as a logarithm; minus infinity where the
+        plant was found since.
     taken
         ``(t, n)`` the chance that the plant is infested already: what lands there does nothing.
     sends
@@ -64,11 +59,13 @@ def stays_unseen(
         ``(k,)`` how much of it goes by each kernel.
     """
     offspring, back = np.zeros_like(alone), np.conj(landing.mixed(shares))
-    for night in range(len(alone) - 2, -1, -1):
-        seen = 1.0 - np.exp(alone[night + 1] + offspring[night + 1])
-        caught = landing.landed(seen * (1.0 - taken[night + 1]), back)
-        offspring[night] = offspring[night + 1] - sends[night] * caught
-    return Unseen(alone, offspring)
+    chance = np.empty_like(alone)
+    for night in range(len(alone) - 1, -1, -1):
+        np.exp(alone[night] + offspring[night], out=chance[night])
+        if night:
+            caught = landing.landed((1.0 - chance[night]) * (1.0 - taken[night]), back)
+            offspring[night - 1] = offspring[night] - sends[night - 1] * caught
+    return Unseen(chance, offspring)
 
 
 def unseen_now(
@@ -85,12 +82,12 @@ def unseen_now(
     sends, shares
         As for `stays_unseen`.
     """
-    chance, mixed = unseen.chance, landing.mixed(shares)
+    mixed = landing.mixed(shares)
     there = np.zeros(active.shape[1])
     for morning in range(len(active)):
         new = roots[morning]
         if morning:
             senders = active[morning - 1] + there
             new = new + sends[morning - 1] * landing.landed(senders, mixed)
-        there = there + chance[morning] * new * np.maximum(1.0 - there, 0.0)
+        there = there + unseen.chance[morning] * new * np.maximum(1.0 - there, 0.0)
     return there

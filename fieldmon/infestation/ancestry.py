@@ -42,14 +42,16 @@ _SENT_BEFORE, _SENT_BEFORE_FINDS = 0.4, 4.0
 # how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
 # the kernels of `reach`; arrivals and the share at the start, in finds (our choice)
 _SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
-_ARRIVAL_FINDS, _START_FINDS = 0.5, 1.0
+_ARRIVAL_FINDS, _START_FINDS = 0.5, 3.0
 # the share of the start that came by the edge, and how many finds that is worth (our choice)
-_BY_EDGE, _BY_EDGE_FINDS = 0.1, 0.5
+_BY_EDGE, _BY_EDGE_FINDS = 0.1, 2.0
 # sweeps a night, of which a quarter is left out; of many infestations there are fewer, so that no
 # more than so many pairs are looked at. In the first nights there are two rounds, as rates are
 # little known before
 _SWEEPS, _LEAST_SWEEPS, _PAIRS = 100, 4, 2e6
 _EARLY = 3
+# how often what came from none is shared out anew between the edge and elsewhere
+_SHARED_OUT = 5
 # finds older than so many days keep their origin
 _SETTLED = 10
 #: a plot of more plants does without: each night would take seconds
@@ -313,20 +315,20 @@ def _from_none(of: Ancestry, landing: Landing) -> tuple[tuple[Floats, Floats], .
 
     Of both first those that come as they were told or anywhere, then those that come by the edge.
     """
-    rates, told = of.rates, _told(of)
+    rates, told = of.rates, _told(of.start, of.rates.before)
     return (
         (told * rates.start, told.mean() * rates.start_by_edge * landing.at_edge),
         (np.full(len(told), rates.anywhere), rates.by_edge * landing.at_edge),
     )
 
 
-def _told(of: Ancestry) -> Floats:
+def _told(start: Floats, before: float) -> Floats:
     """How many came from none before the season, as the first map has it, ``(n,)``.
 
-    By the first morning each had become as many as it sent out.
+    By the first morning each had become as many as it sent out, `before` in a night.
     """
     nights = np.arange(_BEFORE, -1, -1)
-    told: Floats = of.start / float(_ages() @ (1.0 + of.rates.before) ** nights)
+    told: Floats = start / float(_ages() @ (1.0 + before) ** nights)
     return told
 
 
@@ -338,7 +340,7 @@ def _rates(
     drawn: DrawnSums,
 ) -> Rates:
     """Return the rates by what ancestries have, over what would have been seen of it."""
-    rates, told, (weights, arrive) = of.rates, _told(of), night
+    rates, (weights, arrive) = of.rates, night
     seen = 1.0 - unseen[0].chance
     meets = seen * (1.0 - unseen[1])
     sent = weights.sends[:, None] * drawn.active
@@ -346,26 +348,33 @@ def _rates(
     jumps = rates.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
     shares = (_SHARES + jumps) / (_SHARES.sum() + landing.met(sent[:-1], meets[1:]))
     early = landing.met(sent[:_BEFORE], meets[1 : _BEFORE + 1]) @ rates.shares / rates.before
-    before = _SENT_BEFORE_FINDS + drawn.jumps[0].sum()
-    ages, first = _ages(), slice(0, _BEFORE + 1)
-    (at_start, at_start_by_edge), (arrived, arrived_by_edge) = (
-        _shared(drawn.roots[nights].sum(axis=0), *each)
-        for nights, each in zip(
-            (first, slice(_BEFORE + 1, None)), _from_none(of, landing), strict=True
-        )
+    before = float(
+        (_SENT_BEFORE_FINDS + drawn.jumps[0].sum()) / (_SENT_BEFORE_FINDS / _SENT_BEFORE + early)
     )
+    # as many as they came to be by what is known now of how they grew
+    told = _told(of.start, before)
+    ages, first = _ages(), slice(0, _BEFORE + 1)
     told_seen = float((ages @ seen[first]) @ told)
     edge_seen = float((ages @ seen[first]) @ landing.at_edge * told.mean())
     later = seen[_BEFORE + 1 :].sum(axis=0)
-    return Rates(
-        shares / shares.sum(),
-        before / (_SENT_BEFORE_FINDS / _SENT_BEFORE + early),
-        (_START_FINDS * (1.0 - _BY_EDGE) + at_start) / (_START_FINDS + told_seen),
-        (_BY_EDGE_FINDS * _BY_EDGE + at_start_by_edge) / (_BY_EDGE_FINDS + edge_seen),
-        (_ARRIVAL_FINDS + arrived) / (_ARRIVAL_FINDS / arrive + later.sum()),
-        (_ARRIVAL_FINDS + arrived_by_edge)
-        / (_ARRIVAL_FINDS / ARRIVE_BY_EDGE + later @ landing.at_edge),
-    )
+    roots = drawn.roots[first].sum(axis=0), drawn.roots[_BEFORE + 1 :].sum(axis=0)
+    learnt = rates._replace(shares=shares / shares.sum(), before=before)
+    for _ in range(_SHARED_OUT):
+        (at_start, at_start_by_edge), (arrived, arrived_by_edge) = (
+            _shared(each, *from_none)
+            for each, from_none in zip(
+                roots, _from_none(replace(of, rates=learnt), landing), strict=True
+            )
+        )
+        learnt = learnt._replace(
+            start=(_START_FINDS * (1.0 - _BY_EDGE) + at_start) / (_START_FINDS + told_seen),
+            start_by_edge=(_BY_EDGE_FINDS * _BY_EDGE + at_start_by_edge)
+            / (_BY_EDGE_FINDS + edge_seen),
+            anywhere=(_ARRIVAL_FINDS + arrived) / (_ARRIVAL_FINDS / arrive + later.sum()),
+            by_edge=(_ARRIVAL_FINDS + arrived_by_edge)
+            / (_ARRIVAL_FINDS / ARRIVE_BY_EDGE + later @ landing.at_edge),
+        )
+    return learnt
 
 
 def _shared(drawn: Floats, others: Floats, by_edge: Floats) -> tuple[float, float]:

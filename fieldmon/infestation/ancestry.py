@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from scipy.special import gammaincinv
 
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
 from fieldmon.infestation.drawn_ancestry import (
@@ -23,7 +24,7 @@ from fieldmon.infestation.drawn_ancestry import (
     draw_ancestries,
 )
 from fieldmon.infestation.landing import landing_of
-from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE
+from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE, Estimate
 from fieldmon.infestation.unseen_offspring import Unseen, stays_unseen, unseen_now
 
 if TYPE_CHECKING:
@@ -60,6 +61,9 @@ MOST_PLANTS = 10_000
 _MOST_DAYS, _MOST_INFESTATIONS = 30, 1500
 # places for infestations that were not found: at least, and as a share of all
 _LEAST_ROOM, _ROOM = 32, 0.25
+# how far the number at the start may be off beyond what drawn ancestries say of it, as a share,
+# since they take the rates as known (our choice); 90 % lie within so many standard deviations
+_START_DOUBT, _SIGMAS = 0.1, 1.645
 # never surer than this
 _MOST = 0.95
 
@@ -120,6 +124,13 @@ class Ancestry:
         The ancestry drawn last.
     rates
         What is believed of how infestations come about.
+    at_start
+        ``(2,)`` how many plants are taken to have been infested on the first morning of the season,
+        and the variance of that; NaN: nothing is known yet.
+    arrived
+        How many of the infestations drawn arrived from outside.
+    began_anew
+        Whether it began later than the season.
     """
 
     grid: PlantGrid
@@ -131,6 +142,9 @@ class Ancestry:
     taken: NDArray[np.float16]
     infestations: Infestations = field(default_factory=lambda: Infestations.room(_LEAST_ROOM))
     rates: Rates = field(default_factory=lambda: Rates(_SHARES / _SHARES.sum()))
+    at_start: Floats = field(default_factory=lambda: np.full(2, np.nan))
+    arrived: float = 0.0
+    began_anew: bool = False
 
     def __repr__(self) -> str:
         return f"<Ancestry of {np.count_nonzero(self.infestations.found)} finds>"
@@ -162,7 +176,34 @@ class Ancestry:
         """
         start = Rates(self.rates.shares)
         rates = self.rates._replace(start=start.start, start_by_edge=start.start_by_edge)
-        return replace(Ancestry.of(self.grid, chance), rates=rates)
+        begun = Ancestry.of(self.grid, chance)
+        return replace(begun, rates=rates, at_start=self.at_start, began_anew=True)
+
+    @property
+    def so_far(self) -> Ancestry:
+        """The same by all inspections so far, if nothing more comes about tonight."""
+        waits = bool(self.new) or len(self.missed) > len(self.sends)
+        return self.overnight(0.0)[0] if waits else self
+
+    @property
+    def infested_at_start(self) -> Estimate | None:
+        """How many plants were infested on the season's first morning; None: nothing is known yet.
+
+        Beyond what ancestries say of it, the rates are not known.
+        """
+        mean, variance = map(float, self.at_start)
+        if np.isnan(mean):
+            return None
+        off = _SIGMAS * float(np.hypot(np.sqrt(variance), _START_DOUBT * mean))
+        return Estimate(mean, max(mean - off, 0.0), mean + off)
+
+    @property
+    def arrivals(self) -> Estimate:
+        """How many plants are infested from outside in a night, known by as many as were drawn."""
+        nightly = (self.rates.anywhere + self.rates.by_edge) * len(self.grid)
+        known = 2.0 * _ARRIVAL_FINDS + self.arrived
+        low, high = gammaincinv(known, [0.05, 0.95]) / known * nightly
+        return Estimate(nightly, float(low), float(high))
 
     @property
     def knows(self) -> bool:
@@ -217,6 +258,8 @@ class Ancestry:
             "taken": self.taken,
             "infestations": np.array(self.infestations, np.int64),
             "rates": np.concatenate([self.rates.shares, self.rates[1:]]),
+            "at_start": self.at_start,
+            "since": np.array([self.arrived, self.began_anew]),
         }
 
     @classmethod
@@ -225,6 +268,7 @@ class Ancestry:
         kept = dict(arrays)
         plant, begins, ends, found, parent, children, there, earliest = kept.pop("infestations")
         shares, others = np.split(kept.pop("rates"), [len(_SHARES)])
+        arrived, anew = kept.pop("since")
         n = len(grid)
         if any(kept[name].shape[-1:] != (n,) for name in ("start", "missed", "last_find", "taken")):
             raise ValueError(f"An ancestry of {n} plants must have arrays of so many.")
@@ -232,7 +276,10 @@ class Ancestry:
             plant, begins, ends, found != 0, parent, children, there != 0, earliest
         )
         rates = Rates(shares, *map(float, others))
-        return cls(grid, new=(), infestations=infestations, rates=rates, **kept)
+        return cls(
+            grid, new=(), infestations=infestations, rates=rates,
+            arrived=float(arrived), began_anew=bool(anew), **kept,
+        )  # fmt: skip
 
 
 def _with_finds(of: Ancestry) -> Ancestry:
@@ -297,8 +344,18 @@ def _drawn(
     taken[infestations.ends[there], infestations.plant[there]] = 1.0
     made = replace(of, infestations=infestations, taken=taken.astype(np.float16))
     learnt = _rates(made, landing, (unseen, taken), (weights, arrive), drawn)
-    expected = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
-    return replace(made, rates=learnt), drawn.hidden, expected
+    expected, so_far = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
+    at_start = made.at_start
+    if not of.began_anew:
+        known, square = drawn.at_start
+        # those unseen vary by chance
+        at_start = np.array([known, square - known**2]) + so_far[_BEFORE]
+    arrived = float(drawn.roots[_BEFORE + 1 :].sum())
+    return (
+        replace(made, rates=learnt, at_start=at_start, arrived=arrived),
+        drawn.hidden,
+        expected,
+    )
 
 
 def _roots(of: Ancestry, landing: Landing, t: int) -> Floats:

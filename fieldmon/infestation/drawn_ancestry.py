@@ -130,17 +130,21 @@ class DrawnSums(NamedTuple):
         ``(2, d, d)`` how many jumps of each length and direction, before the season and in it.
     roots
         ``(t, n)`` how many came from none.
+    at_start
+        ``(2,)`` how many there were on the first morning of the season, and their squares.
     """
 
     active: Floats
     hidden: Floats
     jumps: Floats
     roots: Floats
+    at_start: Floats
 
     @classmethod
     def none(cls, t: int, n: int, d: int) -> DrawnSums:
         """Return sums of nothing."""
-        return cls(np.zeros((t, n)), np.zeros(n), np.zeros((2, d, d)), np.zeros((t, n)))
+        active, roots = np.zeros((2, t, n))
+        return cls(active, np.zeros(n), np.zeros((2, d, d)), roots, np.zeros(2))
 
     def __repr__(self) -> str:
         return f"<Drawn: {self.jumps.sum():.0f} jumps>"
@@ -493,13 +497,14 @@ def _free(infestations: Infestations) -> int:
 @part
 def _sum_up(infestations: Infestations, season: int, worked: _Worked, drawn: DrawnSums) -> None:
     """Add an ancestry to the sums; of who is active only where that begins and ends."""
-    half = drawn.jumps.shape[1] // 2
+    half, at_start = drawn.jumps.shape[1] // 2, 0.0
     for i in range(infestations.plant.size):
         if not infestations.there[i]:
             continue
         plant, begins = infestations.plant[i], infestations.begins[i]
         drawn.active[begins, plant] += 1.0
         drawn.active[infestations.ends[i], plant] -= 1.0
+        at_start += 1.0 if begins <= season else 0.0
         drawn.hidden[plant] += 0.0 if infestations.found[i] else 1.0
         parent = infestations.parent[i]
         if parent < 0:
@@ -507,3 +512,5 @@ def _sum_up(infestations: Infestations, season: int, worked: _Worked, drawn: Dra
             continue
         y, x = worked.across[i] - worked.across[parent], worked.along[i] - worked.along[parent]
         drawn.jumps[0 if begins <= season else 1, y + half, x + half] += 1.0
+    drawn.at_start[0] += at_start
+    drawn.at_start[1] += at_start**2

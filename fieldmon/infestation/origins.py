@@ -45,6 +45,10 @@ class Estimate:
     low: float
     high: float
 
+    def __add__(self, other: Estimate) -> Estimate:
+        """Return the estimate of both numbers together, as wide as if both were off alike."""
+        return Estimate(self.value + other.value, self.low + other.low, self.high + other.high)
+
 
 @dataclass(frozen=True, eq=False)
 class OriginCounts:

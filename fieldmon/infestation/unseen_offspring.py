@@ -70,8 +70,10 @@ def stays_unseen(
 
 def unseen_now(
     unseen: Unseen, active: Floats, roots: Floats, sends: Floats, shares: Floats, landing: Landing
-) -> Floats:
+) -> tuple[Floats, Floats]:
     """Return how many infestations of which nothing was seen are expected at each plant, ``(n,)``.
+
+    And how many on the plot there were on each morning, ``(t,)``.
 
     Parameters
     ----------
@@ -83,11 +85,12 @@ def unseen_now(
         As for `stays_unseen`.
     """
     mixed = landing.mixed(shares)
-    there = np.zeros(active.shape[1])
+    there, so_far = np.zeros(active.shape[1]), np.zeros(len(active))
     for morning in range(len(active)):
         new = roots[morning]
         if morning:
             senders = active[morning - 1] + there
             new = new + sends[morning - 1] * landing.landed(senders, mixed)
         there = there + unseen.chance[morning] * new * np.maximum(1.0 - there, 0.0)
-    return there
+        so_far[morning] = there.sum()
+    return there, so_far

@@ -165,3 +165,53 @@ def test_both_maps_are_pooled():
     pooled = belief.overnight(SPREAD).chance
     low, high = np.minimum(chance, alone.chance), np.maximum(chance, alone.chance)
     assert ((pooled >= low * (1.0 - 1e-9)) & (pooled <= high * (1.0 + 1e-9))).all()
+
+
+def whole_plot(finds, detects=0.95):
+    """Return what is known after days on which the whole plot was inspected, with these finds."""
+    known, plants = Ancestry.of(GRID, FLAT), np.arange(N)
+    for found in finds:
+        known, _ = after(plants, np.isin(plants, found), known, detects)
+    return known
+
+
+def test_as_many_were_infested_at_the_start_as_were_found_at_once():
+    known = Ancestry.of(GRID, FLAT)
+    assert known.infested_at_start is None
+    at_once = whole_plot([[21, 88, 173, 250, 251, 333], [], [], []])
+    number = at_once.infested_at_start
+    assert number.value == pytest.approx(6.0, abs=0.7)
+    assert number.low < 6.0 < number.high
+    # told were eight: with a quarter inspected it is between both
+    quarter, _ = after(np.arange(100), np.arange(100) % 50 == 0, known, 0.95)
+    assert 4.0 < quarter.infested_at_start.value < 10.0
+
+
+def test_finds_far_from_all_others_on_a_clean_plot_arrived_from_outside():
+    finds = [[21], *([20 * (2 * day + 1) + 7 * day % 19] for day in range(1, 9))]
+    from_outside = whole_plot(finds).arrivals
+    none = whole_plot([[21], *[[]] * 8]).arrivals
+    assert from_outside.low < from_outside.value < from_outside.high
+    assert from_outside.value > 0.4
+    assert none.value < 0.1
+    assert whole_plot(finds).arrived > 4.0
+
+
+def test_by_the_evening_it_is_known_what_was_inspected_that_day():
+    known = whole_plot([[21, 88], []])
+    assert known.so_far is known
+    plants = np.arange(N)
+    evening = known.learn(plants, plants == 22, np.full(N, 0.95))
+    morning, _ = evening.overnight(0.3)
+    assert evening.so_far.infested_at_start.value == pytest.approx(
+        morning.infested_at_start.value, rel=0.05
+    )
+    assert evening.so_far.arrivals.value == pytest.approx(morning.arrivals.value, rel=0.2)
+
+
+def test_how_many_there_were_at_the_start_stays_known_when_it_begins_anew():
+    known = whole_plot([[21, 88, 173], []])
+    later = known.anew(FLAT)
+    on, _ = after(np.arange(N), np.arange(N) % 3 == 0, later)
+    assert (on.at_start == known.at_start).all()
+    assert Ancestry.of_arrays(GRID, on.arrays).began_anew

@@ -1,10 +1,12 @@
 """What inspections tell, in words."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.learnt import Learnt, _length, learnt_from, worth_saying
 from fieldmon.infestation.origins import ANYWHERE, AT_START, AT_START_ELSEWHERE, BY_EDGE, JUMPED
 from fieldmon.infestation.pairs import PairApproximation
@@ -112,3 +114,21 @@ def test_hiding_is_learnt_where_no_pest_says_it():
     names = [[one.name for one in learnt_from(belief, 0.84)] for belief in (traced, mite)]
     assert "hiding" in names[0]
     assert "hiding" not in names[1]
+
+
+def test_what_comes_from_none_is_told_by_the_ancestry_of_finds():
+    belief = TracedPairs.of(GRID, FLAT)
+    plants = np.arange(81, dtype=np.int32)
+    evening = belief.learn(plants, np.isin(plants, [4, 40, 44, 70]), Learning())
+    told = {one.name: one for one in learnt_from(evening, 0.84)}
+    known = evening.ancestry.so_far
+    assert told["infested at the start"].value == known.infested_at_start.value
+    assert 4.0 < told["infested at the start"].value < 6.0
+    assert told["arrivals a night"].high == known.arrivals.high
+    # without one it is told by the origins of finds
+    alone = {one.name: one for one in learnt_from(replace(evening, ancestry=None), 0.84)}
+    start = alone["infested at the start"]
+    assert start.value == pytest.approx(
+        evening.counts.estimate(AT_START, float(evening.at_start[0])).value
+        + evening.counts.estimate(AT_START_ELSEWHERE, float(evening.at_start[1])).value
+    )

@@ -36,11 +36,11 @@ def test_as_many_are_unseen_as_on_simulated_plots_of_which_nothing_was_seen():
     unseen = stays_unseen(alone, np.zeros((3, N)), sends, SHARES, LANDING)
     active = np.zeros((3, N))
     active[0, 30] = 1.0
-    expected = unseen_now(unseen, active, roots, sends, SHARES, LANDING)
-    kept, there = 0, np.zeros(N)
+    expected, so_far = unseen_now(unseen, active, roots, sends, SHARES, LANDING)
+    kept, there, on = 0, np.zeros(N), np.zeros(3)
     for _ in range(12_000):
         infested = np.zeros(N, bool)
-        shown = False
+        shown, numbers = False, []
         for morning in range(3):
             new = rng.random(N) < roots[morning]
             if morning:
@@ -48,10 +48,12 @@ def test_as_many_are_unseen_as_on_simulated_plots_of_which_nothing_was_seen():
                 senders[30] += active[morning - 1, 30]
                 new |= rng.random(N) < -np.expm1(-sends[morning - 1] * (senders @ lands))
             infested |= new
+            numbers.append(infested.sum())
             seen = infested & looks[morning] & (rng.random(N) > missed)
             shown = shown or seen.any()
         if not shown:
-            kept, there = kept + 1, there + infested
+            kept, there, on = kept + 1, there + infested, on + numbers
     assert kept > 4_000
     assert expected.sum() == pytest.approx(there.sum() / kept, rel=0.05)
     assert expected == pytest.approx(there / kept, abs=0.012)
+    assert so_far == pytest.approx(on / kept, rel=0.06)

@@ -122,10 +122,11 @@ def forecast(
     >>> bool(ahead.low[-1] < ahead.expected[-1] < ahead.high[-1])
     True
     """
+    told = _told_tonight(evening, nights)
     with ThreadPoolExecutor(1) as beside:
         # but for what came from outside and its offspring
-        here = beside.submit(_numbers, _without_arrivals(evening), nights)
-        expected = _numbers(evening, nights)
+        here = beside.submit(_numbers, _without_arrivals(evening), nights, told)
+        expected = _numbers(evening, nights, told)
         inside = np.minimum(here.result(), expected)
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
     named = evening.pest is not None
@@ -142,12 +143,24 @@ def _without_arrivals(evening: Belief) -> Belief:
     return evening.without_arrivals if isinstance(evening, TracedPairs) else evening
 
 
-def _numbers(evening: Belief, nights: Sequence[Spread]) -> Floats:
+def _told_tonight(evening: Belief, nights: Sequence[Spread]) -> Floats | None:
+    """Return what the first night tells by the ancestry of finds: by what it multiplies chances.
+
+    ``(n,)``; None: nothing. So tomorrow's map is that of tomorrow's plan.
+    """
+    if not isinstance(evening, TracedPairs) or evening.ancestry is None or len(nights) == 0:
+        return None
+    told: Floats = evening.overnight(nights[0]).chance / evening.untold_night(nights[0]).chance
+    return told
+
+
+def _numbers(evening: Belief, nights: Sequence[Spread], told: Floats | None) -> Floats:
     """Return how many are expected to be infested this evening and after each night, ``(d,)``."""
     numbers, belief = [float(evening.chance.sum())], evening
-    for spread in nights:
+    for k, spread in enumerate(nights):
         if isinstance(belief, TracedPairs):
             belief = belief.untold_night(spread)
+            belief = belief.times(told) if told is not None and k == 0 else belief
         else:
             belief = belief.overnight(spread)
         numbers.append(float(belief.chance.sum()))

@@ -1,9 +1,12 @@
 """What is ahead grows as it is believed to, and its interval holds what comes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.colonies import Colonies
 from fieldmon.infestation.forecast import (
     Forecast,
@@ -37,6 +40,21 @@ def test_each_morning_is_that_of_the_chance_map():
     for expected in ahead.expected:
         assert expected == pytest.approx(belief.chance.sum())
         belief = belief.overnight(Spread(0.1))
+    assert (ahead.low <= ahead.expected).all()
+    assert (ahead.expected <= ahead.high).all()
+
+
+def test_tomorrow_is_the_morning_on_which_the_next_plan_is_made():
+    """What the night tells by the ancestry of finds is in it, for arrivals and the others."""
+    belief = TracedPairs.of(GRID, np.full(784, 0.02))
+    plants = np.arange(0, 784, 2, dtype=np.int32)
+    evening = belief.learn(plants, np.isin(plants, [30, 34, 90, 400]), Learning())
+    nights = [Spread(0.1)] * 3
+    ahead = forecast(evening, GRID, nights)
+    morning = evening.overnight(nights[0]).chance.sum()
+    assert ahead.expected[1] == pytest.approx(morning, rel=1e-6)
+    alone = forecast(replace(evening, ancestry=None), GRID, nights)
+    assert abs(alone.expected[1] - morning) > 0.1
     assert (ahead.low <= ahead.expected).all()
     assert (ahead.expected <= ahead.high).all()
 

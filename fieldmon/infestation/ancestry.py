@@ -195,7 +195,8 @@ class Ancestry:
         if np.isnan(mean):
             return None
         off = _SIGMAS * float(np.hypot(np.sqrt(variance), _START_DOUBT * mean))
-        return Estimate(mean, max(mean - off, 0.0), mean + off)
+        # what was never seen may be believed where something was found, too
+        return Estimate(*np.clip([mean, mean - off, mean + off], 0.0, len(self.grid)).tolist())
 
     @property
     def arrivals(self) -> Estimate:

@@ -187,6 +187,13 @@ def test_as_many_were_infested_at_the_start_as_were_found_at_once():
     assert 4.0 < quarter.infested_at_start.value < 10.0
 
 
+def test_no_more_were_infested_at_the_start_than_there_are_plants():
+    known = Ancestry.of(GRID, np.full(N, 0.9))
+    known, _ = after(np.arange(0, N, 3), np.ones(len(range(0, N, 3)), bool), known, 0.5)
+    number = known.infested_at_start
+    assert number.low < number.value <= number.high == N
+
+
 def test_finds_far_from_all_others_on_a_clean_plot_arrived_from_outside():
     finds = [[21], *([20 * (2 * day + 1) + 7 * day % 19] for day in range(1, 9))]
     from_outside = whole_plot(finds).arrivals

@@ -3,18 +3,18 @@
 Infestations are taken to come about as a branching process: from none on the first morning or from
 outside, and from one another by jumps. Who infested whom is drawn many times for the finds
 (`drawn_ancestry`), and of what was never seen the number is worked out (`unseen_offspring`). How
-far jumps go, how closely infested plants stood at first and how many arrive from outside is
-estimated anew each night (an EM step with Gamma priors).
+far jumps go, and how many were there at first and arrive, is estimated by that (`ancestry_rates`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import gammaincinv
 
+from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, Evidence, Rates
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
 from fieldmon.infestation.drawn_ancestry import (
     NOBODY,
@@ -24,8 +24,8 @@ from fieldmon.infestation.drawn_ancestry import (
     draw_ancestries,
 )
 from fieldmon.infestation.landing import landing_of
-from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE, Estimate
-from fieldmon.infestation.unseen_offspring import Unseen, stays_unseen, unseen_now
+from fieldmon.infestation.origins import ARRIVE, Estimate
+from fieldmon.infestation.unseen_offspring import stays_unseen, unseen_now
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,24 +35,11 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-# how many nights before the season are thought of, and what share of the infestations that come
-# from none began on the first of them (our choice: clusters mostly are of one age)
-_BEFORE, _OF_ONE_AGE = 6, 0.7
-# what an infested plant sent out in a night then, and how many finds that is worth (our choice)
-_SENT_BEFORE, _SENT_BEFORE_FINDS = 0.4, 4.0
-# how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
-# the kernels of `reach`; arrivals and the share at the start, in finds (our choice)
-_SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
-_ARRIVAL_FINDS, _START_FINDS = 0.5, 3.0
-# the share of the start that came by the edge, and how many finds that is worth (our choice)
-_BY_EDGE, _BY_EDGE_FINDS = 0.1, 2.0
 # sweeps a night, of which a quarter is left out; of many infestations there are fewer, so that no
 # more than so many pairs are looked at. In the first nights there are two rounds, as rates are
 # little known before
 _SWEEPS, _LEAST_SWEEPS, _PAIRS = 100, 4, 2e6
 _EARLY = 3
-# how often what came from none is shared out anew between the edge and elsewhere
-_SHARED_OUT = 5
 # finds older than so many days keep their origin
 _SETTLED = 10
 #: a plot of more plants does without: each night would take seconds
@@ -66,37 +53,6 @@ _LEAST_ROOM, _ROOM = 32, 0.25
 _START_DOUBT, _SIGMAS = 0.1, 1.645
 # never surer than this
 _MOST = 0.95
-
-
-class Rates(NamedTuple):
-    """What is believed of how infestations come about.
-
-    Parameters
-    ----------
-    shares
-        ``(8,)`` how much of what is sent out goes by each kernel.
-    before
-        What an infested plant sent out in a night before the season.
-    start, start_by_edge
-        How many times as many as was told came from none before the season: as the first map has
-        it, and by the edge.
-    anywhere, by_edge
-        Share of the plants infested from outside in a night: anywhere, and by the edge.
-    """
-
-    shares: Floats
-    before: float = _SENT_BEFORE
-    start: float = 1.0 - _BY_EDGE
-    start_by_edge: float = _BY_EDGE
-    anywhere: float = ARRIVE
-    by_edge: float = ARRIVE_BY_EDGE
-
-
-def _ages() -> Floats:
-    """Return how infestations that come from none are shared out over the mornings before."""
-    ages = np.full(_BEFORE + 1, (1.0 - _OF_ONE_AGE) / (_BEFORE + 1))
-    ages[0] += _OF_ONE_AGE
-    return ages
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +97,7 @@ class Ancestry:
     new: tuple[int, ...]
     taken: NDArray[np.float16]
     infestations: Infestations = field(default_factory=lambda: Infestations.room(_LEAST_ROOM))
-    rates: Rates = field(default_factory=lambda: Rates(_SHARES / _SHARES.sum()))
+    rates: Rates = field(default_factory=Rates.at_first)
     at_start: Floats = field(default_factory=lambda: np.full(2, np.nan))
     arrived: float = 0.0
     began_anew: bool = False
@@ -153,7 +109,7 @@ class Ancestry:
     def of(cls, grid: PlantGrid, chance: Floats) -> Ancestry:
         """Begin with the `chance` ``(n,)`` of each plant of a `grid`."""
         nothing = np.zeros((0, len(grid)), np.float16)
-        never = np.full(len(grid), -_BEFORE - 1)
+        never = np.full(len(grid), -BEFORE - 1)
         return cls(grid, chance, nothing, np.zeros(0), never, (), nothing)
 
     def learn(
@@ -202,7 +158,7 @@ class Ancestry:
     def arrivals(self) -> Estimate:
         """How many plants are infested from outside in a night, known by as many as were drawn."""
         nightly = (self.rates.anywhere + self.rates.by_edge) * len(self.grid)
-        known = 2.0 * _ARRIVAL_FINDS + self.arrived
+        known = 2.0 * ARRIVAL_FINDS + self.arrived
         low, high = gammaincinv(known, [0.05, 0.95]) / known * nightly
         return Estimate(nightly, float(low), float(high))
 
@@ -268,7 +224,7 @@ class Ancestry:
         """Return what such arrays have kept; raise `ValueError` if they are none of its plants."""
         kept = dict(arrays)
         plant, begins, ends, found, parent, children, there, earliest = kept.pop("infestations")
-        shares, others = np.split(kept.pop("rates"), [len(_SHARES)])
+        shares, others = np.split(kept.pop("rates"), [len(SHARES)])
         arrived, anew = kept.pop("since")
         n = len(grid)
         if any(kept[name].shape[-1:] != (n,) for name in ("start", "missed", "last_find", "taken")):
@@ -286,7 +242,7 @@ class Ancestry:
 def _with_finds(of: Ancestry) -> Ancestry:
     """Return the same with the last day's finds among the infestations."""
     day = len(of.sends) - 1
-    morning = _BEFORE + day
+    morning = BEFORE + day
     last_find = of.last_find.copy()
     used = int(np.count_nonzero(of.infestations.there)) + len(of.new)
     spare = max(_LEAST_ROOM, int(_ROOM * used))
@@ -297,9 +253,9 @@ def _with_finds(of: Ancestry) -> Ancestry:
         place = at[plant]
         if place == NOBODY:
             place = free[k]
-            earliest = max(0, _BEFORE + int(last_find[plant]) + 1)
+            earliest = max(0, BEFORE + int(last_find[plant]) + 1)
             made.plant[place], made.earliest[place] = plant, earliest
-            made.begins[place] = min(max(earliest, _BEFORE), morning)
+            made.begins[place] = min(max(earliest, BEFORE), morning)
             made.parent[place], made.children[place] = NOBODY, 0
             made.there[place] = True
         made.found[place], made.ends[place] = True, morning
@@ -316,129 +272,47 @@ def _drawn(
     Return also how likely each plant is infested as the ancestor of a find, and how many
     infestations of which nothing was seen are expected there.
     """
-    t, n, rates = _BEFORE + len(of.sends) + 1, len(of.grid), of.rates
-    sends = np.concatenate([np.full(_BEFORE, rates.before), of.sends, [0.0]])
+    t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
+    sends = np.concatenate([np.full(BEFORE, rates.before), of.sends, [0.0]])
     taken = np.zeros((t, n))
     taken[: len(of.taken)] = of.taken
     overlooked = np.zeros((t, n))
     missed = of.missed[::-1].astype(np.float64)
-    overlooked[_BEFORE:-1] = np.cumsum(missed, axis=0)[::-1]
-    overlooked[:_BEFORE] = overlooked[_BEFORE]
-    since = np.arange(t)[:, None] <= of.last_find + _BEFORE
+    overlooked[BEFORE:-1] = np.cumsum(missed, axis=0)[::-1]
+    overlooked[:BEFORE] = overlooked[BEFORE]
+    since = np.arange(t)[:, None] <= of.last_find + BEFORE
     alone = np.where(since, -np.inf, overlooked)
     unseen = stays_unseen(alone, taken, sends, rates.shares, landing)
     kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
-    so_far = np.cumsum(kernel) / kernel.sum()
-    roots = _roots(of, landing, t)
-    lasting = np.exp(overlooked + unseen.offspring)
-    settled = t - 1 - _SETTLED
-    weights = Weights(landing.cells, kernel, so_far, sends, roots, _BEFORE, settled, lasting)
+    roots = rates.roots(of.start, landing.at_edge, t)
+    weights = Weights(
+        landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), sends, roots, BEFORE,
+        t - 1 - _SETTLED, np.exp(overlooked + unseen.offspring),
+    )  # fmt: skip
     infestations = of.infestations.copied(0)
     drawn = DrawnSums.none(t, n, len(kernel))
     at = _places(infestations, n)
-    last_find = of.last_find + _BEFORE
-    kept = draw_ancestries(infestations, at, weights, last_find, draws, drawn)
+    kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
     for sums in drawn:
         np.divide(sums, kept, out=sums)
     there = infestations.there & infestations.found
     taken = drawn.active.copy()
     taken[infestations.ends[there], infestations.plant[there]] = 1.0
-    made = replace(of, infestations=infestations, taken=taken.astype(np.float16))
-    learnt = _rates(made, landing, (unseen, taken), (weights, arrive), drawn)
-    expected, so_far = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
-    at_start = made.at_start
-    if not of.began_anew:
-        known, square = drawn.at_start
+    night = Evidence(of.start, sends, kernel, 1.0 - unseen.chance, taken, drawn, arrive)
+    expected, numbers = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
+    known, square = drawn.at_start
+    made = replace(
+        of,
+        infestations=infestations,
+        taken=taken.astype(np.float16),
+        rates=rates.after(night, landing),
         # those unseen vary by chance
-        at_start = np.array([known, square - known**2]) + so_far[_BEFORE]
-    arrived = float(drawn.roots[_BEFORE + 1 :].sum())
-    return (
-        replace(made, rates=learnt, at_start=at_start, arrived=arrived),
-        drawn.hidden,
-        expected,
+        at_start=of.at_start
+        if of.began_anew
+        else np.array([known, square - known**2]) + numbers[BEFORE],
+        arrived=float(drawn.roots[BEFORE + 1 :].sum()),
     )
-
-
-def _roots(of: Ancestry, landing: Landing, t: int) -> Floats:
-    """Return how many infestations come to each plant from none, ``(t, n)``."""
-    roots = np.empty((t, len(of.grid)))
-    at_start, later = (sum(both) for both in _from_none(of, landing))
-    roots[: _BEFORE + 1] = _ages()[:, None] * at_start
-    roots[_BEFORE + 1 :] = later
-    return roots
-
-
-def _from_none(of: Ancestry, landing: Landing) -> tuple[tuple[Floats, Floats], ...]:
-    """Return how many come from none before the season and in each of its nights, ``(n,)`` each.
-
-    Of both first those that come as they were told or anywhere, then those that come by the edge.
-    """
-    rates, told = of.rates, _told(of.start, of.rates.before)
-    return (
-        (told * rates.start, told.mean() * rates.start_by_edge * landing.at_edge),
-        (np.full(len(told), rates.anywhere), rates.by_edge * landing.at_edge),
-    )
-
-
-def _told(start: Floats, before: float) -> Floats:
-    """How many came from none before the season, as the first map has it, ``(n,)``.
-
-    By the first morning each had become as many as it sent out, `before` in a night.
-    """
-    nights = np.arange(_BEFORE, -1, -1)
-    told: Floats = start / float(_ages() @ (1.0 + before) ** nights)
-    return told
-
-
-def _rates(
-    of: Ancestry,
-    landing: Landing,
-    unseen: tuple[Unseen, Floats],
-    night: tuple[Weights, float],
-    drawn: DrawnSums,
-) -> Rates:
-    """Return the rates by what ancestries have, over what would have been seen of it."""
-    rates, (weights, arrive) = of.rates, night
-    seen = 1.0 - unseen[0].chance
-    meets = seen * (1.0 - unseen[1])
-    sent = weights.sends[:, None] * drawn.active
-    all_jumps = drawn.jumps.sum(axis=0) / np.maximum(weights.kernel, LEAST_CHANCE)
-    jumps = rates.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
-    shares = (_SHARES + jumps) / (_SHARES.sum() + landing.met(sent[:-1], meets[1:]))
-    early = landing.met(sent[:_BEFORE], meets[1 : _BEFORE + 1]) @ rates.shares / rates.before
-    before = float(
-        (_SENT_BEFORE_FINDS + drawn.jumps[0].sum()) / (_SENT_BEFORE_FINDS / _SENT_BEFORE + early)
-    )
-    # as many as they came to be by what is known now of how they grew
-    told = _told(of.start, before)
-    ages, first = _ages(), slice(0, _BEFORE + 1)
-    told_seen = float((ages @ seen[first]) @ told)
-    edge_seen = float((ages @ seen[first]) @ landing.at_edge * told.mean())
-    later = seen[_BEFORE + 1 :].sum(axis=0)
-    roots = drawn.roots[first].sum(axis=0), drawn.roots[_BEFORE + 1 :].sum(axis=0)
-    learnt = rates._replace(shares=shares / shares.sum(), before=before)
-    for _ in range(_SHARED_OUT):
-        (at_start, at_start_by_edge), (arrived, arrived_by_edge) = (
-            _shared(each, *from_none)
-            for each, from_none in zip(
-                roots, _from_none(replace(of, rates=learnt), landing), strict=True
-            )
-        )
-        learnt = learnt._replace(
-            start=(_START_FINDS * (1.0 - _BY_EDGE) + at_start) / (_START_FINDS + told_seen),
-            start_by_edge=(_BY_EDGE_FINDS * _BY_EDGE + at_start_by_edge)
-            / (_BY_EDGE_FINDS + edge_seen),
-            anywhere=(_ARRIVAL_FINDS + arrived) / (_ARRIVAL_FINDS / arrive + later.sum()),
-            by_edge=(_ARRIVAL_FINDS + arrived_by_edge)
-            / (_ARRIVAL_FINDS / ARRIVE_BY_EDGE + later @ landing.at_edge),
-        )
-    return learnt
-
-
-def _shared(drawn: Floats, others: Floats, by_edge: Floats) -> tuple[float, float]:
-    """Share out those `drawn` ``(n,)`` at each plant as they are expected; return both sums."""
-    from_edge = float(drawn @ (by_edge / (others + by_edge)))
-    return float(drawn.sum()) - from_edge, from_edge
+    return made, drawn.hidden, expected
 
 
 def _places(infestations: Infestations, n: int) -> NDArray[np.int64]:

@@ -1,0 +1,187 @@
+"""How often infestations come about, and how far they go, by the ancestries drawn for the finds.
+
+Rates are estimated anew each night: what the ancestries have, over what would have been seen of it
+(an EM step: Dempster, Laird & Rubin 1977; with Gamma priors, which count as so many finds).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.infestation.chance_bounds import LEAST_CHANCE
+from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.drawn_ancestry import DrawnSums
+    from fieldmon.infestation.landing import Landing
+
+    Floats = NDArray[np.float64]
+
+#: how many nights before the season are thought of
+BEFORE = 6
+# what share of the infestations that come from none began on the first of them (our choice:
+# clusters mostly are of one age)
+_OF_ONE_AGE = 0.7
+# what an infested plant sent out in a night then, and how many finds that is worth (our choice)
+_SENT_BEFORE, _SENT_BEFORE_FINDS = 0.4, 4.0
+#: how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
+#: the kernels of `reach` (our choice)
+SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
+#: how many finds the first guess of what arrives is worth (our choice)
+ARRIVAL_FINDS = 0.5
+# the same of the share at the start (our choice)
+_START_FINDS = 3.0
+# the share of the start that came by the edge, and how many finds that is worth (our choice)
+_BY_EDGE, _BY_EDGE_FINDS = 0.1, 2.0
+# how often what came from none is shared out anew between the edge and elsewhere
+_SHARED_OUT = 5
+# how infestations that come from none are shared out over the mornings before
+_AGES = np.full(BEFORE + 1, (1.0 - _OF_ONE_AGE) / (BEFORE + 1))
+_AGES[0] += _OF_ONE_AGE
+_FIRST, _LATER = slice(0, BEFORE + 1), slice(BEFORE + 1, None)
+
+
+class Evidence(NamedTuple):
+    """What the ancestries of a night have, and what would have been seen of it, on t mornings.
+
+    Parameters
+    ----------
+    start
+        ``(n,)`` the chances of the first morning.
+    sends
+        ``(t,)`` what an infested plant sends out in a night.
+    kernel
+        ``(d, d)`` where jumps were taken to land.
+    seen
+        ``(t, n)`` how likely something is seen of an infestation that begins then and there.
+    taken
+        ``(t, n)`` how likely the plant is infested already.
+    drawn
+        Means over the ancestries.
+    arrive
+        The share of all plants that is told to be infested from outside in a night.
+    """
+
+    start: Floats
+    sends: Floats
+    kernel: Floats
+    seen: Floats
+    taken: Floats
+    drawn: DrawnSums
+    arrive: float
+
+    def __repr__(self) -> str:
+        return f"<Evidence of {len(self.sends)} mornings>"
+
+
+class Rates(NamedTuple):
+    """What is believed of how infestations come about.
+
+    Parameters
+    ----------
+    shares
+        ``(8,)`` how much of what is sent out goes by each kernel.
+    before
+        What an infested plant sent out in a night before the season.
+    start, start_by_edge
+        How many times as many as was told came from none before the season: as the first map has
+        it, and by the edge.
+    anywhere, by_edge
+        Share of the plants infested from outside in a night: anywhere, and by the edge.
+    """
+
+    shares: Floats
+    before: float = _SENT_BEFORE
+    start: float = 1.0 - _BY_EDGE
+    start_by_edge: float = _BY_EDGE
+    anywhere: float = ARRIVE
+    by_edge: float = ARRIVE_BY_EDGE
+
+    @classmethod
+    def at_first(cls) -> Rates:
+        """Return what is believed before anything was found."""
+        return cls(SHARES / SHARES.sum())
+
+    def roots(self, start: Floats, at_edge: Floats, mornings: int) -> Floats:
+        """Return how many infestations come to each plant from none, ``(mornings, n)``.
+
+        Parameters
+        ----------
+        start
+            ``(n,)`` the chances of the first morning.
+        at_edge
+            ``(n,)`` as `KernelsOnCells` has it.
+        """
+        roots = np.empty((mornings, len(start)))
+        at_start, later = (sum(both) for both in self._from_none(start, at_edge))
+        roots[_FIRST] = _AGES[:, None] * at_start
+        roots[_LATER] = later
+        return roots
+
+    def after(self, night: Evidence, landing: Landing) -> Rates:
+        """Return the rates by what ancestries have, over what would have been seen of it."""
+        return self.with_jumps(night, landing).with_roots(night, landing.at_edge)
+
+    def _from_none(self, start: Floats, at_edge: Floats) -> tuple[tuple[Floats, Floats], ...]:
+        """Return how many come from none before the season and in each of its nights, ``(n,)``.
+
+        Of both first those that come as they were told or anywhere, then those by the edge.
+        """
+        told = self._told(start)
+        return (
+            (told * self.start, told.mean() * self.start_by_edge * at_edge),
+            (np.full(len(told), self.anywhere), self.by_edge * at_edge),
+        )
+
+    def _told(self, start: Floats) -> Floats:
+        """How many came from none before the season, as the first map has it, ``(n,)``.
+
+        By the first morning each had become as many as it sent out.
+        """
+        nights = np.arange(BEFORE, -1, -1)
+        told: Floats = start / float(_AGES @ (1.0 + self.before) ** nights)
+        return told
+
+    def with_jumps(self, night: Evidence, landing: Landing) -> Rates:
+        """Return the same with the jumps that were drawn."""
+        drawn = night.drawn
+        meets = night.seen * (1.0 - night.taken)
+        sent = night.sends[:, None] * drawn.active
+        all_jumps = drawn.jumps.sum(axis=0) / np.maximum(night.kernel, LEAST_CHANCE)
+        jumps = self.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
+        shares = (SHARES + jumps) / (SHARES.sum() + landing.met(sent[:-1], meets[1:]))
+        early = landing.met(sent[:BEFORE], meets[1 : BEFORE + 1]) @ self.shares / self.before
+        before = _SENT_BEFORE_FINDS + float(drawn.jumps[0].sum())
+        before /= _SENT_BEFORE_FINDS / _SENT_BEFORE + float(early)
+        return self._replace(shares=shares / shares.sum(), before=before)
+
+    def with_roots(self, night: Evidence, at_edge: Floats) -> Rates:
+        """Return the same with those that were drawn as coming from none."""
+        told = self._told(night.start)
+        first, later = _AGES @ night.seen[_FIRST], night.seen[_LATER].sum(axis=0)
+        seen = float(first @ told), float(first @ at_edge * told.mean())
+        nightly = float(later.sum()), float(later @ at_edge)
+        drawn = [night.drawn.roots[mornings].sum(axis=0) for mornings in (_FIRST, _LATER)]
+        rates = self
+        for _ in range(_SHARED_OUT):
+            expected = rates._from_none(night.start, at_edge)
+            (start, start_by_edge), (anywhere, by_edge) = map(_shared_out, drawn, expected)
+            rates = rates._replace(
+                start=(_START_FINDS * (1.0 - _BY_EDGE) + start) / (_START_FINDS + seen[0]),
+                start_by_edge=(_BY_EDGE_FINDS * _BY_EDGE + start_by_edge)
+                / (_BY_EDGE_FINDS + seen[1]),
+                anywhere=(ARRIVAL_FINDS + anywhere) / (ARRIVAL_FINDS / night.arrive + nightly[0]),
+                by_edge=(ARRIVAL_FINDS + by_edge) / (ARRIVAL_FINDS / ARRIVE_BY_EDGE + nightly[1]),
+            )
+        return rates
+
+
+def _shared_out(drawn: Floats, expected: tuple[Floats, Floats]) -> tuple[float, float]:
+    """Share out those `drawn` ``(n,)`` between the edge and elsewhere; return both numbers."""
+    others, by_edge = expected
+    from_edge = float(drawn @ (by_edge / (others + by_edge)))
+    return float(drawn.sum()) - from_edge, from_edge

@@ -1,0 +1,103 @@
+"""How often infestations come about, by the ancestries drawn: against rates that are known."""
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.ancestry_rates import BEFORE, SHARES, Evidence, Rates
+from fieldmon.infestation.drawn_ancestry import DrawnSums
+from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.origins import ARRIVE
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(40, 40)
+N = len(GRID)
+LANDING = landing_of(GRID)
+FLAT = np.full(N, 0.02)
+T, D = BEFORE + 11, LANDING.kernels.shape[1]
+SENDS = np.r_[np.full(BEFORE, 0.4), np.full(10, 0.3), 0.0]
+KERNEL = np.einsum("k,kij->ij", SHARES / SHARES.sum(), LANDING.kernels)
+
+
+def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL):
+    """Return what ancestries have of which so much would have been seen, everywhere alike."""
+    nothing = np.zeros((T, N))
+    return Evidence(start, SENDS, kernel, nothing + seen, nothing, drawn, ARRIVE)
+
+
+def nothing_drawn():
+    return DrawnSums.none(T, N, D)
+
+
+def test_where_nothing_could_be_seen_everything_stays_as_it_was_believed():
+    first = Rates.at_first()
+    after = first.after(evidence(nothing_drawn(), seen=0.0), LANDING)
+    assert after.shares == pytest.approx(first.shares)
+    assert after[1:] == pytest.approx(first[1:])
+    assert repr(evidence(nothing_drawn())) == f"<Evidence of {T} mornings>"
+
+
+def test_as_many_come_from_none_as_was_told_grow_to_what_was_told():
+    """All of it seen: by the first morning they and their offspring are the chances' sum."""
+    rates = Rates.at_first()
+    roots = rates.roots(FLAT, LANDING.at_edge, T)
+    there = 0.0
+    for morning in range(BEFORE + 1):
+        there = there * (1.0 + rates.before) + roots[morning].sum()
+    assert there == pytest.approx(FLAT.sum(), rel=1e-6)
+    assert roots[BEFORE + 1].sum() == pytest.approx(N * (ARRIVE + rates.by_edge))
+
+
+@pytest.mark.parametrize("times", [0.3, 1.0, 4.0])
+def test_the_number_at_the_start_follows_what_was_drawn(times):
+    rates, drawn = Rates.at_first(), nothing_drawn()
+    drawn.roots[:] = rates.roots(FLAT, LANDING.at_edge, T) * times
+    drawn.roots[BEFORE + 1 :] = 0.0
+    after = rates.after(evidence(drawn), LANDING)
+    told = drawn.roots.sum() / times
+    # three finds, and two by the edge, are what was believed
+    assert after.start + after.start_by_edge == pytest.approx(
+        (told * times + 3.0) / (told + 3.0), rel=0.05
+    )
+    assert after.anywhere < 0.2 * rates.anywhere
+
+
+def test_growth_and_the_number_at_the_start_are_known_together():
+    """Few jumps before the season: there were more roots then for the same first morning."""
+    rates, drawn = Rates.at_first(), nothing_drawn()
+    drawn.active[:BEFORE, :300] = 1.0
+    drawn.roots[0, :300] = 0.02
+    drawn.jumps[0] = KERNEL * 20.0
+    after = rates.after(evidence(drawn), LANDING)
+    assert after.before < 0.1
+    # as many roots as become all that was told, at this growth; three finds are what was believed
+    told = FLAT.sum() / (1.0 + after.before) ** (0.85 * BEFORE)
+    roots = after.roots(FLAT, LANDING.at_edge, T)[: BEFORE + 1].sum()
+    assert roots == pytest.approx(told * (6.0 + 3.0) / (told + 3.0), rel=0.05)
+
+
+def test_what_stands_by_the_edge_came_over_it():
+    rates, at_edge = Rates.at_first(), LANDING.at_edge
+    for night in (0, BEFORE + 3):
+        drawn = nothing_drawn()
+        drawn.roots[night] = 30.0 * at_edge**2 / (at_edge**2).sum()
+        edge = rates.after(evidence(drawn), LANDING)
+        drawn.roots[night] = 30.0 / N
+        inside = rates.after(evidence(drawn), LANDING)
+        k = 3 if night == 0 else 5
+        assert edge[k] > 3.0 * edge[k - 1]
+        assert inside[k] < edge[k] / 3.0
+
+
+@pytest.mark.parametrize("k", range(8))
+def test_shares_are_those_of_the_jumps_that_were_drawn(k):
+    """Jumps of one kernel of ten times as many as are sent come mostly to its share."""
+    rates, drawn = Rates.at_first(), nothing_drawn()
+    drawn.active[BEFORE:, 820] = 1.0
+    drawn.jumps[1] = LANDING.kernels[k] * 30.0
+    kernel = KERNEL
+    for _ in range(30):
+        rates = rates.after(evidence(drawn, kernel=kernel), LANDING)
+        kernel = np.einsum("k,kij->ij", rates.shares, LANDING.kernels)
+    assert rates.shares.sum() == pytest.approx(1.0)
+    assert rates.shares.argmax() == k
+    assert rates.shares[k] > 0.5

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import gammaincinv
 
-from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, Evidence, Rates
+from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, DrawnEvidence, Rates
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
 from fieldmon.infestation.drawn_ancestry import (
     NOBODY,
@@ -298,7 +298,7 @@ def _drawn(
     there = infestations.there & infestations.found
     taken = drawn.active.copy()
     taken[infestations.ends[there], infestations.plant[there]] = 1.0
-    night = Evidence(of.start, sends, kernel, 1.0 - unseen.chance, taken, drawn, arrive)
+    night = DrawnEvidence(of.start, sends, kernel, 1.0 - unseen.chance, taken, drawn, arrive)
     expected, numbers = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
     known, square = drawn.at_start
     made = replace(

@@ -45,7 +45,7 @@ _AGES[0] += _OF_ONE_AGE
 _FIRST, _LATER = slice(0, BEFORE + 1), slice(BEFORE + 1, None)
 
 
-class Evidence(NamedTuple):
+class DrawnEvidence(NamedTuple):
     """What the ancestries of a night have, and what would have been seen of it, on t mornings.
 
     Parameters
@@ -122,7 +122,7 @@ class Rates(NamedTuple):
         roots[_LATER] = later
         return roots
 
-    def after(self, night: Evidence, landing: Landing) -> Rates:
+    def after(self, night: DrawnEvidence, landing: Landing) -> Rates:
         """Return the rates by what ancestries have, over what would have been seen of it."""
         return self.with_jumps(night, landing).with_roots(night, landing.at_edge)
 
@@ -146,7 +146,7 @@ class Rates(NamedTuple):
         told: Floats = start / float(_AGES @ (1.0 + self.before) ** nights)
         return told
 
-    def with_jumps(self, night: Evidence, landing: Landing) -> Rates:
+    def with_jumps(self, night: DrawnEvidence, landing: Landing) -> Rates:
         """Return the same with the jumps that were drawn."""
         drawn = night.drawn
         meets = night.seen * (1.0 - night.taken)
@@ -159,7 +159,7 @@ class Rates(NamedTuple):
         before /= _SENT_BEFORE_FINDS / _SENT_BEFORE + float(early)
         return self._replace(shares=shares / shares.sum(), before=before)
 
-    def with_roots(self, night: Evidence, at_edge: Floats) -> Rates:
+    def with_roots(self, night: DrawnEvidence, at_edge: Floats) -> Rates:
         """Return the same with those that were drawn as coming from none."""
         told = self._told(night.start)
         first, later = _AGES @ night.seen[_FIRST], night.seen[_LATER].sum(axis=0)

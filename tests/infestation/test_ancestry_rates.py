@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.ancestry_rates import BEFORE, SHARES, Evidence, Rates
+from fieldmon.infestation.ancestry_rates import BEFORE, SHARES, DrawnEvidence, Rates
 from fieldmon.infestation.drawn_ancestry import DrawnSums
 from fieldmon.infestation.landing import landing_of
 from fieldmon.infestation.origins import ARRIVE
@@ -21,7 +21,7 @@ KERNEL = np.einsum("k,kij->ij", SHARES / SHARES.sum(), LANDING.kernels)
 def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL):
     """Return what ancestries have of which so much would have been seen, everywhere alike."""
     nothing = np.zeros((T, N))
-    return Evidence(start, SENDS, kernel, nothing + seen, nothing, drawn, ARRIVE)
+    return DrawnEvidence(start, SENDS, kernel, nothing + seen, nothing, drawn, ARRIVE)
 
 
 def nothing_drawn():

@@ -181,7 +181,7 @@ def _on_maps(folder: Path, output: Path) -> None:
         of_plot = table([plot])
         for row in of_plot:
             named = f"{row.name} (neighbours {row.correlation:.2f})"
-            found = _columns(row.per_look, "{:6.2f}")
+            found = _columns(row.per_inspection, "{:6.2f}")
             typer.echo(f"{named:44} {row.who:9} {found}  {_columns(row.per_hour, '{:6.1f}')}")
         rows += of_plot
     for sentence in sentences(rows):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import date
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,7 +41,7 @@ class PlantMap:
     name
         What it is called.
     dates
-        ``(d,)`` as the file writes them, in order.
+        ``(d,)`` as the file writes them, the earliest first.
     infested
         ``(d, n)`` plants row by row.
     n_rows, n_plants
@@ -83,7 +84,7 @@ class MapColumns:
     row_m, plant_m
         Distances between rows and between plants.
     date, part
-        The date or time, and which of several plots; empty: the file has one.
+        When it was (a number, or 2026-11-18), and which of several plots; empty: the file has one.
     """
 
     row: str
@@ -206,7 +207,7 @@ def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
             f"{lines[when, which]}. Write NA as the state of a plant that nobody knows of."
         )
     infested[at] = [_is_infested(value, columns.state, file) for value in _state(layer, columns)]
-    order = sorted(range(len(dates)), key=lambda k: (len(dates[k]), dates[k]))
+    order = _in_order(dates, file, columns.date)
     return PlantMap(
         name=name,
         dates=tuple(str(dates[k]) for k in order),
@@ -216,6 +217,20 @@ def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
         row_m=columns.row_m,
         plant_m=columns.plant_m,
     )
+
+
+def _in_order(dates: NDArray[np.str_], file: str, column: str) -> list[int]:
+    """Return which of the dates comes when: numbers as years or days, or dates of a calendar."""
+    times = [number(each) for each in dates.tolist()]
+    if not np.isfinite(times).all() and len(dates) > 1:
+        try:
+            times = [float(date.fromisoformat(each).toordinal()) for each in dates.tolist()]
+        except ValueError:
+            raise FileProblem(
+                f"The column {column} of {file} must tell the order of its maps by numbers (as "
+                f"years, or days) or dates as 2026-11-18, but it holds {', '.join(dates[:3])}."
+            ) from None
+    return sorted(range(len(times)), key=times.__getitem__)
 
 
 def _state(layer: Layer, columns: MapColumns) -> list[str]:

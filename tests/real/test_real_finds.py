@@ -9,7 +9,7 @@ def test_on_mapped_plots_forty_percent_looks_find_about_what_dynamics_do_or_more
     plots = plots_in(shared / "plant_maps")
     rows = {(row.name, row.who): row for row in table(plots)}
     names = [each.name for each in plots]
-    look = {both: row.per_look[-1] for both, row in rows.items()}
+    look = {both: row.per_inspection[-1] for both, row in rows.items()}
     hour = {both: row.per_hour[-1] for both, row in rows.items() if both[1] != "random"}
     assert len(names) == 9
     lead = np.array([look[name, "adaptive"] - look[name, "dynamic"] for name in names])

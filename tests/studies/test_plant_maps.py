@@ -39,6 +39,24 @@ def test_dates_that_are_numbers_are_in_their_order(tmp_path):
     assert made.infested[:, 0].tolist() == [False, False, True]
 
 
+def test_dates_of_a_calendar_are_in_their_order(tmp_path):
+    rows = ["1,1,2026-10-01,1", "1,1,2025-12-31,0", "1,1,2026-09-30,0"]
+    (made,) = read_plant_map(write(tmp_path / "a.csv", "row,plant,year,state", *rows), DATED)
+    assert made.dates == ("2025-12-31", "2026-09-30", "2026-10-01")
+    assert made.infested[:, 0].tolist() == [False, False, True]
+
+
+@pytest.mark.parametrize("first", ["01.10.2026", "May", "9/1", "2026-13-01"])
+def test_dates_whose_order_nobody_knows_are_refused(tmp_path, first):
+    rows = [f"1,1,{first},1", "1,1,30.09.2026,0"]
+    path = write(tmp_path / "a.csv", "row,plant,year,state", *rows)
+    with pytest.raises(FileProblem, match=r"must tell the order of its maps by numbers .* holds"):
+        read_plant_map(path, DATED)
+    # of a single one there is no order
+    single = write(tmp_path / "b.csv", "row,plant,year,state", rows[0])
+    assert read_plant_map(single, DATED)[0].dates == (first,)
+
+
 def test_several_plots_in_a_file_are_several_maps(tmp_path):
     columns = MapColumns("row", "plant", "state", 1.0, 1.0, part="field")
     rows = ["F1\t1\t1\tY", "F1\t1\t2\tN", "F2\t1\t1\tN"]

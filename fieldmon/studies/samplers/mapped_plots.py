@@ -1,7 +1,9 @@
-"""Samplers on mapped plots: what the first 5, 10, 20 and 40 % looks find, per look and per hour."""
+"""Samplers on mapped plots: finds per inspection and per hour, after 5, 10, 20 and 40 %."""
 
 from __future__ import annotations
 
+import csv
+import io
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     from fieldmon.studies.plant_maps import PlantMap
 
 SHARES = (0.05, 0.10, 0.20, 0.40)
-# what is believed before the first look, of every map (our choice; nothing is known of it)
+# what is believed before the first inspection, of every map (our choice; nothing is known of it)
 _FLAT = 0.1
 # a day lasts for a twentieth of the plants, with some time to drive
 _DAY, _DRIVING = 0.05, 1.3
@@ -42,13 +44,13 @@ _EVEN = (0.95, 1.05)
 _FEWEST = 20
 
 
+#: the public maps that are inspected, see `plant_maps.PUBLIC_MAPS`
 FILES = (
     "citrus_ctv_IVI3and4.csv",
     "hop_viruses_HpLV.csv",
     "gumpertz.pepper.txt",
     "beall.webworms.txt",
 )
-"""The public maps that are inspected, see `plant_maps.PUBLIC_MAPS`."""
 
 
 class DatedMap(NamedTuple):
@@ -138,14 +140,14 @@ class MapRow(NamedTuple):
         The map, and how much alike its neighbours are.
     who
         The sampler.
-    per_look, per_hour
-        ``(4,)`` finds at `SHARES`; of random looks the share expected, and no hours.
+    per_inspection, per_hour
+        ``(4,)`` finds at `SHARES`; of random inspections the share expected, and no hours.
     """
 
     name: str
     correlation: float
     who: str
-    per_look: list[float]
+    per_inspection: list[float]
     per_hour: list[float]
 
 
@@ -159,12 +161,15 @@ def table(plots: list[DatedMap]) -> list[MapRow]:
     }
     rows = []
     for each in plots:
-        alike, looks = correlation(each), [round(share * len(each.infested)) for share in SHARES]
+        alike, inspected = (
+            correlation(each),
+            [round(share * len(each.infested)) for share in SHARES],
+        )
         for who, sampler in samplers.items():
             made = [found_at(turned, sampler) for turned in _turned(each)]
             finds, hours = (np.mean(values, axis=0) for values in zip(*made, strict=True))
-            per_look = [float(f / k) for f, k in zip(finds, looks, strict=True)]
-            rows.append(MapRow(each.name, alike, who, per_look, (finds / hours).tolist()))
+            per_inspection = [float(f / k) for f, k in zip(finds, inspected, strict=True)]
+            rows.append(MapRow(each.name, alike, who, per_inspection, (finds / hours).tolist()))
         expected = [float(each.infested.mean())] * len(SHARES)
         rows.append(MapRow(each.name, alike, "random", expected, []))
     return rows
@@ -195,14 +200,18 @@ def sentences(rows: Sequence[MapRow]) -> list[str]:
 
 def table_csv(rows: list[MapRow]) -> str:
     """Return such a table as CSV."""
-    columns = [f"finds_per_{what}_at_{share:.0%}" for what in ("look", "hour") for share in SHARES]
-    head = ",".join(["map", "neighbour_correlation", "sampler", *columns])
-    lines = [head.replace("%", "_pct")]
+    columns = [
+        f"finds_per_{what}_at_{share:.0%}" for what in ("inspection", "hour") for share in SHARES
+    ]
+    text = io.StringIO()
+    lines = csv.writer(text, lineterminator="\n")
+    head = ["map", "neighbour_correlation", "sampler", *columns]
+    lines.writerow([column.replace("%", "_pct") for column in head])
     for row in rows:
         hours = [f"{v:.4f}" for v in row.per_hour] or [""] * len(SHARES)
-        values = [*(f"{v:.4f}" for v in row.per_look), *hours]
-        lines.append(",".join([row.name, f"{row.correlation:.3f}", row.who, *values]))
-    return "\n".join([*lines, ""])
+        values = [*(f"{v:.4f}" for v in row.per_inspection), *hours]
+        lines.writerow([row.name, f"{row.correlation:.3f}", row.who, *values])
+    return text.getvalue()
 
 
 def _turned(each: DatedMap) -> list[DatedMap]:

@@ -1,5 +1,7 @@
 """Samplers on mapped plots whose truth is known."""
 
+import csv
+
 import numpy as np
 import pytest
 
@@ -36,22 +38,22 @@ def test_naive_finds_what_stands_in_its_first_rows():
     assert (np.array(hours) < 1.2 * stops_h).all()
 
 
-def test_where_all_are_infested_every_look_finds_one():
+def test_where_all_are_infested_every_inspection_finds_one():
     rows = table([mapped(*range(200))])
     assert [row.who for row in rows] == ["adaptive", "dynamic", "tuned", "naive", "random"]
-    assert all(row.per_look == [1.0] * len(SHARES) for row in rows)
+    assert all(row.per_inspection == [1.0] * len(SHARES) for row in rows)
 
 
 def test_who_begins_at_every_corner_meets_a_corner_as_often_as_there_are_corners():
     corner = [row * 20 + k for row in range(2) for k in range(20)]
     naive = next(row for row in table([mapped(*corner)]) if row.who == "naive")
-    assert naive.per_look[0] == pytest.approx(0.5)
+    assert naive.per_inspection[0] == pytest.approx(0.5)
 
 
 def test_adaptive_stays_beside_what_it_found():
     block = [row * 20 + k for row in range(3, 7) for k in range(5, 12)]
     found = {row.who: row for row in table([mapped(*block)])}
-    assert found["adaptive"].per_look[-1] > 1.5 * found["random"].per_look[-1]
+    assert found["adaptive"].per_inspection[-1] > 1.5 * found["random"].per_inspection[-1]
     assert found["adaptive"].per_hour[-1] > found["naive"].per_hour[-1]
 
 
@@ -130,3 +132,11 @@ def test_the_table_is_csv():
     assert head.split(",") == ["map", "neighbour_correlation", "sampler", *columns]
     assert line == "a map,0.100,naive,0.1000,0.2500,0.3000,0.3333,1.0000,2.0000,3.0000,4.5000"
     assert random == "a map,0.100,random,0.1000,0.2500,0.3000,0.3333,,,,"
+
+
+def test_a_name_with_a_comma_stays_one_column():
+    rows = [MapRow("north, old", 0.2, "adaptive", [0.1] * 4, [1.0] * 4)]
+    head, line = csv.reader(table_csv(rows).splitlines())
+    assert line[:3] == ["north, old", "0.200", "adaptive"]
+    assert head[3] == "finds_per_inspection_at_5_pct"
+    assert len(head) == len(line)

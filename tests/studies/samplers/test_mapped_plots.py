@@ -128,7 +128,11 @@ def test_the_table_is_csv():
         MapRow("a map", 0.1, "random", shares, []),
     ]
     head, line, random = table_csv(rows).splitlines()
-    columns = [f"finds_per_{what}_at_{s}_pct" for what in ("look", "hour") for s in (5, 10, 20, 40)]
+    columns = [
+        f"finds_per_{what}_at_{share}_pct"
+        for what in ("inspection", "hour")
+        for share in (5, 10, 20, 40)
+    ]
     assert head.split(",") == ["map", "neighbour_correlation", "sampler", *columns]
     assert line == "a map,0.100,naive,0.1000,0.2500,0.3000,0.3333,1.0000,2.0000,3.0000,4.5000"
     assert random == "a map,0.100,random,0.1000,0.2500,0.3000,0.3333,,,,"

@@ -699,8 +699,12 @@ def route_of(page):
     page.get_by_role("button", name=texts.STEP_BUTTONS["send"]).click()
     page.get_by_role("dialog").get_by_role("combobox").click()
     page.get_by_role("option", name="geojson").click()
+    button = page.get_by_role("button", name=texts.READERS["geojson"])
+    button.wait_for()
+    # until the page is at rest, the button may be drawn again under the press
+    rest(page)
     with page.expect_download() as download:
-        page.get_by_role("button", name=texts.READERS["geojson"]).click()
+        button.click()
     page.get_by_role("dialog").get_by_label("Close").click()
     page.get_by_role("dialog").wait_for(state="hidden")
     return json.loads(download.value.path().read_text(encoding="utf-8"))["features"]

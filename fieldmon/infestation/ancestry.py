@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.special import gammaincinv
 
 from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, DrawnEvidence, Rates
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
@@ -24,7 +23,7 @@ from fieldmon.infestation.drawn_ancestry import (
     draw_ancestries,
 )
 from fieldmon.infestation.landing import landing_of
-from fieldmon.infestation.origins import ARRIVE, Estimate
+from fieldmon.infestation.origins import ARRIVE, SIGMAS, Estimate
 from fieldmon.infestation.unseen_offspring import stays_unseen, unseen_now
 
 if TYPE_CHECKING:
@@ -49,8 +48,8 @@ _MOST_DAYS, _MOST_INFESTATIONS = 30, 1500
 # places for infestations that were not found: at least, and as a share of all
 _LEAST_ROOM, _ROOM = 32, 0.25
 # how far the number at the start may be off beyond what drawn ancestries say of it, as a share,
-# since they take the rates as known (our choice); 90 % lie within so many standard deviations
-_START_DOUBT, _SIGMAS = 0.1, 1.645
+# since they take the rates as known (our choice)
+_START_DOUBT = 0.1
 # never surer than this
 _MOST = 0.95
 
@@ -150,7 +149,7 @@ class Ancestry:
         mean, variance = map(float, self.at_start)
         if np.isnan(mean):
             return None
-        off = _SIGMAS * float(np.hypot(np.sqrt(variance), _START_DOUBT * mean))
+        off = SIGMAS * float(np.hypot(np.sqrt(variance), _START_DOUBT * mean))
         # what was never seen may be believed where something was found, too
         return Estimate(*np.clip([mean, mean - off, mean + off], 0.0, len(self.grid)).tolist())
 
@@ -159,8 +158,7 @@ class Ancestry:
         """How many plants are infested from outside in a night, known by as many as were drawn."""
         nightly = (self.rates.anywhere + self.rates.by_edge) * len(self.grid)
         known = 2.0 * ARRIVAL_FINDS + self.arrived
-        low, high = gammaincinv(known, [0.05, 0.95]) / known * nightly
-        return Estimate(nightly, float(low), float(high))
+        return Estimate.of_rate(known, known, nightly)
 
     @property
     def knows(self) -> bool:

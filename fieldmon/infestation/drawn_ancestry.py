@@ -192,6 +192,8 @@ def draw_ancestries(
         ``(n,)`` the morning of each plant's last find, or less than 0.
     draws
         The seed, how many sweeps there are, and how many of them are left out at the beginning.
+    drawn
+        Sums of nothing (`DrawnSums.none`), which are filled.
     """
     seed, sweeps, left_out = draws
     np.random.seed(seed)  # noqa: NPY002 - a compiled loop has no other

@@ -16,6 +16,7 @@ from fieldmon.infestation.origins import (
     AT_START_ELSEWHERE,
     BY_EDGE,
     JUMPED,
+    SIGMAS,
 )
 from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
     from fieldmon.compute.wording import Worded
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.origins import Estimate
-
-# 90 % of a normal distribution lie within so many standard deviations
-_SIGMAS = 1.645
 
 
 @dataclass(frozen=True)
@@ -171,5 +169,5 @@ def _length(belief: TracedPairs) -> Learnt:
     means = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)
     mean = float(share @ means)
     doubt = share * (means - mean) * belief.counts.doubt[JUMPED:]
-    off = _SIGMAS * float(np.sqrt((doubt**2).sum()))
+    off = SIGMAS * float(np.sqrt((doubt**2).sum()))
     return Learnt("length of jumps", mean, max(mean - off, 1.0), mean + off)

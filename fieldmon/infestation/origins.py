@@ -33,6 +33,8 @@ _PRIOR_FINDS[[ANYWHERE, BY_EDGE]] = 0.5
 #: share of the plants infested from outside in a night, at least, anywhere and by the edge, before
 #: anything was found (our choice)
 ARRIVE, ARRIVE_BY_EDGE = 0.0002, 0.0001
+#: 90 % of a normal distribution lie within so many standard deviations
+SIGMAS = 1.645
 # inspections are taken to overlook so much at least and at most
 _DETECTS = (0.05, 0.99)
 
@@ -44,6 +46,12 @@ class Estimate:
     value: float
     low: float
     high: float
+
+    @classmethod
+    def of_rate(cls, finds: float, expected: float, times: float = 1.0) -> Estimate:
+        """Return `times` the rate that so many finds tell, where so many were expected (Gamma)."""
+        low, high = gammaincinv(finds, (0.05, 0.95)) / expected
+        return cls(times * finds / expected, times * float(low), times * float(high))
 
     def __add__(self, other: Estimate) -> Estimate:
         """Return the estimate of both numbers together, as wide as if both were off alike."""
@@ -90,9 +98,8 @@ class OriginCounts:
     def estimate(self, origin: int, times: float = 1.0) -> Estimate:
         """Return `times` the scale of an origin: a gamma distribution of it, 5 % to 95 %."""
         prior = float(_PRIOR_FINDS[origin])
-        shape, rate = prior + float(self.found[origin]), prior + float(self.expected[origin])
-        low, high = gammaincinv(shape, (0.05, 0.95)) / rate
-        return Estimate(times * shape / rate, times * float(low), times * float(high))
+        found, expected = float(self.found[origin]), float(self.expected[origin])
+        return Estimate.of_rate(prior + found, prior + expected, times)
 
     def detects(self, told: Floats) -> Floats:
         """Return what inspections really detect, ``(k,)``, where they are `told` to."""

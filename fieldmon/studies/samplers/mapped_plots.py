@@ -161,10 +161,8 @@ def table(plots: list[DatedMap]) -> list[MapRow]:
     }
     rows = []
     for each in plots:
-        alike, inspected = (
-            correlation(each),
-            [round(share * len(each.infested)) for share in SHARES],
-        )
+        alike = correlation(each)
+        inspected = [round(share * len(each.infested)) for share in SHARES]
         for who, sampler in samplers.items():
             made = [found_at(turned, sampler) for turned in _turned(each)]
             finds, hours = (np.mean(values, axis=0) for values in zip(*made, strict=True))

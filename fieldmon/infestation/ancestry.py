@@ -13,17 +13,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.infestation.ancestry_moves import Infestations, Weights
 from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, DrawnEvidence, Rates
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
 from fieldmon.infestation.drawn_ancestry import (
-    NOBODY,
     DrawnSums,
-    Infestations,
-    Weights,
     draw_ancestries,
 )
 from fieldmon.infestation.landing import landing_of
 from fieldmon.infestation.origins import ARRIVE, SIGMAS, Estimate
+from fieldmon.infestation.squares import NOBODY
 from fieldmon.infestation.unseen_offspring import stays_unseen, unseen_now
 
 if TYPE_CHECKING:
@@ -34,11 +33,15 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-# sweeps a night, of which a quarter is left out; of many infestations there are fewer, so that no
-# more than so many pairs are looked at. In the first nights there are two rounds, as rates are
-# little known before
-_SWEEPS, _LEAST_SWEEPS, _PAIRS = 100, 4, 2e6
-_EARLY = 3
+# In a night, rates are estimated after so many draws of few sweeps each, and after a last one of
+# many, by which chances are told: days 0, 1, 2 and later. In the first nights there are two rounds,
+# as what stays unseen hangs on rates, too
+_UPDATES, _ROUNDS = (9, 5, 3, 2), (2, 2, 1)
+_FEW_SWEEPS, _MANY_SWEEPS, _LEAST_SWEEPS = 30, 180, 4
+# of many infestations there are fewer sweeps, so that there are no more than so many moves
+_FEW_MOVES, _MANY_MOVES = 2000, 8000
+# so much of each draw is left out at the beginning
+_LEFT_OUT = 0.1
 # finds older than so many days keep their origin
 _SETTLED = 10
 #: a plot of more plants does without: each night would take seconds
@@ -50,6 +53,8 @@ _LEAST_ROOM, _ROOM = 32, 0.25
 # how far the number at the start may be off beyond what drawn ancestries say of it, as a share,
 # since they take the rates as known (our choice)
 _START_DOUBT = 0.1
+# the draws of a night have other seeds than all others: days, rounds and updates
+_SEEDS = (100_000, 8, 16)
 # never surer than this
 _MOST = 0.95
 
@@ -165,6 +170,20 @@ class Ancestry:
         """Tell whether anything was inspected yet: before, the first map says all there is."""
         return bool(self.new or self.infestations.there.any() or self.missed.any())
 
+    def sent(self, rates: Rates) -> Floats:
+        """Return what an infested plant sends out in each night that is thought of, ``(t,)``."""
+        return np.concatenate([np.full(BEFORE, rates.before), self.sends, [0.0]])
+
+    @property
+    def sweeps(self) -> tuple[int, ...]:
+        """How many sweeps there are in each draw of a night that has begun."""
+        last = BEFORE + len(self.sends)
+        settled = self.infestations.there & (self.infestations.ends <= last - _SETTLED)
+        moving = max(int(np.count_nonzero(~settled)), 1)
+        few = max(_LEAST_SWEEPS, min(_FEW_SWEEPS, _FEW_MOVES // moving))
+        many = max(_LEAST_SWEEPS, min(_MANY_SWEEPS, _MANY_MOVES // moving))
+        return (*[few] * _on(len(self.sends) - 1, _UPDATES), many)
+
     def overnight(self, sends: float, arrive: float = ARRIVE) -> tuple[Ancestry, Floats | None]:
         """Return what is known the next morning, and each plant's chance ``(n,)``.
 
@@ -190,11 +209,9 @@ class Ancestry:
         if not self.knows:
             return night, None
         many = max(int(np.count_nonzero(night.infestations.there)), 1)
-        sweeps = max(_LEAST_SWEEPS, min(_SWEEPS, int(_PAIRS / many**2)))
         hidden = unseen = np.zeros(n)
-        for k in range(2 if day < _EARLY else 1):
-            draws = 2 * day + k, sweeps, sweeps // 4
-            night, hidden, unseen = _drawn(night, landing_of(self.grid), draws, arrive)
+        for k in range(_on(day, _ROUNDS)):
+            night, hidden, unseen = _drawn(night, landing_of(self.grid), (day, k), arrive)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
         )
@@ -263,15 +280,14 @@ def _with_finds(of: Ancestry) -> Ancestry:
 
 
 def _drawn(
-    of: Ancestry, landing: Landing, draws: tuple[int, int, int], arrive: float
+    of: Ancestry, landing: Landing, when: tuple[int, int], arrive: float
 ) -> tuple[Ancestry, Floats, Floats]:
-    """Draw ancestries and estimate rates by them.
+    """Draw ancestries and estimate rates by them, on a day for the so-manieth time.
 
     Return also how likely each plant is infested as the ancestor of a find, and how many
     infestations of which nothing was seen are expected there.
     """
     t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
-    sends = np.concatenate([np.full(BEFORE, rates.before), of.sends, [0.0]])
     taken = np.zeros((t, n))
     taken[: len(of.taken)] = of.taken
     overlooked = np.zeros((t, n))
@@ -280,37 +296,53 @@ def _drawn(
     overlooked[:BEFORE] = overlooked[BEFORE]
     since = np.arange(t)[:, None] <= of.last_find + BEFORE
     alone = np.where(since, -np.inf, overlooked)
-    unseen = stays_unseen(alone, taken, sends, rates.shares, landing)
-    kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
-    roots = rates.roots(of.start, landing.at_edge, t)
-    weights = Weights(
-        landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), sends, roots, BEFORE,
-        t - 1 - _SETTLED, np.exp(overlooked + unseen.offspring),
-    )  # fmt: skip
+    unseen = stays_unseen(alone, taken, of.sent(rates), rates.shares, landing)
+    lasting = np.ascontiguousarray(np.exp(overlooked + unseen.offspring).T)
+    seen = 1.0 - unseen.chance
     infestations = of.infestations.copied(0)
-    drawn = DrawnSums.none(t, n, len(kernel))
     at = _places(infestations, n)
-    kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
-    for sums in drawn:
-        np.divide(sums, kept, out=sums)
-    there = infestations.there & infestations.found
-    taken = drawn.active.copy()
-    taken[infestations.ends[there], infestations.plant[there]] = 1.0
-    night = DrawnEvidence(of.start, sends, kernel, 1.0 - unseen.chance, taken, drawn, arrive)
-    expected, numbers = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
+    found = infestations.there & infestations.found
+    exposure = None
+    sweeps = of.sweeps
+    for k, many in enumerate(sweeps):
+        sends = of.sent(rates)
+        kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
+        roots = rates.roots(of.start, landing.at_edge, t)
+        weights = Weights(
+            landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), sends,
+            np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED, lasting,
+        )  # fmt: skip
+        drawn = DrawnSums.none(t, n, len(kernel))
+        seed = int(np.ravel_multi_index((*when, k), _SEEDS))
+        draws = seed, many, int(_LEFT_OUT * many)
+        kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
+        for sums in drawn:
+            np.divide(sums, kept, out=sums)
+        taken = drawn.active.copy()
+        taken[infestations.ends[found], infestations.plant[found]] = 1.0
+        if k in (0, len(sweeps) - 1):
+            unfound = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
+        night = DrawnEvidence(of.start, sends, kernel, seen, taken, drawn, unfound, arrive)
+        exposure = exposure or rates.exposure(night, landing)
+        rates = rates.after(night, exposure, landing.at_edge)
     known, square = drawn.at_start
     made = replace(
         of,
         infestations=infestations,
         taken=taken.astype(np.float16),
-        rates=rates.after(night, landing),
+        rates=rates,
         # those unseen vary by chance
         at_start=of.at_start
         if of.began_anew
-        else np.array([known, square - known**2]) + numbers[BEFORE],
+        else np.array([known, square - known**2]) + unfound[BEFORE].sum(),
         arrived=float(drawn.roots[BEFORE + 1 :].sum()),
     )
-    return made, drawn.hidden, expected
+    return made, drawn.hidden, unfound[-1]
+
+
+def _on(day: int, numbers: tuple[int, ...]) -> int:
+    """Return the number of a day, the last one on all later days."""
+    return numbers[min(day, len(numbers) - 1)]
 
 
 def _places(infestations: Infestations, n: int) -> NDArray[np.int64]:

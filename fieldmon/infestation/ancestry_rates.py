@@ -62,6 +62,8 @@ class DrawnEvidence(NamedTuple):
         ``(t, n)`` how likely the plant is infested already.
     drawn
         Means over the ancestries.
+    unseen
+        ``(t, n)`` how many infestations there are of which nothing was seen.
     arrive
         The share of all plants that is told to be infested from outside in a night.
     """
@@ -72,10 +74,32 @@ class DrawnEvidence(NamedTuple):
     seen: Floats
     taken: Floats
     drawn: DrawnSums
+    unseen: Floats
     arrive: float
 
     def __repr__(self) -> str:
         return f"<Evidence of {len(self.sends)} mornings>"
+
+
+class Exposure(NamedTuple):
+    """How many jumps would have been seen.
+
+    Parameters
+    ----------
+    kernels
+        ``(8, d, d)`` where jumps may land, as `Landing` has them.
+    by_kernel
+        ``(8,)`` so many if all go by that kernel.
+    before
+        So many before the season, if every infestation sends out one a night.
+    """
+
+    kernels: Floats
+    by_kernel: Floats
+    before: float
+
+    def __repr__(self) -> str:
+        return f"<Exposure to {len(self.by_kernel)} kernels>"
 
 
 class Rates(NamedTuple):
@@ -122,9 +146,9 @@ class Rates(NamedTuple):
         roots[_LATER] = later
         return roots
 
-    def after(self, night: DrawnEvidence, landing: Landing) -> Rates:
+    def after(self, night: DrawnEvidence, exposure: Exposure, at_edge: Floats) -> Rates:
         """Return the rates by what ancestries have, over what would have been seen of it."""
-        return self.with_jumps(night, landing).with_roots(night, landing.at_edge)
+        return self.with_jumps(night.drawn, night.kernel, exposure).with_roots(night, at_edge)
 
     def _from_none(self, start: Floats, at_edge: Floats) -> tuple[tuple[Floats, Floats], ...]:
         """Return how many come from none before the season and in each of its nights, ``(n,)``.
@@ -146,17 +170,23 @@ class Rates(NamedTuple):
         told: Floats = start / float(_AGES @ (1.0 + self.before) ** nights)
         return told
 
-    def with_jumps(self, night: DrawnEvidence, landing: Landing) -> Rates:
-        """Return the same with the jumps that were drawn."""
-        drawn = night.drawn
+    def exposure(self, night: DrawnEvidence, landing: Landing) -> Exposure:
+        """Return how many jumps would have been seen, had all gone by each kernel.
+
+        Also infestations of which nothing was seen would have sent out some that were.
+        """
+        sent = night.sends[:, None] * (night.drawn.active + night.unseen)
         meets = night.seen * (1.0 - night.taken)
-        sent = night.sends[:, None] * drawn.active
-        all_jumps = drawn.jumps.sum(axis=0) / np.maximum(night.kernel, LEAST_CHANCE)
-        jumps = self.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
-        shares = (SHARES + jumps) / (SHARES.sum() + landing.met(sent[:-1], meets[1:]))
-        early = landing.met(sent[:BEFORE], meets[1 : BEFORE + 1]) @ self.shares / self.before
+        before, all_nights = landing.met(sent[:-1], meets[1:], BEFORE)
+        return Exposure(landing.kernels, all_nights, float(before @ self.shares) / self.before)
+
+    def with_jumps(self, drawn: DrawnSums, kernel: Floats, exposure: Exposure) -> Rates:
+        """Return the same with the jumps that were drawn, taken to land by a kernel ``(d, d)``."""
+        all_jumps = drawn.jumps.sum(axis=0) / np.maximum(kernel, LEAST_CHANCE)
+        jumps = self.shares * np.einsum("kij,ij->k", exposure.kernels, all_jumps)
+        shares = (SHARES + jumps) / (SHARES.sum() + exposure.by_kernel)
         before = _SENT_BEFORE_FINDS + float(drawn.jumps[0].sum())
-        before /= _SENT_BEFORE_FINDS / _SENT_BEFORE + float(early)
+        before /= _SENT_BEFORE_FINDS / _SENT_BEFORE + exposure.before
         return self._replace(shares=shares / shares.sum(), before=before)
 
     def with_roots(self, night: DrawnEvidence, at_edge: Floats) -> Rates:

@@ -26,26 +26,31 @@ class Landing(KernelsOnCells):
     :func:`fieldmon.infestation.reach.kernels`.
     """
 
-    def met(self, sent: Floats, there: Floats) -> Floats:
-        """Return how much of what was sent would meet something there, by each kernel, ``(8,)``.
+    def met(self, sent: Floats, there: Floats, first: int) -> Floats:
+        """Return how much of what was sent would meet something there, by each kernel, ``(2, 8)``.
+
+        In the first nights, and in all.
 
         Parameters
         ----------
         sent, there
             ``(t, n)`` what each plant sends in a night, and the chance that something is met at
             each plant.
+        first
+            How many nights are the first ones.
         """
-        total = np.zeros(self.spectra.shape[1:], np.complex128)
-        for one, other in zip(sent, there, strict=True):
+        total = np.zeros((2, *self.spectra.shape[1:]), np.complex128)
+        for night, (one, other) in enumerate(zip(sent, there, strict=True)):
             # over a night in which nothing is sent there is nothing to add
             if one.any():
-                total += self._sent(one) * np.conj(self._sent(other))
+                total[int(night >= first)] += self._sent(one) * np.conj(self._sent(other))
+        total[1] += total[0]
         # half of a spectrum stands for all of it
         twice = np.full(self.spectra.shape[2], 2.0)
         twice[0] = 1.0
         if self.padded[1] % 2 == 0:
             twice[-1] = 1.0
-        met: Floats = ((self.spectra * total).real * twice).sum(axis=(1, 2))
+        met: Floats = ((self.spectra * total[:, None]).real * twice).sum(axis=(2, 3))
         return met / (self.padded[0] * self.padded[1])
 
 

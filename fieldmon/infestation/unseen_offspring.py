@@ -70,10 +70,10 @@ def stays_unseen(
 
 def unseen_now(
     unseen: Unseen, active: Floats, roots: Floats, sends: Floats, shares: Floats, landing: Landing
-) -> tuple[Floats, Floats]:
-    """Return how many infestations of which nothing was seen are expected at each plant, ``(n,)``.
+) -> Floats:
+    """Return how many infestations of which nothing was seen are expected, ``(t, n)``.
 
-    And how many on the plot there were on each morning, ``(t,)``.
+    On each morning at each plant.
 
     Parameters
     ----------
@@ -85,12 +85,12 @@ def unseen_now(
         As for `stays_unseen`.
     """
     mixed = landing.mixed(shares)
-    there, so_far = np.zeros(active.shape[1]), np.zeros(len(active))
+    there, so_far = np.zeros(active.shape[1]), np.empty_like(active)
     for morning in range(len(active)):
         new = roots[morning]
         if morning:
             senders = active[morning - 1] + there
             new = new + sends[morning - 1] * landing.landed(senders, mixed)
         there = there + unseen.chance[morning] * new * np.maximum(1.0 - there, 0.0)
-        so_far[morning] = there.sum()
-    return there, so_far
+        so_far[morning] = there
+    return so_far

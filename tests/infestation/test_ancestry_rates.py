@@ -18,10 +18,23 @@ SENDS = np.r_[np.full(BEFORE, 0.4), np.full(10, 0.3), 0.0]
 KERNEL = np.einsum("k,kij->ij", SHARES / SHARES.sum(), LANDING.kernels)
 
 
-def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL):
+def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL, unseen=None):
     """Return what ancestries have of which so much would have been seen, everywhere alike."""
     nothing = np.zeros((T, N))
-    return DrawnEvidence(start, SENDS, kernel, nothing + seen, nothing, drawn, ARRIVE)
+    return DrawnEvidence(
+        start,
+        SENDS,
+        kernel,
+        nothing + seen,
+        nothing,
+        drawn,
+        nothing if unseen is None else unseen,
+        ARRIVE,
+    )
+
+
+def after(rates, night):
+    return rates.after(night, rates.exposure(night, LANDING), LANDING.at_edge)
 
 
 def nothing_drawn():
@@ -30,9 +43,9 @@ def nothing_drawn():
 
 def test_where_nothing_could_be_seen_everything_stays_as_it_was_believed():
     first = Rates.at_first()
-    after = first.after(evidence(nothing_drawn(), seen=0.0), LANDING)
-    assert after.shares == pytest.approx(first.shares)
-    assert after[1:] == pytest.approx(first[1:])
+    known = after(first, evidence(nothing_drawn(), seen=0.0))
+    assert known.shares == pytest.approx(first.shares)
+    assert known[1:] == pytest.approx(first[1:])
     assert repr(evidence(nothing_drawn())) == f"<Evidence of {T} mornings>"
 
 
@@ -52,13 +65,13 @@ def test_the_number_at_the_start_follows_what_was_drawn(times):
     rates, drawn = Rates.at_first(), nothing_drawn()
     drawn.roots[:] = rates.roots(FLAT, LANDING.at_edge, T) * times
     drawn.roots[BEFORE + 1 :] = 0.0
-    after = rates.after(evidence(drawn), LANDING)
+    known = after(rates, evidence(drawn))
     told = drawn.roots.sum() / times
     # three finds, and two by the edge, are what was believed
-    assert after.start + after.start_by_edge == pytest.approx(
+    assert known.start + known.start_by_edge == pytest.approx(
         (told * times + 3.0) / (told + 3.0), rel=0.05
     )
-    assert after.anywhere < 0.2 * rates.anywhere
+    assert known.anywhere < 0.2 * rates.anywhere
 
 
 def test_growth_and_the_number_at_the_start_are_known_together():
@@ -67,11 +80,11 @@ def test_growth_and_the_number_at_the_start_are_known_together():
     drawn.active[:BEFORE, :300] = 1.0
     drawn.roots[0, :300] = 0.02
     drawn.jumps[0] = KERNEL * 20.0
-    after = rates.after(evidence(drawn), LANDING)
-    assert after.before < 0.1
+    known = after(rates, evidence(drawn))
+    assert known.before < 0.1
     # as many roots as become all that was told, at this growth; three finds are what was believed
-    told = FLAT.sum() / (1.0 + after.before) ** (0.85 * BEFORE)
-    roots = after.roots(FLAT, LANDING.at_edge, T)[: BEFORE + 1].sum()
+    told = FLAT.sum() / (1.0 + known.before) ** (0.85 * BEFORE)
+    roots = known.roots(FLAT, LANDING.at_edge, T)[: BEFORE + 1].sum()
     assert roots == pytest.approx(told * (6.0 + 3.0) / (told + 3.0), rel=0.05)
 
 
@@ -80,9 +93,9 @@ def test_what_stands_by_the_edge_came_over_it():
     for night in (0, BEFORE + 3):
         drawn = nothing_drawn()
         drawn.roots[night] = 30.0 * at_edge**2 / (at_edge**2).sum()
-        edge = rates.after(evidence(drawn), LANDING)
+        edge = after(rates, evidence(drawn))
         drawn.roots[night] = 30.0 / N
-        inside = rates.after(evidence(drawn), LANDING)
+        inside = after(rates, evidence(drawn))
         k = 3 if night == 0 else 5
         assert edge[k] > 3.0 * edge[k - 1]
         assert inside[k] < edge[k] / 3.0
@@ -96,8 +109,23 @@ def test_shares_are_those_of_the_jumps_that_were_drawn(k):
     drawn.jumps[1] = LANDING.kernels[k] * 30.0
     kernel = KERNEL
     for _ in range(30):
-        rates = rates.after(evidence(drawn, kernel=kernel), LANDING)
+        rates = after(rates, evidence(drawn, kernel=kernel))
         kernel = np.einsum("k,kij->ij", rates.shares, LANDING.kernels)
     assert rates.shares.sum() == pytest.approx(1.0)
     assert rates.shares.argmax() == k
     assert rates.shares[k] > 0.5
+
+
+def test_who_was_never_seen_would_have_been_seen_by_what_it_sent_out():
+    """So infestations of which nothing was seen lower what each is taken to send out."""
+    rates, drawn, unseen = Rates.at_first(), nothing_drawn(), np.zeros((T, N))
+    drawn.active[:BEFORE, 820] = 1.0
+    drawn.jumps[0] = KERNEL * 4.0
+    alone = rates.exposure(evidence(drawn), LANDING)
+    unseen[:BEFORE, 830] = 2.0
+    both = rates.exposure(evidence(drawn, unseen=unseen), LANDING)
+    assert both.before == pytest.approx(3.0 * alone.before, rel=0.05)
+    assert both.by_kernel == pytest.approx(3.0 * alone.by_kernel, rel=0.05)
+    fewer = rates.with_jumps(drawn, KERNEL, both).before
+    assert fewer < rates.with_jumps(drawn, KERNEL, alone).before
+    assert repr(both) == "<Exposure to 8 kernels>"

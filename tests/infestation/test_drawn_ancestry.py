@@ -5,14 +5,13 @@ from itertools import product
 import numpy as np
 import pytest
 
+from fieldmon.infestation.ancestry_moves import Infestations, Weights
 from fieldmon.infestation.drawn_ancestry import (
-    NOBODY,
     DrawnSums,
-    Infestations,
-    Weights,
     draw_ancestries,
 )
 from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.squares import NOBODY
 from fieldmon.plot.layout import rectangle
 
 ROW = rectangle(1, 4)
@@ -27,8 +26,8 @@ def believed(seed=0):
     kernel = np.einsum("k,kij->ij", rng.dirichlet(np.ones(8)), landing.kernels)
     kernel /= kernel.sum()
     sends = rng.uniform(0.5, 3.0, MORNINGS)
-    lasting = rng.uniform(0.2, 1.0, (MORNINGS, N))
-    roots = rng.uniform(0.01, 0.3, (MORNINGS, N))
+    lasting = rng.uniform(0.2, 1.0, (N, MORNINGS))
+    roots = rng.uniform(0.01, 0.3, (N, MORNINGS))
     return Weights(landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, -1, lasting)
 
 
@@ -69,9 +68,9 @@ def all_ancestries(world, finds, last_find):
                     continue
                 weight = 1.0
                 for (plant, _, end), b, parent in zip(ends, begins, parents, strict=True):
-                    weight *= world.lasting[b, plant] / world.lasting[end, plant]
+                    weight *= world.lasting[plant, b] / world.lasting[plant, end]
                     if parent == NOBODY:
-                        weight *= world.roots[b, plant]
+                        weight *= world.roots[plant, b]
                     else:
                         weight *= world.sends[b - 1] * jump(world, ends[parent][0], plant)
                 yield (
@@ -110,41 +109,3 @@ def test_ancestries_are_drawn_as_often_as_they_are_likely(finds):
     assert drawn.jumps.sum() + drawn.roots.sum() == pytest.approx(
         kept * len(finds) + drawn.hidden.sum()
     )
-
-
-def test_an_ancestry_holds_together():
-    """Parents begin before their children and end no sooner; nobody hangs on nothing."""
-    rng = np.random.default_rng(4)
-    plot = rectangle(12, 12)
-    landing, mornings = landing_of(plot), 9
-    kernel = np.einsum("k,kij->ij", np.full(8, 0.125), landing.kernels)
-    made = Infestations.room(120)
-    plants = rng.choice(144, 30, replace=False)
-    last_find = np.full(144, -1)
-    for place, plant in enumerate(plants):
-        made.plant[place], made.ends[place] = plant, rng.integers(3, mornings - 1)
-        made.begins[place], made.found[place] = made.ends[place], True
-        made.there[place], last_find[plant] = True, made.ends[place]
-    lasting = np.exp(-rng.uniform(0.0, 2.0, (mornings, 144)))
-    roots = np.full((mornings, 144), 1e-4)
-    sends = np.full(mornings, 0.3)
-    so_far = np.cumsum(kernel) / kernel.sum()
-    world = Weights(landing.cells, kernel, so_far, sends, roots, 3, -1, lasting)
-    at, drawn = np.full(144, NOBODY), DrawnSums.none(mornings, 144, len(kernel))
-    draw_ancestries(made, at, world, last_find, (2, 50, 10), drawn)
-    there = np.flatnonzero(made.there)
-    children = np.bincount(made.parent[there] + 1, minlength=121)[1:]
-    assert (made.children[there] == children[there]).all()
-    assert (made.found[there] | (children[there] > 0)).all()
-    for i in there:
-        assert made.earliest[i] <= made.begins[i] <= made.ends[i]
-        if made.parent[i] != NOBODY:
-            parent = made.parent[i]
-            assert made.there[parent]
-            assert made.begins[parent] < made.begins[i] <= made.ends[parent]
-    hidden = there[~made.found[there]]
-    assert len(hidden) > 0
-    assert (at[made.plant[hidden]] == hidden).all()
-    assert np.count_nonzero(at != NOBODY) == len(hidden)
-    assert "30 found" in repr(made)
-    assert repr(drawn).startswith("<Drawn: ")

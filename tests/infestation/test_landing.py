@@ -17,6 +17,8 @@ def test_jumps_land_as_the_kernels_have_it():
 def test_what_is_met_by_each_kernel_is_what_lands_there():
     rng = np.random.default_rng(2)
     sent, there = rng.random((2, 3, N))
-    for k, met in enumerate(LANDING.met(sent, there)):
-        landed = sent @ by_hand(np.eye(8)[k])
-        assert met == pytest.approx(float((landed * there).sum()))
+    first, all_nights = LANDING.met(sent, there, 1)
+    for k in range(8):
+        meets = (sent @ by_hand(np.eye(8)[k]) * there).sum(axis=1)
+        assert first[k] == pytest.approx(meets[0])
+        assert all_nights[k] == pytest.approx(meets.sum())

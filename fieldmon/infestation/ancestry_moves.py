@@ -1,0 +1,548 @@
+"""The moves by which one ancestry of finds follows from another.
+
+An infestation gets another time and parent (drawn from all that are possible); one that was not
+found is put between an infestation and its parent; such a one is taken out; or it goes to another
+plant, drawn from a few. The second and third are accepted as Metropolis and Hastings have it, the
+last is iterated sampling importance resampling (Andrieu, Doucet & Holenstein 2010).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.jit import part
+from fieldmon.infestation.squares import NOBODY, Squares, gather, leave, stand
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.cells import Cells
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+# among so many plants one that was not found goes to another
+TRIED = 4
+
+
+class Infestations(NamedTuple):
+    """The infestations of an ancestry, ``(m,)`` each, with room for more.
+
+    Parameters
+    ----------
+    plant
+        Where each is.
+    begins, ends
+        From which morning on the plant sends something out at night, and until which: that of its
+        find, or the last.
+    found
+        Whether it was found.
+    parent, children
+        The infestation from which it came (`NOBODY`: none), and how many came from it.
+    there
+        Whether the place is taken.
+    earliest
+        The first morning on which it may have begun: after the plant's find before.
+    """
+
+    plant: Ints
+    begins: Ints
+    ends: Ints
+    found: NDArray[np.bool_]
+    parent: Ints
+    children: Ints
+    there: NDArray[np.bool_]
+    earliest: Ints
+
+    @classmethod
+    def room(cls, places: int) -> Infestations:
+        """Return places for so many."""
+        ints = np.zeros((6, places), np.int64)
+        ints[3] = NOBODY
+        plant, begins, ends, parent, children, earliest = ints
+        found, there = np.zeros((2, places), np.bool_)
+        return cls(plant, begins, ends, found, parent, children, there, earliest)
+
+    def __repr__(self) -> str:
+        hidden = np.count_nonzero(self.there & ~self.found)
+        return f"<Infestations: {np.count_nonzero(self.found)} found, {hidden} not>"
+
+    def copied(self, places: int) -> Infestations:
+        """Return the same with so many places more."""
+        wider = Infestations.room(len(self.plant) + places)
+        for mine, own in zip(wider, self, strict=True):
+            mine[: len(own)] = own
+        return wider
+
+
+class Weights(NamedTuple):
+    """What ancestries are weighed by, on t mornings.
+
+    Parameters
+    ----------
+    cells
+        The plants in cells.
+    kernel, so_far
+        ``(d, d)`` where jumps land about a plant, and its running sum ``(d * d,)``, up to 1.
+    sends
+        ``(t,)`` what an infested plant sends out in a night.
+    roots
+        ``(n, t)`` how many infestations come to a plant from none, by the morning on which they
+        begin.
+    season, settled
+        The first morning of the season, and that until which infestations have ended that stay as
+        they are.
+    lasting
+        ``(n, t)`` how likely it is that an infestation goes on from a morning to the last as it
+        was seen, if it sends out only what the ancestry has: up to another morning it is the ratio
+        of both.
+    """
+
+    cells: Cells
+    kernel: Floats
+    so_far: Floats
+    sends: Floats
+    roots: Floats
+    season: int
+    settled: int
+    lasting: Floats
+
+
+class Worked(NamedTuple):
+    """What is worked out on the way, and again at each move.
+
+    Parameters
+    ----------
+    by_parent, by_none
+        What explains an infestation, as running sums over mornings: by a parent, and by none.
+    so_far
+        The same as a running sum over parents: those of ``squares.near``.
+    squares
+        Where infestations stand.
+    removable, rank
+        The places that were not found and have a single child, and where each is in that list;
+        -1: it is not.
+    child
+        The children of one.
+    tried, likely
+        Plants to which one may go, and how likely.
+    open
+        The places that are free, or where what stands there may change.
+    many
+        ``(3,)`` how many are removable, were near, and are open.
+    """
+
+    by_parent: Floats
+    by_none: Floats
+    so_far: Floats
+    squares: Squares
+    removable: Ints
+    rank: Ints
+    child: Ints
+    tried: Ints
+    likely: Floats
+    open: Ints
+    many: Ints
+
+
+_REMOVABLE, _NEAR, OPEN = range(3)
+
+
+@part
+def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
+    """Note where infestations stand and what may change; return how many were not found."""
+    hidden = 0
+    for i in range(infestations.plant.size):
+        if infestations.there[i]:
+            stand(worked.squares, weights.cells, infestations.plant[i], i)
+            _note_removable(infestations, i, worked)
+            hidden += 0 if infestations.found[i] else 1
+        # as many are drawn in each sweep, however many infestations there are by then
+        if not infestations.there[i] or infestations.ends[i] > weights.settled:
+            worked.open[worked.many[OPEN]] = i
+            worked.many[OPEN] += 1
+    return hidden
+
+
+@part
+def _children(infestations: Infestations, i: int, weights: Weights, worked: Worked) -> int:
+    """List the children of an infestation, which stand near it; return the first one's morning.
+
+    It is that before which it has begun; without any, the morning after it ends.
+    """
+    left, first = infestations.children[i], int(infestations.ends[i] + 1)
+    if left == 0:
+        return first
+    squares = worked.squares
+    half = weights.kernel.shape[0] // 2
+    near = gather(squares, squares.across[i], squares.along[i], half)
+    for k in range(near):
+        j = squares.near[k]
+        if infestations.parent[j] == i:
+            left -= 1
+            worked.child[left] = j
+            first = min(first, int(infestations.begins[j]))
+            if left == 0:
+                break
+    return first
+
+
+@part
+def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -> None:
+    """Draw another beginning and parent of an infestation.
+
+    The only child of one that was not found keeps its parent: that would be without a find.
+    """
+    latest = _children(infestations, i, weights, worked) - 1
+    earliest = infestations.earliest[i]
+    if latest < earliest:
+        return
+    when = (infestations.plant[i], earliest, latest, infestations.ends[i])
+    parent = infestations.parent[i]
+    alone = parent >= 0 and _hangs_on_one(infestations, parent)
+    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+    if alone:
+        infestations.begins[i] = _when_by(infestations, parent, when, worked)
+        return
+    other, begins = _draw_origin(infestations, total, when, worked)
+    _hang(infestations, i, other, worked)
+    infestations.begins[i] = begins
+
+
+@part
+def put_in(
+    infestations: Infestations,
+    i: int,
+    found_at: tuple[Ints, Ints],
+    weights: Weights,
+    worked: Worked,
+    takes: float,
+) -> None:
+    """Try one that was not found as the parent of an infestation."""
+    at, last_find = found_at
+    parent = infestations.parent[i]
+    if parent >= 0 and _hangs_on_one(infestations, parent):
+        return
+    plant, many = _came_from(weights, infestations.plant[i])
+    if plant < 0 or at[plant] >= 0 or plant == infestations.plant[i]:
+        return
+    begins = infestations.begins[i]
+    earliest, latest = max(0, last_find[plant] + 1), begins - 1
+    if latest < earliest:
+        return
+    last = weights.roots.shape[1] - 1
+    now = _explained(infestations, i, NOBODY, weights, worked)
+    when = (plant, earliest, latest, last)
+    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+    other, since = _draw_origin(infestations, total, when, worked)
+    removable = worked.many[_REMOVABLE] + 1
+    if other != parent:
+        # the one before has a child less then, and the new one's parent one more
+        if parent >= 0 and not infestations.found[parent] and infestations.children[parent] == 2:
+            removable += 1
+        if other >= 0 and _hangs_on_one(infestations, other):
+            removable -= 1
+    # each open place is drawn as often, taken or not
+    gain = weights.sends[begins - 1] * many * total * worked.many[OPEN] * takes
+    if np.random.random() * now * removable >= gain:  # noqa: NPY002
+        return
+    place = _free(infestations)
+    if place < 0:
+        return
+    infestations.plant[place], infestations.begins[place] = plant, since
+    infestations.ends[place], infestations.earliest[place] = last, earliest
+    infestations.found[place], infestations.there[place] = False, True
+    infestations.parent[place], infestations.children[place] = NOBODY, 0
+    stand(worked.squares, weights.cells, plant, place)
+    at[plant] = place
+    _hang(infestations, place, other, worked)
+    _hang(infestations, i, place, worked)
+
+
+@part
+def take_out(
+    infestations: Infestations, at: Ints, weights: Weights, worked: Worked, takes: float
+) -> None:
+    """Try to do without one that was not found and has a single child."""
+    removable = worked.many[_REMOVABLE]
+    if removable == 0:
+        return
+    place = worked.removable[np.random.randint(removable)]  # noqa: NPY002
+    parent = infestations.parent[place]
+    if parent >= 0 and _hangs_on_one(infestations, parent):
+        return
+    _children(infestations, place, weights, worked)
+    child = worked.child[0]
+    if infestations.ends[child] <= weights.settled:
+        return
+    begins, plant = infestations.begins[child], infestations.plant[place]
+    when = (plant, infestations.earliest[place], begins - 1, infestations.ends[place])
+    total = _weigh(infestations, when, (place, child), weights, worked)
+    now = _explained(infestations, child, place, weights, worked)
+    cell = weights.cells.of_plant[plant]
+    many = weights.cells.start[cell + 1] - weights.cells.start[cell]
+    loss = weights.sends[begins - 1] * many * total * worked.many[OPEN] * takes
+    if np.random.random() * loss >= now * removable:  # noqa: NPY002
+        return
+    when = (infestations.plant[child], begins, begins, infestations.ends[child])
+    total = _weigh(infestations, when, (child, place), weights, worked)
+    other, _ = _draw_origin(infestations, total, when, worked)
+    _hang(infestations, child, other, worked)
+    _hang(infestations, place, NOBODY, worked)
+    leave(worked.squares, place)
+    infestations.there[place] = False
+    _note_removable(infestations, place, worked)
+    at[plant] = NOBODY
+
+
+@part
+def try_others(
+    infestations: Infestations,
+    i: int,
+    found_at: tuple[Ints, Ints],
+    weights: Weights,
+    worked: Worked,
+) -> float:
+    """Weigh the plants at which one that was not found may stand; return the sum.
+
+    The first is where it is, the others are drawn as where one of its children came from.
+    """
+    at, last_find = found_at
+    latest = _children(infestations, i, weights, worked) - 1
+    children, d = infestations.children[i], weights.kernel.shape[0]
+    anchor = worked.child[np.random.randint(children)]  # noqa: NPY002
+    parent = infestations.parent[i]
+    alone = parent >= 0 and _hangs_on_one(infestations, parent)
+    squares, sum_of = worked.squares, 0.0
+    for k in range(TRIED):
+        plant, many = _came_from(weights, infestations.plant[anchor])
+        if k == 0:
+            plant = infestations.plant[i]
+            cell = weights.cells.of_plant[plant]
+            many = int(weights.cells.start[cell + 1] - weights.cells.start[cell])
+        worked.tried[k], worked.likely[k] = plant, 0.0
+        if plant < 0 or (k > 0 and at[plant] >= 0) or last_find[plant] >= latest:
+            continue
+        y, x = _cell(weights, plant)
+        likely = float(many)
+        for c in range(children):
+            j = worked.child[c]
+            if j != anchor:
+                across, along = squares.across[j] - y + d // 2, squares.along[j] - x + d // 2
+                inside = 0 <= across < d and 0 <= along < d
+                likely *= weights.kernel[across, along] if inside else 0.0
+        if likely == 0.0:
+            continue
+        when = (plant, max(0, last_find[plant] + 1), latest, infestations.ends[i])
+        total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+        worked.likely[k] = likely * (_of_parent(parent, worked) if alone else total)
+        sum_of += worked.likely[k]
+    return sum_of
+
+
+@part
+def go_to_one(
+    infestations: Infestations,
+    i: int,
+    found_at: tuple[Ints, Ints],
+    weights: Weights,
+    worked: Worked,
+    tried: float,
+) -> None:
+    """Draw one of the plants that were weighed for one that was not found."""
+    at, last_find = found_at
+    u, k = np.random.random() * tried, 0  # noqa: NPY002
+    while k < TRIED - 1 and worked.likely[k] <= u:
+        u -= worked.likely[k]
+        k += 1
+    if k == 0 or worked.likely[k] <= 0.0:
+        return
+    plant, parent = worked.tried[k], infestations.parent[i]
+    latest = _children(infestations, i, weights, worked) - 1
+    when = (plant, max(0, last_find[plant] + 1), latest, infestations.ends[i])
+    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+    if parent >= 0 and _hangs_on_one(infestations, parent):
+        begins = _when_by(infestations, parent, when, worked)
+    else:
+        parent, begins = _draw_origin(infestations, total, when, worked)
+    at[infestations.plant[i]] = NOBODY
+    at[plant] = i
+    infestations.plant[i], infestations.earliest[i] = plant, when[1]
+    infestations.begins[i] = begins
+    leave(worked.squares, i)
+    stand(worked.squares, weights.cells, plant, i)
+    _hang(infestations, i, parent, worked)
+
+
+@part
+def _weigh(
+    infestations: Infestations,
+    when: tuple[int, int, int, int],
+    without: tuple[int, int],
+    weights: Weights,
+    worked: Worked,
+) -> float:
+    """Weigh all origins of an infestation; return their sum.
+
+    `when` is its plant, the first and the last morning on which it may begin, and when it ends;
+    `without` are two infestations from which it does not come.
+    """
+    plant, earliest, latest, ends = when
+    worked.by_parent[0] = worked.by_none[0] = 0.0
+    for k in range(latest - earliest + 1):
+        begins = earliest + k
+        lasts = weights.lasting[plant, begins] / weights.lasting[plant, ends]
+        sends = weights.sends[begins - 1] if begins > 0 else 0.0
+        worked.by_parent[k + 1] = worked.by_parent[k] + lasts * sends
+        worked.by_none[k + 1] = worked.by_none[k] + lasts * weights.roots[plant, begins]
+    half, y, x = weights.kernel.shape[0] // 2, *_cell(weights, plant)
+    squares, total = worked.squares, 0.0
+    near = gather(squares, y, x, half)
+    for k in range(near):
+        j = squares.near[k]
+        first = max(infestations.begins[j] + 1, earliest)
+        last = min(infestations.ends[j], latest)
+        if last >= first and j != without[0] and j != without[1]:
+            times = worked.by_parent[last - earliest + 1] - worked.by_parent[first - earliest]
+            across, along = y - squares.across[j] + half, x - squares.along[j] + half
+            total += times * weights.kernel[across, along]
+        worked.so_far[k] = total
+    worked.many[_NEAR] = near
+    return float(total + worked.by_none[latest - earliest + 1])
+
+
+@part
+def _of_parent(parent: int, worked: Worked) -> float:
+    """Return how much of what was weighed is due to one parent."""
+    of = before = 0.0
+    for k in range(worked.many[_NEAR]):
+        if worked.squares.near[k] == parent:
+            of = worked.so_far[k] - before
+            break
+        before = worked.so_far[k]
+    return of
+
+
+@part
+def _draw_origin(
+    infestations: Infestations,
+    total: float,
+    when: tuple[int, int, int, int],
+    worked: Worked,
+) -> tuple[int, int]:
+    """Return a parent and a beginning, drawn from what was weighed."""
+    _, earliest, latest, _ = when
+    u, near = np.random.random() * total, worked.many[_NEAR]  # noqa: NPY002
+    if near > 0 and u < worked.so_far[near - 1]:
+        k = 0
+        while worked.so_far[k] <= u:
+            k += 1
+        parent = int(worked.squares.near[k])
+        return parent, _when_by(infestations, parent, when, worked)
+    u = np.random.random() * worked.by_none[latest - earliest + 1]  # noqa: NPY002
+    k = 0
+    while earliest + k < latest and worked.by_none[k + 1] <= u:
+        k += 1
+    return NOBODY, earliest + k
+
+
+@part
+def _when_by(
+    infestations: Infestations,
+    parent: int,
+    when: tuple[int, int, int, int],
+    worked: Worked,
+) -> int:
+    """Return when an infestation by this parent began, drawn from what was weighed."""
+    _, earliest, latest, _ = when
+    first = max(infestations.begins[parent] + 1, earliest)
+    last = min(infestations.ends[parent], latest)
+    low, high = worked.by_parent[first - earliest], worked.by_parent[last - earliest + 1]
+    u = low + np.random.random() * (high - low)  # noqa: NPY002
+    begins = first
+    while begins < last and worked.by_parent[begins - earliest + 1] <= u:
+        begins += 1
+    return int(begins)
+
+
+@part
+def _explained(
+    infestations: Infestations, i: int, without: int, weights: Weights, worked: Worked
+) -> float:
+    """Return how well an infestation that begins when it does is explained by all others."""
+    begins, ends, plant = infestations.begins[i], infestations.ends[i], infestations.plant[i]
+    total = _weigh(infestations, (plant, begins, begins, ends), (i, without), weights, worked)
+    return float(total * weights.lasting[plant, ends] / weights.lasting[plant, begins])
+
+
+@part
+def _cell(weights: Weights, plant: int) -> tuple[int, int]:
+    """Return in which cell a plant stands, across and along."""
+    cell, along = weights.cells.of_plant[plant], weights.cells.shape[1]
+    return cell // along, cell % along
+
+
+@part
+def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
+    """Return a plant from which something may have come to this one, drawn by the kernel.
+
+    And how many stand in its cell; -1: none stands there.
+    """
+    cells, d = weights.cells, weights.kernel.shape[0]
+    across, along = cells.shape[0], cells.shape[1]
+    k = np.searchsorted(weights.so_far, np.random.random())  # noqa: NPY002
+    y, x = _cell(weights, plant)
+    y, x = y - (k // d - d // 2), x - (k % d - d // 2)
+    if k >= d * d or y < 0 or y >= across or x < 0 or x >= along:
+        return NOBODY, 0
+    first, end = cells.start[y * along + x], cells.start[y * along + x + 1]
+    if first == end:
+        return NOBODY, 0
+    return int(cells.plant[np.random.randint(first, end)]), int(end - first)  # noqa: NPY002
+
+
+@part
+def _hang(infestations: Infestations, i: int, parent: int, worked: Worked) -> None:
+    """Give an infestation another parent."""
+    before = infestations.parent[i]
+    infestations.parent[i] = parent
+    if before >= 0:
+        infestations.children[before] -= 1
+        _note_removable(infestations, before, worked)
+    if parent >= 0:
+        infestations.children[parent] += 1
+        _note_removable(infestations, parent, worked)
+
+
+@part
+def _note_removable(infestations: Infestations, j: int, worked: Worked) -> None:
+    """Keep the list of those that are only there for a single child."""
+    many, rank = worked.many[_REMOVABLE], worked.rank[j]
+    removable = infestations.there[j] and _hangs_on_one(infestations, j)
+    if removable and rank < 0:
+        worked.removable[many], worked.rank[j] = j, many
+        worked.many[_REMOVABLE] = many + 1
+    elif not removable and rank >= 0:
+        last = worked.removable[many - 1]
+        worked.removable[rank], worked.rank[last] = last, rank
+        worked.rank[j] = -1
+        worked.many[_REMOVABLE] = many - 1
+
+
+@part
+def _hangs_on_one(infestations: Infestations, j: int) -> bool:
+    """Tell whether an infestation is only there for a single child."""
+    return bool(not infestations.found[j] and infestations.children[j] == 1)
+
+
+@part
+def _free(infestations: Infestations) -> int:
+    """Return a place that is not taken, or `NOBODY`."""
+    place = NOBODY
+    for j in range(infestations.plant.size):
+        if not infestations.there[j]:
+            place = j
+            break
+    return place

@@ -164,7 +164,7 @@ def test_both_maps_are_pooled():
     _, chance = belief.ancestry.overnight(0.3)
     pooled = belief.overnight(SPREAD).chance
     odds = [p / (1.0 - p) for p in (chance, alone.chance, pooled)]
-    assert odds[2] == pytest.approx(1.15 * odds[0] ** 0.9 * odds[1] ** 0.15)
+    assert odds[2] == pytest.approx(1.15 * odds[0] ** 0.63 * odds[1] ** 0.42)
     assert np.corrcoef(chance, pooled)[0, 1] > 0.9
 
 

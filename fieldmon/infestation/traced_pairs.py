@@ -77,7 +77,7 @@ _LEAST_JUMPS = 0.05
 # seasons with 3 to 30 % infested where 1.5 % were told)
 _STILL_TOO_FEW = 0.7
 # two maps are believed: the odds by the ancestry of finds and those by origins with such powers,
-# times so much (chosen on 360 seasons of ten worlds)
+# times so much (chosen on 560 seasons of ten worlds)
 _ANCESTRY, _ORIGINS, _BOTH = 0.63, 0.42, 1.15
 # of a flat map the mean is rounded
 _AVERAGE = 1.0 - 1e-9

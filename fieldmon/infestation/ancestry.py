@@ -16,10 +16,7 @@ import numpy as np
 from fieldmon.infestation.ancestry_moves import Infestations, Weights
 from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, DrawnEvidence, Rates
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
-from fieldmon.infestation.drawn_ancestry import (
-    DrawnSums,
-    draw_ancestries,
-)
+from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
 from fieldmon.infestation.landing import landing_of
 from fieldmon.infestation.origins import ARRIVE, SIGMAS, Estimate
 from fieldmon.infestation.squares import NOBODY
@@ -208,10 +205,10 @@ class Ancestry:
         )
         if not self.knows:
             return night, None
-        many = max(int(np.count_nonzero(night.infestations.there)), 1)
+        many = int(np.count_nonzero(night.infestations.there))
         hidden = unseen = np.zeros(n)
         for k in range(_on(day, _ROUNDS)):
-            night, hidden, unseen = _drawn(night, landing_of(self.grid), (day, k), arrive)
+            night, hidden, unseen = _drawn(night, landing_of(self.grid), k, arrive)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
         )
@@ -280,9 +277,9 @@ def _with_finds(of: Ancestry) -> Ancestry:
 
 
 def _drawn(
-    of: Ancestry, landing: Landing, when: tuple[int, int], arrive: float
+    of: Ancestry, landing: Landing, nth: int, arrive: float
 ) -> tuple[Ancestry, Floats, Floats]:
-    """Draw ancestries and estimate rates by them, on a day for the so-manieth time.
+    """Draw ancestries and estimate rates by them, for the `nth` time in a night.
 
     Return also how likely each plant is infested as the ancestor of a find, and how many
     infestations of which nothing was seen are expected there.
@@ -302,8 +299,7 @@ def _drawn(
     infestations = of.infestations.copied(0)
     at = _places(infestations, n)
     found = infestations.there & infestations.found
-    exposure = None
-    sweeps = of.sweeps
+    sweeps, day = of.sweeps, len(of.sends) - 1
     for k, many in enumerate(sweeps):
         sends = of.sent(rates)
         kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
@@ -313,18 +309,20 @@ def _drawn(
             np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED, lasting,
         )  # fmt: skip
         drawn = DrawnSums.none(t, n, len(kernel))
-        seed = int(np.ravel_multi_index((*when, k), _SEEDS))
+        seed = int(np.ravel_multi_index((day, nth, k), _SEEDS))
         draws = seed, many, int(_LEFT_OUT * many)
         kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
         for sums in drawn:
             np.divide(sums, kept, out=sums)
-        taken = drawn.active.copy()
-        taken[infestations.ends[found], infestations.plant[found]] = 1.0
+        # between the first draw and the last, nothing hangs on these
         if k in (0, len(sweeps) - 1):
+            taken = drawn.active.copy()
+            taken[infestations.ends[found], infestations.plant[found]] = 1.0
             unfound = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
         night = DrawnEvidence(of.start, sends, kernel, seen, taken, drawn, unfound, arrive)
-        exposure = exposure or rates.exposure(night, landing)
-        rates = rates.after(night, exposure, landing.at_edge)
+        if k == 0:
+            exposure = rates.exposure(night, landing)
+        rates = rates.after(night, exposure, landing)
     known, square = drawn.at_start
     made = replace(
         of,

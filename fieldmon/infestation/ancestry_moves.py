@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import part
+from fieldmon.infestation.cells import cell_of, in_one_cell
 from fieldmon.infestation.squares import NOBODY, Squares, gather, leave, stand
 
 if TYPE_CHECKING:
@@ -200,8 +201,7 @@ def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -
     if latest < earliest:
         return
     when = (infestations.plant[i], earliest, latest, infestations.ends[i])
-    parent = infestations.parent[i]
-    alone = parent >= 0 and _hangs_on_one(infestations, parent)
+    parent, alone = infestations.parent[i], _only_child(infestations, i)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     if alone:
         infestations.begins[i] = _when_by(infestations, parent, when, worked)
@@ -223,7 +223,7 @@ def put_in(
     """Try one that was not found as the parent of an infestation."""
     at, last_find = found_at
     parent = infestations.parent[i]
-    if parent >= 0 and _hangs_on_one(infestations, parent):
+    if _only_child(infestations, i):
         return
     plant, many = _came_from(weights, infestations.plant[i])
     if plant < 0 or at[plant] >= 0 or plant == infestations.plant[i]:
@@ -270,8 +270,7 @@ def take_out(
     if removable == 0:
         return
     place = worked.removable[np.random.randint(removable)]  # noqa: NPY002
-    parent = infestations.parent[place]
-    if parent >= 0 and _hangs_on_one(infestations, parent):
+    if _only_child(infestations, place):
         return
     _children(infestations, place, weights, worked)
     child = worked.child[0]
@@ -281,8 +280,7 @@ def take_out(
     when = (plant, infestations.earliest[place], begins - 1, infestations.ends[place])
     total = _weigh(infestations, when, (place, child), weights, worked)
     now = _explained(infestations, child, place, weights, worked)
-    cell = weights.cells.of_plant[plant]
-    many = weights.cells.start[cell + 1] - weights.cells.start[cell]
+    many = in_one_cell(weights.cells, plant)
     loss = weights.sends[begins - 1] * many * total * worked.many[OPEN] * takes
     if np.random.random() * loss >= now * removable:  # noqa: NPY002
         return
@@ -313,19 +311,17 @@ def try_others(
     latest = _children(infestations, i, weights, worked) - 1
     children, d = infestations.children[i], weights.kernel.shape[0]
     anchor = worked.child[np.random.randint(children)]  # noqa: NPY002
-    parent = infestations.parent[i]
-    alone = parent >= 0 and _hangs_on_one(infestations, parent)
+    parent, alone = infestations.parent[i], _only_child(infestations, i)
     squares, sum_of = worked.squares, 0.0
     for k in range(TRIED):
         plant, many = _came_from(weights, infestations.plant[anchor])
         if k == 0:
             plant = infestations.plant[i]
-            cell = weights.cells.of_plant[plant]
-            many = int(weights.cells.start[cell + 1] - weights.cells.start[cell])
+            many = in_one_cell(weights.cells, plant)
         worked.tried[k], worked.likely[k] = plant, 0.0
         if plant < 0 or (k > 0 and at[plant] >= 0) or last_find[plant] >= latest:
             continue
-        y, x = _cell(weights, plant)
+        y, x = cell_of(weights.cells, plant)
         likely = float(many)
         for c in range(children):
             j = worked.child[c]
@@ -363,7 +359,7 @@ def go_to_one(
     latest = _children(infestations, i, weights, worked) - 1
     when = (plant, max(0, last_find[plant] + 1), latest, infestations.ends[i])
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
-    if parent >= 0 and _hangs_on_one(infestations, parent):
+    if _only_child(infestations, i):
         begins = _when_by(infestations, parent, when, worked)
     else:
         parent, begins = _draw_origin(infestations, total, when, worked)
@@ -397,7 +393,7 @@ def _weigh(
         sends = weights.sends[begins - 1] if begins > 0 else 0.0
         worked.by_parent[k + 1] = worked.by_parent[k] + lasts * sends
         worked.by_none[k + 1] = worked.by_none[k] + lasts * weights.roots[plant, begins]
-    half, y, x = weights.kernel.shape[0] // 2, *_cell(weights, plant)
+    half, y, x = weights.kernel.shape[0] // 2, *cell_of(weights.cells, plant)
     squares, total = worked.squares, 0.0
     near = gather(squares, y, x, half)
     for k in range(near):
@@ -478,13 +474,6 @@ def _explained(
 
 
 @part
-def _cell(weights: Weights, plant: int) -> tuple[int, int]:
-    """Return in which cell a plant stands, across and along."""
-    cell, along = weights.cells.of_plant[plant], weights.cells.shape[1]
-    return cell // along, cell % along
-
-
-@part
 def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
     """Return a plant from which something may have come to this one, drawn by the kernel.
 
@@ -493,7 +482,7 @@ def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
     cells, d = weights.cells, weights.kernel.shape[0]
     across, along = cells.shape[0], cells.shape[1]
     k = np.searchsorted(weights.so_far, np.random.random())  # noqa: NPY002
-    y, x = _cell(weights, plant)
+    y, x = cell_of(weights.cells, plant)
     y, x = y - (k // d - d // 2), x - (k % d - d // 2)
     if k >= d * d or y < 0 or y >= across or x < 0 or x >= along:
         return NOBODY, 0
@@ -535,6 +524,13 @@ def _note_removable(infestations: Infestations, j: int, worked: Worked) -> None:
 def _hangs_on_one(infestations: Infestations, j: int) -> bool:
     """Tell whether an infestation is only there for a single child."""
     return bool(not infestations.found[j] and infestations.children[j] == 1)
+
+
+@part
+def _only_child(infestations: Infestations, i: int) -> bool:
+    """Tell whether an infestation is all that its parent is there for."""
+    parent = infestations.parent[i]
+    return bool(parent >= 0 and _hangs_on_one(infestations, parent))
 
 
 @part

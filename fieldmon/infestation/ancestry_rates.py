@@ -86,15 +86,12 @@ class Exposure(NamedTuple):
 
     Parameters
     ----------
-    kernels
-        ``(8, d, d)`` where jumps may land, as `Landing` has them.
     by_kernel
         ``(8,)`` so many if all go by that kernel.
     before
         So many before the season, if every infestation sends out one a night.
     """
 
-    kernels: Floats
     by_kernel: Floats
     before: float
 
@@ -146,9 +143,9 @@ class Rates(NamedTuple):
         roots[_LATER] = later
         return roots
 
-    def after(self, night: DrawnEvidence, exposure: Exposure, at_edge: Floats) -> Rates:
+    def after(self, night: DrawnEvidence, exposure: Exposure, landing: Landing) -> Rates:
         """Return the rates by what ancestries have, over what would have been seen of it."""
-        return self.with_jumps(night.drawn, night.kernel, exposure).with_roots(night, at_edge)
+        return self.with_jumps(night, exposure, landing).with_roots(night, landing.at_edge)
 
     def _from_none(self, start: Floats, at_edge: Floats) -> tuple[tuple[Floats, Floats], ...]:
         """Return how many come from none before the season and in each of its nights, ``(n,)``.
@@ -178,12 +175,13 @@ class Rates(NamedTuple):
         sent = night.sends[:, None] * (night.drawn.active + night.unseen)
         meets = night.seen * (1.0 - night.taken)
         before, all_nights = landing.met(sent[:-1], meets[1:], BEFORE)
-        return Exposure(landing.kernels, all_nights, float(before @ self.shares) / self.before)
+        return Exposure(all_nights, float(before @ self.shares) / self.before)
 
-    def with_jumps(self, drawn: DrawnSums, kernel: Floats, exposure: Exposure) -> Rates:
-        """Return the same with the jumps that were drawn, taken to land by a kernel ``(d, d)``."""
-        all_jumps = drawn.jumps.sum(axis=0) / np.maximum(kernel, LEAST_CHANCE)
-        jumps = self.shares * np.einsum("kij,ij->k", exposure.kernels, all_jumps)
+    def with_jumps(self, night: DrawnEvidence, exposure: Exposure, landing: Landing) -> Rates:
+        """Return the same with the jumps that were drawn."""
+        drawn = night.drawn
+        all_jumps = drawn.jumps.sum(axis=0) / np.maximum(night.kernel, LEAST_CHANCE)
+        jumps = self.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
         shares = (SHARES + jumps) / (SHARES.sum() + exposure.by_kernel)
         before = _SENT_BEFORE_FINDS + float(drawn.jumps[0].sum())
         before /= _SENT_BEFORE_FINDS / _SENT_BEFORE + exposure.before

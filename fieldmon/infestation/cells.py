@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.jit import part
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -64,3 +66,17 @@ class Cells(NamedTuple):
         """Return the sum of ``values (n,)`` in each cell, in the cells' shape."""
         sums = np.bincount(self.of_plant, values, int(self.shape.prod())).astype(np.float64)
         return sums.reshape(self.shape)
+
+
+@part
+def cell_of(cells: Cells, plant: int) -> tuple[int, int]:
+    """Return in which cell a plant stands, across and along."""
+    cell, along = cells.of_plant[plant], cells.shape[1]
+    return cell // along, cell % along
+
+
+@part
+def in_one_cell(cells: Cells, plant: int) -> int:
+    """Return how many plants stand in the cell of one."""
+    cell = cells.of_plant[plant]
+    return int(cells.start[cell + 1] - cells.start[cell])

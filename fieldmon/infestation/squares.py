@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import part, routine
+from fieldmon.infestation.cells import cell_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,8 +59,7 @@ def empty_squares(cells: Cells, places: int) -> Squares:
 @part
 def stand(squares: Squares, cells: Cells, plant: int, place: int) -> None:
     """Let a place stand at a plant."""
-    cell, along = cells.of_plant[plant], cells.shape[1]
-    y, x = cell // along, cell % along
+    y, x = cell_of(cells, plant)
     squares.across[place], squares.along[place] = y, x
     first = squares.first[y // _SIDE, x // _SIDE]
     squares.after[place], squares.before[place] = first, NOBODY

@@ -34,7 +34,7 @@ def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL, unseen=None):
 
 
 def after(rates, night):
-    return rates.after(night, rates.exposure(night, LANDING), LANDING.at_edge)
+    return rates.after(night, rates.exposure(night, LANDING), LANDING)
 
 
 def nothing_drawn():
@@ -126,6 +126,6 @@ def test_who_was_never_seen_would_have_been_seen_by_what_it_sent_out():
     both = rates.exposure(evidence(drawn, unseen=unseen), LANDING)
     assert both.before == pytest.approx(3.0 * alone.before, rel=0.05)
     assert both.by_kernel == pytest.approx(3.0 * alone.by_kernel, rel=0.05)
-    fewer = rates.with_jumps(drawn, KERNEL, both).before
-    assert fewer < rates.with_jumps(drawn, KERNEL, alone).before
+    fewer = rates.with_jumps(evidence(drawn), both, LANDING).before
+    assert fewer < rates.with_jumps(evidence(drawn), alone, LANDING).before
     assert repr(both) == "<Exposure to 8 kernels>"

@@ -84,7 +84,7 @@ def all_ancestries(world, finds, last_find):
 
 @pytest.mark.parametrize("finds", [[(0, 3)], [(1, 2)], [(0, 3), (2, 2)], [(1, 1), (1, 3), (3, 3)]])
 def test_ancestries_are_drawn_as_often_as_they_are_likely(finds):
-    """Three moves that fit together: each sum is that over all ancestries there are."""
+    """Four moves that fit together: each sum is that over all ancestries there are."""
     world = believed(len(finds))
     made, last_find = with_finds(finds)
     if finds[0][0] == finds[-2 % len(finds)][0] and len(finds) == 3:

@@ -18,6 +18,7 @@ from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, D
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
 from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
 from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.latency import HIDDEN_NIGHTS
 from fieldmon.infestation.origins import ARRIVE, SIGMAS, Estimate
 from fieldmon.infestation.squares import NOBODY
 from fieldmon.infestation.unseen_offspring import stays_unseen, unseen_now
@@ -88,6 +89,8 @@ class Ancestry:
         How many of the infestations drawn arrived from outside.
     began_anew
         Whether it began later than the season.
+    hiding
+        ``(4,)`` how likely infestations hide for each of `HIDDEN_NIGHTS`.
     """
 
     grid: PlantGrid
@@ -102,6 +105,7 @@ class Ancestry:
     at_start: Floats = field(default_factory=lambda: np.full(2, np.nan))
     arrived: float = 0.0
     began_anew: bool = False
+    hiding: Floats = field(default_factory=lambda: np.eye(len(HIDDEN_NIGHTS))[0])
 
     def __repr__(self) -> str:
         return f"<Ancestry of {np.count_nonzero(self.infestations.found)} finds>"
@@ -229,6 +233,7 @@ class Ancestry:
             "rates": np.concatenate([self.rates.shares, self.rates[1:]]),
             "at_start": self.at_start,
             "since": np.array([self.arrived, self.began_anew]),
+            "hiding": self.hiding,
         }
 
     @classmethod
@@ -287,18 +292,21 @@ def _drawn(
     t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
     taken = np.zeros((t, n))
     taken[: len(of.taken)] = of.taken
-    overlooked = np.zeros((t, n))
-    missed = of.missed[::-1].astype(np.float64)
-    overlooked[BEFORE:-1] = np.cumsum(missed, axis=0)[::-1]
-    overlooked[:BEFORE] = overlooked[BEFORE]
+    missed = np.zeros((t, n))
+    # of all inspections from a morning on, as a logarithm
+    missed[BEFORE:-1] = np.cumsum(of.missed[::-1], axis=0, dtype=np.float64)[::-1]
+    missed[:BEFORE] = missed[BEFORE]
+    overlooked = _overlooked(missed, of.hiding)
     since = np.arange(t)[:, None] <= of.last_find + BEFORE
     alone = np.where(since, -np.inf, overlooked)
     unseen = stays_unseen(alone, taken, of.sent(rates), rates.shares, landing)
-    lasting = np.ascontiguousarray(np.exp(overlooked + unseen.offspring).T)
     seen = 1.0 - unseen.chance
     infestations = of.infestations.copied(0)
     at = _places(infestations, n)
     found = infestations.there & infestations.found
+    lasting = np.ones((n + len(found), t))
+    lasting[:n] = np.exp(overlooked + unseen.offspring).T
+    lasting[n:][found] = _until_found(missed, unseen.offspring, infestations, of.hiding)
     sweeps, day = of.sweeps, len(of.sends) - 1
     for k, many in enumerate(sweeps):
         sends = of.sent(rates)
@@ -336,6 +344,51 @@ def _drawn(
         arrived=float(drawn.roots[BEFORE + 1 :].sum()),
     )
     return made, drawn.hidden, unfound[-1]
+
+
+def _overlooked(missed: Floats, hiding: Floats) -> Floats:
+    """Return how likely infestations are overlooked until the last morning, as a logarithm.
+
+    Parameters
+    ----------
+    missed
+        ``(t, n)`` the same if nothing hides, of an infestation that begins on each morning.
+    hiding
+        ``(4,)`` how likely they hide for each of `HIDDEN_NIGHTS`; those of before the season do
+        not.
+    """
+    if hiding[0] == 1.0:
+        return missed
+    once_shown, chance = np.exp(missed), np.zeros_like(missed)
+    for nights, likely in zip(HIDDEN_NIGHTS, hiding, strict=True):
+        chance += likely * once_shown[_shows(len(missed), nights)]
+    overlooked: Floats = np.log(np.maximum(chance, np.finfo(float).tiny))
+    return overlooked
+
+
+def _until_found(
+    missed: Floats, offspring: Floats, infestations: Infestations, hiding: Floats
+) -> Floats:
+    """Return how likely it is to find what was found, when it was, ``(k, t)``, by its beginning.
+
+    `missed` and `hiding` are as `_overlooked` has them, `offspring` as `Unseen` has it.
+    """
+    found = infestations.there & infestations.found
+    plant, ends = infestations.plant[found], infestations.ends[found]
+    chance = np.zeros((len(plant), len(missed)))
+    for nights, likely in zip(HIDDEN_NIGHTS, hiding, strict=True):
+        shows = _shows(len(missed), nights)
+        seen = shows <= ends[:, None]
+        overlooked = missed[:, plant][shows].T - missed[ends, plant][:, None]
+        chance += likely * seen * np.exp(np.where(seen, overlooked, 0.0))
+    sent = offspring[:, plant].T - offspring[ends, plant][:, None]
+    return chance * np.exp(np.minimum(sent, 0.0))
+
+
+def _shows(mornings: int, nights: int) -> NDArray[np.int64]:
+    """Return the morning from which on an infestation can be seen, by that on which it begins."""
+    begins = np.arange(mornings)
+    return np.where(begins <= BEFORE, begins, np.minimum(begins + nights, mornings - 1))
 
 
 def _on(day: int, numbers: tuple[int, ...]) -> int:

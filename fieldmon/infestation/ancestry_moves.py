@@ -96,9 +96,9 @@ class Weights(NamedTuple):
         The first morning of the season, and that until which infestations have ended that stay as
         they are.
     lasting
-        ``(n, t)`` how likely it is that an infestation goes on from a morning to the last as it
-        was seen, if it sends out only what the ancestry has: up to another morning it is the ratio
-        of both.
+        ``(n + m, t)`` how likely it is that an infestation that begins on a morning goes on to its
+        end as it was seen, if it sends out only what the ancestry has: of one that was not found at
+        each plant, and of each place's find. Only ratios count.
     """
 
     cells: Cells
@@ -200,7 +200,7 @@ def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -
     earliest = infestations.earliest[i]
     if latest < earliest:
         return
-    when = (infestations.plant[i], earliest, latest, infestations.ends[i])
+    when = (infestations.plant[i], earliest, latest, _row(infestations, i, weights))
     parent, alone = infestations.parent[i], _only_child(infestations, i)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     if alone:
@@ -234,7 +234,7 @@ def put_in(
         return
     last = weights.roots.shape[1] - 1
     now = _explained(infestations, i, NOBODY, weights, worked)
-    when = (plant, earliest, latest, last)
+    when = (plant, earliest, latest, plant)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     other, since = _draw_origin(infestations, total, when, worked)
     removable = worked.many[_REMOVABLE] + 1
@@ -277,14 +277,14 @@ def take_out(
     if infestations.ends[child] <= weights.settled:
         return
     begins, plant = infestations.begins[child], infestations.plant[place]
-    when = (plant, infestations.earliest[place], begins - 1, infestations.ends[place])
+    when = (plant, infestations.earliest[place], begins - 1, plant)
     total = _weigh(infestations, when, (place, child), weights, worked)
     now = _explained(infestations, child, place, weights, worked)
     many = in_one_cell(weights.cells, plant)
     loss = weights.sends[begins - 1] * many * total * worked.many[OPEN] * takes
     if np.random.random() * loss >= now * removable:  # noqa: NPY002
         return
-    when = (infestations.plant[child], begins, begins, infestations.ends[child])
+    when = (infestations.plant[child], begins, begins, _row(infestations, child, weights))
     total = _weigh(infestations, when, (child, place), weights, worked)
     other, _ = _draw_origin(infestations, total, when, worked)
     _hang(infestations, child, other, worked)
@@ -331,7 +331,7 @@ def try_others(
                 likely *= weights.kernel[across, along] if inside else 0.0
         if likely == 0.0:
             continue
-        when = (plant, max(0, last_find[plant] + 1), latest, infestations.ends[i])
+        when = (plant, max(0, last_find[plant] + 1), latest, plant)
         total = _weigh(infestations, when, (i, NOBODY), weights, worked)
         worked.likely[k] = likely * (_of_parent(parent, worked) if alone else total)
         sum_of += worked.likely[k]
@@ -357,7 +357,7 @@ def go_to_one(
         return
     plant, parent = worked.tried[k], infestations.parent[i]
     latest = _children(infestations, i, weights, worked) - 1
-    when = (plant, max(0, last_find[plant] + 1), latest, infestations.ends[i])
+    when = (plant, max(0, last_find[plant] + 1), latest, plant)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     if _only_child(infestations, i):
         begins = _when_by(infestations, parent, when, worked)
@@ -382,14 +382,14 @@ def _weigh(
 ) -> float:
     """Weigh all origins of an infestation; return their sum.
 
-    `when` is its plant, the first and the last morning on which it may begin, and when it ends;
-    `without` are two infestations from which it does not come.
+    `when` is its plant, the first and the last morning on which it may begin, and its line in
+    `Weights.lasting`; `without` are two infestations from which it does not come.
     """
-    plant, earliest, latest, ends = when
+    plant, earliest, latest, row = when
     worked.by_parent[0] = worked.by_none[0] = 0.0
     for k in range(latest - earliest + 1):
         begins = earliest + k
-        lasts = weights.lasting[plant, begins] / weights.lasting[plant, ends]
+        lasts = weights.lasting[row, begins]
         sends = weights.sends[begins - 1] if begins > 0 else 0.0
         worked.by_parent[k + 1] = worked.by_parent[k] + lasts * sends
         worked.by_none[k + 1] = worked.by_none[k] + lasts * weights.roots[plant, begins]
@@ -468,9 +468,17 @@ def _explained(
     infestations: Infestations, i: int, without: int, weights: Weights, worked: Worked
 ) -> float:
     """Return how well an infestation that begins when it does is explained by all others."""
-    begins, ends, plant = infestations.begins[i], infestations.ends[i], infestations.plant[i]
-    total = _weigh(infestations, (plant, begins, begins, ends), (i, without), weights, worked)
-    return float(total * weights.lasting[plant, ends] / weights.lasting[plant, begins])
+    begins, row = infestations.begins[i], _row(infestations, i, weights)
+    when = (infestations.plant[i], begins, begins, row)
+    total = _weigh(infestations, when, (i, without), weights, worked)
+    return float(total / weights.lasting[row, begins])
+
+
+@part
+def _row(infestations: Infestations, i: int, weights: Weights) -> int:
+    """Return the line of an infestation in `Weights.lasting`."""
+    plant = int(infestations.plant[i])
+    return weights.roots.shape[0] + i if infestations.found[i] else plant
 
 
 @part

@@ -29,11 +29,12 @@ NIGHTS = max(HIDDEN_NIGHTS)
 _HIDES = np.arange(NIGHTS)[None, :] < np.array(HIDDEN_NIGHTS)[:, None]
 # how many finds of a day the number expected is worth, as rates are not known (our choice)
 _PRIOR_FINDS = 5.0
-# finds of one colony share their fate, so each counts half; and nothing is settled for good: what
-# hides is not looked for, so that little speaks for it once it is taken to be unlikely
-_TEMPER, _SETTLED = 0.5, 2.5
-# no find is less likely than this; and no plant so many times as likely to be infested by news
-_LEAST_SHOWN, _MOST_NEWS = 1e-4, 1e3
+# finds of one colony share their fate, so each counts half; and nothing is settled for good, as a
+# logarithm of chances: what hides is not looked for, so that little speaks for it once it is taken
+# to be unlikely
+_TEMPER, _SETTLED = 0.5, 5.0
+# no find is less likely than this; and no plant's chances are levelled by more
+_LEAST_SHOWN, _MOST_LEVELLED = 1e-4, 1e3
 _NOTHING, _MOST = 1e-12, 0.9
 
 
@@ -108,7 +109,6 @@ class Latency:
         plants: NDArray[np.int32],
         found: NDArray[np.bool_],
         detects: Floats,
-        news: Floats,
     ) -> Latency:
         """Return what is believed after a day's inspections.
 
@@ -118,25 +118,34 @@ class Latency:
             ``(k,)`` what was inspected, with what result.
         detects
             ``(k,)`` chance to find what can be seen.
-        news
-            ``(n,)`` how many times as likely each plant is to be infested as in the morning.
         """
         which = self.told[plants] > 0
         evidence = self.evidence + _TEMPER * self._said(plants[which], found[which], detects[which])
-        factor = np.minimum(news, _MOST_NEWS).astype(np.float32)
-        factor[plants] = 1.0
-        came = np.minimum(self.came * factor, np.float32(_MOST))
-        shows = np.minimum(self.shows * factor, np.float32(_MOST))
+        came, shows = self.came.copy(), self.shows.copy()
         clean, misses = plants[~found], 1.0 - detects[~found]
-        own = self.shows[:, clean].astype(np.float64)
+        own = shows[:, clean].astype(np.float64)
         shows[:, clean] = own * misses / (1.0 - own * (1.0 - misses))
         # a find is gone, or known
         came[:, plants[found]] = 0.0
         shows[:, plants[found]] = 0.0
-        kept, told = np.maximum(evidence - evidence.max(), -_SETTLED), self.told.copy()
+        likely, told = evidence + _LIKELY, self.told.copy()
+        kept = np.maximum(likely - likely.max(), -_SETTLED) - _LIKELY
         told[clean] = NIGHTS
         told[plants[found]] = 0
         return Latency(came, shows, kept, told)
+
+    def levelled(self, chance: Floats) -> Latency:
+        """Return the same, all candidates together having the chance ``(n,)`` of the map.
+
+        So what was found beside a plant speaks for what was overlooked there as much as for what
+        came.
+        """
+        likely, hides = self.likely.astype(np.float32), self.hides.astype(np.float32)
+        both = likely @ self.shows + hides @ self.came
+        factor = np.minimum(chance / np.maximum(both, _NOTHING), _MOST_LEVELLED).astype(np.float32)
+        came = np.minimum(self.came * factor, np.float32(_MOST))
+        shows = np.minimum(self.shows * factor, np.float32(_MOST))
+        return replace(self, came=came, shows=shows)
 
     def _said(self, plants: NDArray[np.int32], found: NDArray[np.bool_], detects: Floats) -> Floats:
         """Return what inspections of plants that seemed clean say of each candidate, ``(4,)``.

@@ -288,15 +288,15 @@ class TracedPairs:
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
-            ancestry=self.ancestry.learn(plants, found, shown)
+            ancestry=self.ancestry.learn(plants, found, told)
             if self.ancestry is not None and learning.treated
             else None,
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency
-            and self.latency.inspected(plants, found, told, believed[0] / self.chance),
+            and self.latency.inspected(plants, found, told),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
-        return lowered.counting(self, day)
+        return _levelled(lowered.counting(self, day))
 
     def _jumping(self, believed: tuple[Floats, Floats], ratio: float) -> NDArray[np.float32]:
         """Believe in what jumps have brought `ratio` times as much, in place; return the shares."""
@@ -356,12 +356,14 @@ class TracedPairs:
         if self.ancestry is None:
             return morning
         arrive = max(spread.arrivals_per_day, ARRIVE)
-        ancestry, chance = self.ancestry.overnight(self._sends(spread), arrive)
+        hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
+        ancestry = replace(self.ancestry, hiding=hiding)
+        ancestry, chance = ancestry.overnight(self._sends(spread), arrive)
         if chance is not None:
             # a logarithmic pool of both maps (Genest & Zidek 1986)
             odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(morning.chance) ** _ORIGINS
             morning = morning.times(odds / (1.0 + odds) / morning.chance)
-        return replace(morning, ancestry=ancestry)
+        return _levelled(replace(morning, ancestry=ancestry))
 
     def untold_night(self, spread: Spread) -> TracedPairs:
         """Return the same chances next morning; where they came from is not told apart any more.
@@ -484,6 +486,12 @@ class TracedPairs:
         return replace(
             self, chance=chance, pair_chance=together, latency=latency, ancestry=ancestry
         )
+
+
+def _levelled(belief: TracedPairs) -> TracedPairs:
+    """Return the same, what may hide being part of the chances as they are by now."""
+    latency = belief.latency and belief.latency.levelled(belief.chance)
+    return replace(belief, latency=latency)
 
 
 def _odds(chance: Floats) -> Floats:

@@ -22,7 +22,7 @@ def test_an_ancestry_holds_together():
         made.plant[place], made.ends[place] = plant, rng.integers(3, mornings - 1)
         made.begins[place], made.found[place] = made.ends[place], True
         made.there[place], last_find[plant] = True, made.ends[place]
-    lasting = np.exp(-rng.uniform(0.0, 2.0, (144, mornings)))
+    lasting = np.exp(-rng.uniform(0.0, 2.0, (144 + made.plant.size, mornings)))
     roots = np.full((144, mornings), 1e-4)
     sends = np.full(mornings, 0.3)
     so_far = np.cumsum(kernel) / kernel.sum()

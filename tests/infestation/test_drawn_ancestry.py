@@ -15,7 +15,7 @@ from fieldmon.infestation.squares import NOBODY
 from fieldmon.plot.layout import rectangle
 
 ROW = rectangle(1, 4)
-N, MORNINGS = len(ROW), 4
+N, MORNINGS, PLACES = len(ROW), 4, 8
 SEASON = 1
 
 
@@ -26,14 +26,14 @@ def believed(seed=0):
     kernel = np.einsum("k,kij->ij", rng.dirichlet(np.ones(8)), landing.kernels)
     kernel /= kernel.sum()
     sends = rng.uniform(0.5, 3.0, MORNINGS)
-    lasting = rng.uniform(0.2, 1.0, (N, MORNINGS))
+    lasting = rng.uniform(0.2, 1.0, (N + PLACES, MORNINGS))
     roots = rng.uniform(0.01, 0.3, (N, MORNINGS))
     return Weights(landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, -1, lasting)
 
 
 def with_finds(finds):
     """Return infestations that were found at plants on mornings, and where others may not be."""
-    made = Infestations.room(8)
+    made = Infestations.room(PLACES)
     for place, (plant, morning) in enumerate(finds):
         made.plant[place], made.ends[place] = plant, morning
         made.begins[place], made.found[place], made.there[place] = morning, True, True
@@ -67,8 +67,10 @@ def all_ancestries(world, finds, last_find):
                 if any(i not in parents for i in range(len(finds), len(ends))):
                     continue
                 weight = 1.0
-                for (plant, _, end), b, parent in zip(ends, begins, parents, strict=True):
-                    weight *= world.lasting[plant, b] / world.lasting[plant, end]
+                for k, ((plant, *_), b, parent) in enumerate(
+                    zip(ends, begins, parents, strict=True)
+                ):
+                    weight *= world.lasting[N + k if k < len(finds) else plant, b]
                     if parent == NOBODY:
                         weight *= world.roots[plant, b]
                     else:

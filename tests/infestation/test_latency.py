@@ -44,6 +44,10 @@ def test_few_finds_after_the_first_days_say_that_infestations_hide():
     assert hiding > 3.0 * season(0, days=5).latency.nights
 
 
+def test_many_finds_at_plants_that_seemed_clean_for_days_make_hiding_likely():
+    assert season(4).latency.likely[0] < 0.3
+
+
 def test_that_nothing_hides_is_never_settled():
     assert season(0).latency.likely[0] < 0.99
 
@@ -51,7 +55,7 @@ def test_that_nothing_hides_is_never_settled():
 def test_a_clean_look_leaves_what_hides():
     came = np.full(N, 0.1)
     fresh = Latency.none(np.full(N, 1e-6)).overnight(np.zeros(N), came)
-    looked = fresh.inspected(EVERY, NONE, np.full(N, 0.84), np.ones(N))
+    looked = fresh.inspected(EVERY, NONE, np.full(N, 0.84))
     assert looked.came[0] == pytest.approx(0.1)
     by_candidate = looked.shows[:, 0]
     assert by_candidate[0] == pytest.approx(0.1 * 0.16 / (1 - 0.1 * 0.84), rel=1e-3)
@@ -83,7 +87,7 @@ def test_the_chance_that_something_hides_is_a_share_of_the_plants_own():
 
 def test_a_find_and_a_treatment_take_what_hides_too():
     latency = Latency.none(FLAT).overnight(FLAT, FLAT + 0.02)
-    found = latency.inspected(EVERY[:1], np.ones(1, np.bool_), np.full(1, 0.84), np.ones(N))
+    found = latency.inspected(EVERY[:1], np.ones(1, np.bool_), np.full(1, 0.84))
     assert found.came[:, 0].max() == found.shows[:, 0].max() == 0.0
     left = latency.treated(np.full(N, 0.25))
     assert left.came[0] == pytest.approx(0.25 * latency.came[0])
@@ -147,13 +151,14 @@ def test_a_day_s_results_at_plants_that_seemed_clean_weigh_the_candidates_by_bay
     rng, latency = np.random.default_rng(seed), known(seed)
     plants = rng.permutation(6)[:5].astype(np.int32)
     found, detects = rng.random(5) < 0.5, rng.uniform(0.5, 0.9, 5)
-    after = latency.inspected(plants, found, detects, np.ones(6))
+    after = latency.inspected(plants, found, detects)
     told = latency.told[plants] > 0
     shown = detects * latency.shows[:, plants]
     said = np.log([likely_of(one[told], found[told]) for one in shown])
     evidence = latency.evidence + 0.5 * said  # finds of one colony count half
-    evidence = np.maximum(evidence - evidence.max(), -2.5)
-    assert after.evidence == pytest.approx(evidence, abs=1e-3)
+    likely = np.array([0.85, 0.05, 0.065, 0.035]) * np.exp(evidence)
+    likely = np.maximum(likely / likely.max(), np.exp(-5.0))  # nothing is settled for good
+    assert after.likely == pytest.approx(likely / likely.sum(), abs=1e-3)
     # the next night tells for seven more, of a plant that seemed clean
     now = latency.told.copy()
     now[plants] = np.where(found, 0, NIGHTS)
@@ -163,19 +168,43 @@ def test_a_day_s_results_at_plants_that_seemed_clean_weigh_the_candidates_by_bay
     )
 
 
-def test_what_results_say_of_others_raises_what_came_to_them_and_what_shows():
+def test_a_clean_inspection_lowers_what_shows_and_a_find_takes_all():
     latency = known(2)
-    news = np.array([1.0, 2.0, 0.5, 9999.0, 1.5, 1.0])
     plants, found = np.array([0, 4], np.int32), np.array([False, True])
-    after = latency.inspected(plants, found, np.full(2, 0.8), news)
-    for k in (1, 2, 3, 5):
-        for was, now in ((latency.came, after.came), (latency.shows, after.shows)):
-            assert now[:, k] == pytest.approx(np.minimum(was[:, k] * news[k], 0.9))
+    after = latency.inspected(plants, found, np.full(2, 0.8))
+    others = [1, 2, 3, 5]
+    assert (after.came[:, others] == latency.came[:, others]).all()
+    assert (after.shows[:, others] == latency.shows[:, others]).all()
     shows = latency.shows[:, 0]
     assert after.came[:, 0] == pytest.approx(latency.came[:, 0])
     assert after.shows[:, 0] == pytest.approx(0.2 * shows / (1.0 - 0.8 * shows))
     assert (after.came[:, 4] == 0.0).all()
     assert (after.shows[:, 4] == 0.0).all()
+
+
+def test_what_candidates_have_together_is_the_chance_of_the_map():
+    latency = known(2)
+    chance = np.linspace(0.001, 0.3, 6)
+    levelled = latency.levelled(chance)
+    together = levelled.likely @ levelled.shows + levelled.hides @ levelled.came
+    assert together == pytest.approx(chance, rel=1e-5)
+    # as much of it hides
+    assert levelled.hidden(chance) == pytest.approx(
+        latency.hidden(latency.likely @ latency.shows + latency.hides @ latency.came), rel=1e-5
+    )
+    assert (levelled.likely == latency.likely).all()
+
+
+def test_a_find_beside_a_clean_plant_says_that_something_was_overlooked_there():
+    """Not only that something came: else what was overlooked seems to have come last night."""
+    belief = TracedPairs.of(GRID, FLAT)
+    plants, found = np.array([209, 210], np.int32), np.array([True, False])
+    evening = belief.learn(plants, found, Learning(0.84))
+    far = np.array([15, 16], np.int32)
+    alone = belief.learn(far, np.zeros(2, np.bool_), Learning(0.84))
+    assert evening.chance[210] > 3.0 * alone.chance[16]
+    for k in range(len(HIDDEN_NIGHTS)):
+        assert evening.latency.shows[k, 210] == pytest.approx(evening.chance[210], rel=0.01)
 
 
 def test_each_candidate_shows_what_came_so_many_nights_ago():

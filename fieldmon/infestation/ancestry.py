@@ -138,7 +138,9 @@ class Ancestry:
         start = Rates(self.rates.shares)
         rates = self.rates._replace(start=start.start, start_by_edge=start.start_by_edge)
         begun = Ancestry.of(self.grid, chance)
-        return replace(begun, rates=rates, at_start=self.at_start, began_anew=True)
+        return replace(
+            begun, rates=rates, at_start=self.at_start, began_anew=True, hiding=self.hiding
+        )
 
     @property
     def so_far(self) -> Ancestry:

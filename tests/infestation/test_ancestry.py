@@ -7,6 +7,7 @@ import pytest
 
 from fieldmon.infestation import ancestry as module
 from fieldmon.infestation.ancestry import Ancestry
+from fieldmon.infestation.ancestry_rates import BEFORE
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
@@ -32,6 +33,66 @@ def test_a_find_speaks_for_the_plants_about_it():
     _, chance = after([MIDDLE], [True])
     assert chance[[MIDDLE - 1, MIDDLE + 1, MIDDLE - 20, MIDDLE + 20]].min() > 3.0 * chance[0]
     assert chance[MIDDLE + 2] > chance[0]
+
+
+def season(hiding, days, find_on=1):
+    """Return what is known, and the chances each morning: a plot inspected wholly every day.
+
+    One plant is found, on the second day: what it sent out in the night before may hide.
+    """
+    plants, known, chances = np.arange(N), replace(Ancestry.of(GRID, FLAT), hiding=hiding), []
+    for day in range(days):
+        known, chance = after(plants, (plants == MIDDLE) & (day == find_on), known, 0.9)
+        chances.append(chance)
+    return known, chances
+
+
+AT_ONCE, FOUR_NIGHTS = np.eye(4)[0], np.array([0.001, 0.0, 0.999, 0.0])
+BESIDE = [MIDDLE - 1, MIDDLE + 1, MIDDLE - 20, MIDDLE + 20]
+
+
+def test_what_hides_stays_likely_beside_a_find_however_often_plants_seemed_clean():
+    _, hidden = season(FOUR_NIGHTS, 7)
+    _, seen = season(AT_ONCE, 7)
+    # sent out in the night before the find, it shows from the fifth morning after that on
+    assert hidden[3][BESIDE].min() > 0.02
+    assert hidden[3][BESIDE].min() > 20.0 * seen[3][BESIDE].max()
+    assert hidden[6][BESIDE].max() < 0.5 * hidden[3][BESIDE].min()
+
+
+def test_what_is_found_began_before_it_hid_or_before_the_season():
+    known, _ = season(FOUR_NIGHTS, 7, find_on=6)
+    found = known.infestations.found & known.infestations.there
+    begins, ends = known.infestations.begins[found], known.infestations.ends[found]
+    assert ends.tolist() == [BEFORE + 6]
+    assert begins[0] <= BEFORE + 2
+    known, _ = season(AT_ONCE, 7, find_on=6)
+    # inspected clean every day before, it came in one of the last nights
+    assert known.infestations.begins[known.infestations.found].max() >= BEFORE + 4
+
+
+def test_nights_are_mixed_as_they_are_likely():
+    """By hand: one plant, one inspection a day; what began before the season shows at once."""
+    t = BEFORE + 5
+    missed = np.zeros((t, 1))
+    missed[BEFORE:-1, 0] = np.log(0.2) * np.arange(4, 0, -1)
+    missed[:BEFORE] = missed[BEFORE]
+    hiding = np.array([0.5, 0.3, 0.15, 0.05])
+    overlooked = np.exp(module._overlooked(missed, hiding)[:, 0])
+    assert overlooked[: BEFORE + 1] == pytest.approx(0.2**4)
+    for began in range(1, 5):
+        # as many inspections as it could have been seen by
+        many = [max(4 - began - nights, 0) for nights in (0, 2, 4, 7)]
+        assert overlooked[BEFORE + began] == pytest.approx(hiding @ 0.2 ** np.array(many))
+    # the same until a find on the last day but one, where it must show by then
+    infestations = after([0], [True])[0].infestations
+    infestations.ends[infestations.found] = BEFORE + 3
+    until = module._until_found(missed, np.zeros((t, 1)), infestations, hiding)[0]
+    assert until[: BEFORE + 1] == pytest.approx(0.2**3)
+    for began in range(1, 4):
+        each = [0.2 ** (3 - began - k) if k <= 3 - began else 0.0 for k in (0, 2, 4, 7)]
+        assert until[BEFORE + began] == pytest.approx(hiding @ each)
+    assert until[BEFORE + 4] == 0.0
 
 
 def test_a_clean_plant_is_less_likely_infested_and_so_are_those_about_it():
@@ -86,7 +147,8 @@ def test_a_day_in_two_parts_is_one_day():
 
 def a_week(seed=0):
     """Return what is known after a week of finds and clean plants."""
-    rng, known = np.random.default_rng(seed), Ancestry.of(GRID, FLAT)
+    rng = np.random.default_rng(seed)
+    known = replace(Ancestry.of(GRID, FLAT), hiding=np.array([0.6, 0.1, 0.2, 0.1]))
     for _ in range(7):
         plants = rng.choice(N, 60, replace=False).astype(np.int32)
         found = rng.random(60) < 0.1
@@ -132,7 +194,8 @@ def test_it_begins_anew_after_many_days_and_with_many_infestations(monkeypatch):
     known, chance = after(np.arange(40), np.ones(40, bool), known)
     assert len(known.sends) == 0
     assert (known.start == chance).all()
-    # what was learnt of jumps stays
+    # what was learnt of jumps and of hiding stays
+    assert known.hiding.tolist() == [0.6, 0.1, 0.2, 0.1]
     assert known.rates.shares.sum() == pytest.approx(1.0)
 
 

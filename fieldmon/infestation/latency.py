@@ -143,8 +143,9 @@ class Latency:
         likely, hides = self.likely.astype(np.float32), self.hides.astype(np.float32)
         both = likely @ self.shows + hides @ self.came
         factor = np.minimum(chance / np.maximum(both, _NOTHING), _MOST_LEVELLED).astype(np.float32)
-        came = np.minimum(self.came * factor, np.float32(_MOST))
-        shows = np.minimum(self.shows * factor, np.float32(_MOST))
+        came, shows = self.came * factor, self.shows * factor
+        for chances in (came, shows):
+            np.minimum(chances, np.float32(_MOST), out=chances)
         return replace(self, came=came, shows=shows)
 
     def _said(self, plants: NDArray[np.int32], found: NDArray[np.bool_], detects: Floats) -> Floats:

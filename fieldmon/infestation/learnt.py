@@ -138,8 +138,8 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
 def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
     """Return how many were infested at the start, and how many a night are from outside.
 
-    By the ancestry of finds where there is one: of 61 at the start it says 56 to 67 (a week of
-    six seasons in ten worlds). The origins of finds say 28 to 64: whatever was at the start and
+    By the ancestry of finds where there is one: of 61 at the start it says 57 to 67 (a week of
+    24 seasons in ten worlds). The origins of finds say 28 to 64: whatever was at the start and
     was never found is not among them.
     """
     if belief.ancestry is not None:

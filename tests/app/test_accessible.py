@@ -145,7 +145,7 @@ def test_a_wait_of_over_a_second_is_said_in_words(today):
     app = "document.querySelector('[data-testid=stApp]')"
     state = f"{app}.dataset.testScriptState"
     said = f"(({{content, opacity}}) => [content, opacity])(getComputedStyle({app}, '::after'))"
-    assert today.evaluate(f"() => {said}[0]") == "none"
+    today.wait_for_function(f"() => {said}[0] === 'none'")
     # by the animation's own clock, as a browser without a screen draws no frame for seconds
     seen = today.evaluate(f"""() => {{
       {state} = "running";

@@ -308,7 +308,8 @@ def _drawn(
     found = infestations.there & infestations.found
     lasting = np.ones((n + len(found), t))
     lasting[:n] = np.exp(overlooked + unseen.offspring).T
-    lasting[n:][found] = _until_found(missed, unseen.offspring, infestations, of.hiding)
+    finds = infestations.ends[found], infestations.plant[found]
+    lasting[n:][found] = _until_found(missed, unseen.offspring, finds, of.hiding)
     sweeps, day = of.sweeps, len(of.sends) - 1
     for k, many in enumerate(sweeps):
         sends = of.sent(rates)
@@ -327,7 +328,7 @@ def _drawn(
         # between the first draw and the last, nothing hangs on these
         if k in (0, len(sweeps) - 1):
             taken = drawn.active.copy()
-            taken[infestations.ends[found], infestations.plant[found]] = 1.0
+            taken[finds] = 1.0
             unfound = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
         night = DrawnEvidence(of.start, sends, kernel, seen, taken, drawn, unfound, arrive)
         if k == 0:
@@ -359,8 +360,6 @@ def _overlooked(missed: Floats, hiding: Floats) -> Floats:
         ``(4,)`` how likely they hide for each of `HIDDEN_NIGHTS`; those of before the season do
         not.
     """
-    if hiding[0] == 1.0:
-        return missed
     once_shown, chance = np.exp(missed), np.zeros_like(missed)
     for nights, likely in zip(HIDDEN_NIGHTS, hiding, strict=True):
         chance += likely * once_shown[_shows(len(missed), nights)]
@@ -369,14 +368,17 @@ def _overlooked(missed: Floats, hiding: Floats) -> Floats:
 
 
 def _until_found(
-    missed: Floats, offspring: Floats, infestations: Infestations, hiding: Floats
+    missed: Floats,
+    offspring: Floats,
+    finds: tuple[NDArray[np.int64], NDArray[np.int64]],
+    hiding: Floats,
 ) -> Floats:
     """Return how likely it is to find what was found, when it was, ``(k, t)``, by its beginning.
 
-    `missed` and `hiding` are as `_overlooked` has them, `offspring` as `Unseen` has it.
+    `finds` are mornings and plants, ``(k,)`` each; `missed` and `hiding` are as `_overlooked` has
+    them, `offspring` as `Unseen` has it.
     """
-    found = infestations.there & infestations.found
-    plant, ends = infestations.plant[found], infestations.ends[found]
+    ends, plant = finds
     chance = np.zeros((len(plant), len(missed)))
     for nights, likely in zip(HIDDEN_NIGHTS, hiding, strict=True):
         shows = _shows(len(missed), nights)

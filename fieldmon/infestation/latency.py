@@ -100,7 +100,7 @@ class Latency:
     def hidden(self, chance: Floats, plants: NDArray[np.int32] | None = None) -> Floats:
         """Return the share of plants' chances ``(k,)`` that no inspection can see; None: of all."""
         came = self.came if plants is None else self.came[:, plants]
-        hidden = np.einsum("a,ai->i", self.hides.astype(np.float32), came)
+        hidden = _mixed(self.hides, came)
         share: Floats = np.minimum(hidden / np.maximum(chance, _NOTHING), _MOST)
         return share
 
@@ -140,8 +140,7 @@ class Latency:
         So what was found beside a plant speaks for what was overlooked there as much as for what
         came.
         """
-        likely, hides = self.likely.astype(np.float32), self.hides.astype(np.float32)
-        both = likely @ self.shows + hides @ self.came
+        both = _mixed(self.likely, self.shows) + _mixed(self.hides, self.came)
         factor = np.minimum(chance / np.maximum(both, _NOTHING), _MOST_LEVELLED).astype(np.float32)
         came, shows = self.came * factor, self.shows * factor
         for chances in (came, shows):
@@ -175,3 +174,10 @@ class Latency:
         """Return what is believed after a treatment that a share ``(n,)`` outlives."""
         share = left.astype(np.float32)
         return replace(self, came=self.came * share, shows=self.shows * share)
+
+
+def _mixed(shares: Floats, chances: Floats32) -> Floats32:
+    """Return the sum of ``chances (k, n)``, each line times its share ``(k,)``."""
+    # not by a matrix library, whose last digits hang on the processor
+    mixed: Floats32 = np.einsum("k,ki->i", shares.astype(np.float32), chances)
+    return mixed

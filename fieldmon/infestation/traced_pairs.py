@@ -292,8 +292,7 @@ class TracedPairs:
             if self.ancestry is not None and learning.treated
             else None,
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
-            latency=self.latency
-            and self.latency.inspected(plants, found, told),
+            latency=self.latency and self.latency.inspected(plants, found, told),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return _levelled(lowered.counting(self, day))

@@ -85,9 +85,8 @@ def test_nights_are_mixed_as_they_are_likely():
         many = [max(4 - began - nights, 0) for nights in (0, 2, 4, 7)]
         assert overlooked[BEFORE + began] == pytest.approx(hiding @ 0.2 ** np.array(many))
     # the same until a find on the last day but one, where it must show by then
-    infestations = after([0], [True])[0].infestations
-    infestations.ends[infestations.found] = BEFORE + 3
-    until = module._until_found(missed, np.zeros((t, 1)), infestations, hiding)[0]
+    finds = np.array([BEFORE + 3]), np.array([0])
+    until = module._until_found(missed, np.zeros((t, 1)), finds, hiding)[0]
     assert until[: BEFORE + 1] == pytest.approx(0.2**3)
     for began in range(1, 4):
         each = [0.2 ** (3 - began - k) if k <= 3 - began else 0.0 for k in (0, 2, 4, 7)]

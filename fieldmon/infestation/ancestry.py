@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.landing import Landing
     from fieldmon.plot.grid import PlantGrid
 
-    Floats = NDArray[np.float64]
+    Floats = NDArray[np.floating[Any]]
 
 # In a night, rates are estimated after so many draws of few sweeps each, and after a last one of
 # many, by which chances are told: days 0, 1, 2 and later. In the first nights there are two rounds,
@@ -55,6 +55,8 @@ _START_DOUBT = 0.1
 _SEEDS = (100_000, 8, 16)
 # never surer than this
 _MOST = 0.95
+# what is divided by is never nothing
+_TINY = float(np.finfo(np.float32).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +189,9 @@ class Ancestry:
         many = max(_LEAST_SWEEPS, min(_MANY_SWEEPS, _MANY_MOVES // moving))
         return (*[few] * _on(len(self.sends) - 1, _UPDATES), many)
 
-    def overnight(self, sends: float, arrive: float = ARRIVE) -> tuple[Ancestry, Floats | None]:
+    def overnight(
+        self, sends: float, arrive: float = ARRIVE
+    ) -> tuple[Ancestry, NDArray[np.float64] | None]:
         """Return what is known the next morning, and each plant's chance ``(n,)``.
 
         Before anything was inspected there are no chances (None).
@@ -212,7 +216,6 @@ class Ancestry:
         if not self.knows:
             return night, None
         many = int(np.count_nonzero(night.infestations.there))
-        hidden = unseen = np.zeros(n)
         for k in range(_on(day, _ROUNDS)):
             night, hidden, unseen = _drawn(night, landing_of(self.grid), k, arrive)
         chance = np.clip(
@@ -285,31 +288,34 @@ def _with_finds(of: Ancestry) -> Ancestry:
 
 def _drawn(
     of: Ancestry, landing: Landing, nth: int, arrive: float
-) -> tuple[Ancestry, Floats, Floats]:
+) -> tuple[Ancestry, Floats, NDArray[np.float64]]:
     """Draw ancestries and estimate rates by them, for the `nth` time in a night.
 
     Return also how likely each plant is infested as the ancestor of a find, and how many
     infestations of which nothing was seen are expected there.
     """
     t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
-    taken = np.zeros((t, n))
+    # half the digits: on a large plot it is memory that takes the time
+    taken = np.zeros((t, n), np.float32)
     taken[: len(of.taken)] = of.taken
-    missed = np.zeros((t, n))
+    missed = np.zeros((t, n), np.float32)
     # of all inspections from a morning on, as a logarithm
-    missed[BEFORE:-1] = np.cumsum(of.missed[::-1], axis=0, dtype=np.float64)[::-1]
+    np.cumsum(of.missed[::-1], axis=0, out=missed[BEFORE:-1][::-1])
     missed[:BEFORE] = missed[BEFORE]
     overlooked = _overlooked(missed, of.hiding)
-    since = np.arange(t)[:, None] <= of.last_find + BEFORE
-    alone = np.where(since, -np.inf, overlooked)
+    alone = overlooked.copy()
+    alone[np.arange(t)[:, None] <= of.last_find + BEFORE] = 0.0
     unseen = stays_unseen(alone, taken, of.sent(rates), rates.shares, landing)
     seen = 1.0 - unseen.chance
     infestations = of.infestations.copied(0)
     at = _places(infestations, n)
     found = infestations.there & infestations.found
-    lasting = np.ones((n + len(found), t))
-    lasting[:n] = np.exp(overlooked + unseen.offspring).T
+    lasting = np.ones((n + len(found), t), np.float32)
+    np.multiply(overlooked.T, unseen.offspring.T, out=lasting[:n])
     finds = infestations.ends[found], infestations.plant[found]
     lasting[n:][found] = _until_found(missed, unseen.offspring, finds, of.hiding)
+    np.maximum(lasting, _TINY, out=lasting)
+    drawn = DrawnSums.none(t, n, landing.kernels.shape[1])
     sweeps, day = of.sweeps, len(of.sends) - 1
     for k, many in enumerate(sweeps):
         sends = of.sent(rates)
@@ -319,18 +325,21 @@ def _drawn(
             landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), sends,
             np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED, lasting,
         )  # fmt: skip
-        drawn = DrawnSums.none(t, n, len(kernel))
+        for sums in drawn:
+            sums.fill(0.0)
         seed = int(np.ravel_multi_index((day, nth, k), _SEEDS))
         draws = seed, many, int(_LEFT_OUT * many)
         kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
-        for sums in drawn:
+        for sums in drawn[1:]:
             np.divide(sums, kept, out=sums)
         # between the first draw and the last, nothing hangs on these
         if k in (0, len(sweeps) - 1):
-            taken = drawn.active.copy()
+            active = drawn.active
+            active /= kept
+            taken = active.copy()
             taken[finds] = 1.0
-            unfound = unseen_now(unseen, drawn.active, roots, sends, rates.shares, landing)
-        night = DrawnEvidence(of.start, sends, kernel, seen, taken, drawn, unfound, arrive)
+            unfound = unseen_now(unseen, active, roots, sends, rates.shares, landing)
+        night = DrawnEvidence(of.start, sends, kernel, seen, taken, drawn, active, unfound, arrive)
         if k == 0:
             exposure = rates.exposure(night, landing)
         rates = rates.after(night, exposure, landing)
@@ -344,26 +353,28 @@ def _drawn(
         at_start=of.at_start
         if of.began_anew
         else np.array([known, square - known**2]) + unfound[BEFORE].sum(),
-        arrived=float(drawn.roots[BEFORE + 1 :].sum()),
+        arrived=float(drawn.roots[1].sum()),
     )
-    return made, drawn.hidden, unfound[-1]
+    return made, drawn.hidden, unfound[-1].astype(np.float64)
 
 
 def _overlooked(missed: Floats, hiding: Floats) -> Floats:
-    """Return how likely infestations are overlooked until the last morning, as a logarithm.
+    """Return how likely infestations are overlooked until the last morning, ``(t, n)``.
 
     Parameters
     ----------
     missed
-        ``(t, n)`` the same if nothing hides, of an infestation that begins on each morning.
+        ``(t, n)`` the same if nothing hides, as a logarithm, of an infestation that begins on each
+        morning.
     hiding
         ``(4,)`` how likely they hide for each of `HIDDEN_NIGHTS`; those of before the season do
         not.
     """
-    once_shown, chance = np.exp(missed), np.zeros_like(missed)
-    for nights, likely in zip(HIDDEN_NIGHTS, hiding, strict=True):
-        chance += likely * once_shown[_shows(len(missed), nights)]
-    overlooked: Floats = np.log(np.maximum(chance, np.finfo(float).tiny))
+    once_shown = np.exp(missed)
+    overlooked = np.zeros_like(once_shown)
+    for nights, likely in zip(HIDDEN_NIGHTS, hiding.tolist(), strict=True):
+        for begins, shows in enumerate(_shows(len(missed), nights)):
+            overlooked[begins] += likely * once_shown[shows]
     return overlooked
 
 
@@ -385,8 +396,8 @@ def _until_found(
         seen = shows <= ends[:, None]
         overlooked = missed[:, plant][shows].T - missed[ends, plant][:, None]
         chance += likely * seen * np.exp(np.where(seen, overlooked, 0.0))
-    sent = offspring[:, plant].T - offspring[ends, plant][:, None]
-    return chance * np.exp(np.minimum(sent, 0.0))
+    sent = offspring[:, plant].T / np.maximum(offspring[ends, plant], _TINY)[:, None]
+    return chance * np.minimum(sent, 1.0)
 
 
 def _shows(mornings: int, nights: int) -> NDArray[np.int64]:

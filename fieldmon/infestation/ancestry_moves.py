@@ -8,7 +8,7 @@ last is iterated sampling importance resampling (Andrieu, Doucet & Holenstein 20
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.cells import Cells
 
-    Floats = NDArray[np.float64]
+    Floats = NDArray[np.floating[Any]]
     Ints = NDArray[np.int64]
 
 # among so many plants one that was not found goes to another
@@ -131,6 +131,9 @@ class Worked(NamedTuple):
         Plants to which one may go, and how likely.
     open
         The places that are free, or where what stands there may change.
+    first_child, siblings
+        A child of each place, and ``(2, places)`` the next child of the same parent and the one
+        before; `NOBODY`: there is none.
     many
         ``(3,)`` how many are removable, were near, and are open.
     """
@@ -145,6 +148,8 @@ class Worked(NamedTuple):
     tried: Ints
     likely: Floats
     open: Ints
+    first_child: Ints
+    siblings: Ints
     many: Ints
 
 
@@ -159,6 +164,8 @@ def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
         if infestations.there[i]:
             stand(worked.squares, weights.cells, infestations.plant[i], i)
             _note_removable(infestations, i, worked)
+            if infestations.parent[i] != NOBODY:
+                _join(worked, infestations.parent[i], i)
             hidden += 0 if infestations.found[i] else 1
         # as many are drawn in each sweep, however many infestations there are by then
         if not infestations.there[i] or infestations.ends[i] > weights.settled:
@@ -168,25 +175,17 @@ def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
 
 
 @part
-def _children(infestations: Infestations, i: int, weights: Weights, worked: Worked) -> int:
-    """List the children of an infestation, which stand near it; return the first one's morning.
+def _children(infestations: Infestations, i: int, worked: Worked) -> int:
+    """List the children of an infestation; return the first one's morning.
 
     It is that before which it has begun; without any, the morning after it ends.
     """
-    left, first = infestations.children[i], int(infestations.ends[i] + 1)
-    if left == 0:
-        return first
-    squares = worked.squares
-    half = weights.kernel.shape[0] // 2
-    near = gather(squares, squares.across[i], squares.along[i], half)
-    for k in range(near):
-        j = squares.near[k]
-        if infestations.parent[j] == i:
-            left -= 1
-            worked.child[left] = j
-            first = min(first, int(infestations.begins[j]))
-            if left == 0:
-                break
+    first, k, j = int(infestations.ends[i] + 1), 0, worked.first_child[i]
+    while j != NOBODY:
+        worked.child[k] = j
+        first = min(first, int(infestations.begins[j]))
+        k += 1
+        j = worked.siblings[0, j]
     return first
 
 
@@ -196,7 +195,7 @@ def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -
 
     The only child of one that was not found keeps its parent: that would be without a find.
     """
-    latest = _children(infestations, i, weights, worked) - 1
+    latest = _children(infestations, i, worked) - 1
     earliest = infestations.earliest[i]
     if latest < earliest:
         return
@@ -272,7 +271,7 @@ def take_out(
     place = worked.removable[np.random.randint(removable)]  # noqa: NPY002
     if _only_child(infestations, place):
         return
-    _children(infestations, place, weights, worked)
+    _children(infestations, place, worked)
     child = worked.child[0]
     if infestations.ends[child] <= weights.settled:
         return
@@ -308,7 +307,7 @@ def try_others(
     The first is where it is, the others are drawn as where one of its children came from.
     """
     at, last_find = found_at
-    latest = _children(infestations, i, weights, worked) - 1
+    latest = _children(infestations, i, worked) - 1
     children, d = infestations.children[i], weights.kernel.shape[0]
     anchor = worked.child[np.random.randint(children)]  # noqa: NPY002
     parent, alone = infestations.parent[i], _only_child(infestations, i)
@@ -356,7 +355,7 @@ def go_to_one(
     if k == 0 or worked.likely[k] <= 0.0:
         return
     plant, parent = worked.tried[k], infestations.parent[i]
-    latest = _children(infestations, i, weights, worked) - 1
+    latest = _children(infestations, i, worked) - 1
     when = (plant, max(0, last_find[plant] + 1), latest, plant)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     if _only_child(infestations, i):
@@ -504,13 +503,39 @@ def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
 def _hang(infestations: Infestations, i: int, parent: int, worked: Worked) -> None:
     """Give an infestation another parent."""
     before = infestations.parent[i]
+    if parent == before:
+        return
     infestations.parent[i] = parent
     if before >= 0:
+        _part_with(worked, before, i)
         infestations.children[before] -= 1
         _note_removable(infestations, before, worked)
     if parent >= 0:
+        _join(worked, parent, i)
         infestations.children[parent] += 1
         _note_removable(infestations, parent, worked)
+
+
+@part
+def _join(worked: Worked, parent: int, i: int) -> None:
+    """Put an infestation before the other children of a parent."""
+    after = worked.first_child[parent]
+    worked.siblings[0, i], worked.siblings[1, i] = after, NOBODY
+    if after != NOBODY:
+        worked.siblings[1, after] = i
+    worked.first_child[parent] = i
+
+
+@part
+def _part_with(worked: Worked, parent: int, i: int) -> None:
+    """Take an infestation from the children of its parent."""
+    after, before = worked.siblings[0, i], worked.siblings[1, i]
+    if before == NOBODY:
+        worked.first_child[parent] = after
+    else:
+        worked.siblings[0, before] = after
+    if after != NOBODY:
+        worked.siblings[1, after] = before
 
 
 @part

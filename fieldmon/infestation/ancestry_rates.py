@@ -6,7 +6,7 @@ Rates are estimated anew each night: what the ancestries have, over what would h
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.drawn_ancestry import DrawnSums
     from fieldmon.infestation.landing import Landing
 
-    Floats = NDArray[np.float64]
+    Floats = NDArray[np.floating[Any]]
 
 #: how many nights before the season are thought of
 BEFORE = 6
@@ -60,8 +60,8 @@ class DrawnEvidence(NamedTuple):
         ``(t, n)`` how likely something is seen of an infestation that begins then and there.
     taken
         ``(t, n)`` how likely the plant is infested already.
-    drawn
-        Means over the ancestries.
+    drawn, active
+        Means over the ancestries; the second is `DrawnSums.active`.
     unseen
         ``(t, n)`` how many infestations there are of which nothing was seen.
     arrive
@@ -74,6 +74,7 @@ class DrawnEvidence(NamedTuple):
     seen: Floats
     taken: Floats
     drawn: DrawnSums
+    active: Floats
     unseen: Floats
     arrive: float
 
@@ -137,7 +138,7 @@ class Rates(NamedTuple):
         at_edge
             ``(n,)`` as `KernelsOnCells` has it.
         """
-        roots = np.empty((mornings, len(start)))
+        roots = np.empty((mornings, len(start)), np.float32)
         at_start, later = (sum(both) for both in self._from_none(start, at_edge))
         roots[_FIRST] = _AGES[:, None] * at_start
         roots[_LATER] = later
@@ -172,8 +173,10 @@ class Rates(NamedTuple):
 
         Also infestations of which nothing was seen would have sent out some that were.
         """
-        sent = night.sends[:, None] * (night.drawn.active + night.unseen)
-        meets = night.seen * (1.0 - night.taken)
+        sent = night.active + night.unseen
+        sent *= night.sends[:, None].astype(sent.dtype)
+        meets = 1.0 - night.taken
+        meets *= night.seen
         before, all_nights = landing.met(sent[:-1], meets[1:], BEFORE)
         return Exposure(all_nights, float(before @ self.shares) / self.before)
 
@@ -193,11 +196,16 @@ class Rates(NamedTuple):
         first, later = _AGES @ night.seen[_FIRST], night.seen[_LATER].sum(axis=0)
         seen = float(first @ told), float(first @ at_edge * told.mean())
         nightly = float(later.sum()), float(later @ at_edge)
-        drawn = [night.drawn.roots[mornings].sum(axis=0) for mornings in (_FIRST, _LATER)]
-        rates = self
+        rates, once = self, Rates(self.shares, self.before, *[1.0] * 4)
+        parts = [
+            (drawn[drawn > 0.0], others[drawn > 0.0], by_edge[drawn > 0.0])
+            for drawn, (others, by_edge) in zip(
+                night.drawn.roots, once._from_none(night.start, at_edge), strict=True
+            )
+        ]
         for _ in range(_SHARED_OUT):
-            expected = rates._from_none(night.start, at_edge)
-            (start, start_by_edge), (anywhere, by_edge) = map(_shared_out, drawn, expected)
+            start, start_by_edge = _shared_out(parts[0], rates.start, rates.start_by_edge)
+            anywhere, by_edge = _shared_out(parts[1], rates.anywhere, rates.by_edge)
             rates = rates._replace(
                 start=(_START_FINDS * (1.0 - _BY_EDGE) + start) / (_START_FINDS + seen[0]),
                 start_by_edge=(_BY_EDGE_FINDS * _BY_EDGE + start_by_edge)
@@ -208,8 +216,15 @@ class Rates(NamedTuple):
         return rates
 
 
-def _shared_out(drawn: Floats, expected: tuple[Floats, Floats]) -> tuple[float, float]:
-    """Share out those `drawn` ``(n,)`` between the edge and elsewhere; return both numbers."""
-    others, by_edge = expected
-    from_edge = float(drawn @ (by_edge / (others + by_edge)))
+def _shared_out(
+    part: tuple[Floats, Floats, Floats], elsewhere: float, at_edge: float
+) -> tuple[float, float]:
+    """Share out those drawn between elsewhere and the edge; return both numbers.
+
+    `part` are those drawn, and those expected elsewhere and by the edge at a rate of 1, ``(m,)``
+    each; the other two are the rates.
+    """
+    drawn, others, by_edge = part
+    by_edge = at_edge * by_edge
+    from_edge = float(drawn @ (by_edge / (elsewhere * others + by_edge)))
     return float(drawn.sum()) - from_edge, from_edge

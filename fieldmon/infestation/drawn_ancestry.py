@@ -12,7 +12,8 @@ the mornings i and i + 1.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -30,12 +31,12 @@ from fieldmon.infestation.ancestry_moves import (
     take_out,
     try_others,
 )
-from fieldmon.infestation.squares import empty_squares
+from fieldmon.infestation.squares import NOBODY, empty_squares
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    Floats = NDArray[np.floating[Any]]
     Ints = NDArray[np.int64]
 
 # in a sweep, times and parents are drawn so often for each infestation, and a parent is put in
@@ -49,19 +50,20 @@ class DrawnSums(NamedTuple):
 
     Parameters
     ----------
-    active
-        ``(t, n)`` in how many each plant sent something out in a night.
+    turned
+        ``(t, n)`` in how many each plant began to send something out on a morning, less in how many
+        it ended, see `active`.
     hidden
         ``(n,)`` in how many it is infested now, unfound.
     jumps
         ``(2, d, d)`` how many jumps of each length and direction, before the season and in it.
     roots
-        ``(t, n)`` how many came from none.
+        ``(2, n)`` how many came from none, before the season and in it.
     at_start
         ``(2,)`` how many there were on the first morning of the season, and their squares.
     """
 
-    active: Floats
+    turned: Floats
     hidden: Floats
     jumps: Floats
     roots: Floats
@@ -70,8 +72,16 @@ class DrawnSums(NamedTuple):
     @classmethod
     def none(cls, t: int, n: int, d: int) -> DrawnSums:
         """Return sums of nothing."""
-        active, roots = np.zeros((2, t, n))
-        return cls(active, np.zeros(n), np.zeros((2, d, d)), roots, np.zeros(2))
+        turned = np.zeros((t, n), np.float32)
+        return cls(turned, np.zeros(n), np.zeros((2, d, d)), np.zeros((2, n)), np.zeros(2))
+
+    @property
+    def active(self) -> Floats:
+        """In how many each plant sent something out in a night, ``(t, n)``."""
+        active = self.turned.copy()
+        for before, row in pairwise(active):
+            np.add(before, row, out=row)
+        return active
 
     def __repr__(self) -> str:
         return f"<Drawn: {self.jumps.sum():.0f} jumps>"
@@ -107,7 +117,7 @@ def draw_ancestries(
         np.empty(mornings + 1), np.empty(mornings + 1), np.empty(places), squares,
         np.zeros(places, np.int64), np.full(places, -1), np.zeros(places, np.int64),
         np.zeros(TRIED, np.int64), np.zeros(TRIED), np.zeros(places, np.int64),
-        np.zeros(3, np.int64),
+        np.full(places, NOBODY), np.full((2, places), NOBODY), np.zeros(3, np.int64),
     )  # fmt: skip
     hidden = begin(infestations, weights, worked)
     # how often one is taken out, over how often one is put in
@@ -119,8 +129,6 @@ def draw_ancestries(
         _go_elsewhere(infestations, found_at, weights, worked, counts, drawn.hidden)
         if sweep >= left_out:
             _sum_up(infestations, weights.season, worked, drawn)
-    for morning in range(1, mornings):
-        drawn.active[morning] += drawn.active[morning - 1]
     return max(sweeps - left_out, 0)
 
 
@@ -168,20 +176,20 @@ def _go_elsewhere(
 
 @part
 def _sum_up(infestations: Infestations, season: int, worked: Worked, drawn: DrawnSums) -> None:
-    """Add an ancestry to the sums; of who is active only where that begins and ends."""
+    """Add an ancestry to the sums."""
     half, at_start, squares = drawn.jumps.shape[1] // 2, 0.0, worked.squares
     for i in range(infestations.plant.size):
         if not infestations.there[i]:
             continue
         plant, begins = infestations.plant[i], infestations.begins[i]
-        drawn.active[begins, plant] += 1.0
-        drawn.active[infestations.ends[i], plant] -= 1.0
+        drawn.turned[begins, plant] += 1.0
+        drawn.turned[infestations.ends[i], plant] -= 1.0
         at_start += 1.0 if begins <= season else 0.0
-        parent = infestations.parent[i]
+        parent, in_season = infestations.parent[i], 0 if begins <= season else 1
         if parent < 0:
-            drawn.roots[begins, plant] += 1.0
+            drawn.roots[in_season, plant] += 1.0
             continue
         y, x = squares.across[i] - squares.across[parent], squares.along[i] - squares.along[parent]
-        drawn.jumps[0 if begins <= season else 1, y + half, x + half] += 1.0
+        drawn.jumps[in_season, y + half, x + half] += 1.0
     drawn.at_start[0] += at_start
     drawn.at_start[1] += at_start**2

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.grid import PlantGrid
 
-    Floats = NDArray[np.float64]
+    Floats = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,19 +39,16 @@ class Landing(KernelsOnCells):
         first
             How many nights are the first ones.
         """
-        total = np.zeros((2, *self.spectra.shape[1:]), np.complex128)
+        total = np.zeros((2, *self.spectra.shape[1:]), self.spectra.dtype)
         for night, (one, other) in enumerate(zip(sent, there, strict=True)):
             # over a night in which nothing is sent there is nothing to add
             if one.any():
                 total[int(night >= first)] += self._sent(one) * np.conj(self._sent(other))
         total[1] += total[0]
         # half of a spectrum stands for all of it
-        twice = np.full(self.spectra.shape[2], 2.0)
-        twice[0] = 1.0
-        if self.padded[1] % 2 == 0:
-            twice[-1] = 1.0
-        met: Floats = ((self.spectra * total[:, None]).real * twice).sum(axis=(2, 3))
-        return met / (self.padded[0] * self.padded[1])
+        total[:, :, 1 : (self.padded[1] + 1) // 2] *= 2.0
+        met: Floats = np.einsum("tij,kij->tk", total, self.spectra).real
+        return met.astype(np.float64) / (self.padded[0] * self.padded[1])
 
 
 @lru_cache(maxsize=2)
@@ -62,4 +59,6 @@ def landing_of(grid: PlantGrid) -> Landing:
     beside[0, RADIUS, [RADIUS - 1, RADIUS + 1]] = 0.5
     beside[1, [RADIUS - 1, RADIUS + 1], RADIUS] = 0.5
     kernels = np.concatenate([beside, reach.kernels])
-    return Landing(reach.cells, kernels, *transformed(reach.cells, kernels), reach.at_edge)
+    spectra, padded = transformed(reach.cells, kernels)
+    # half the digits take half the time, and ancestries are not drawn as exactly as that
+    return Landing(reach.cells, kernels, spectra.astype(np.complex64), padded, reach.at_edge)

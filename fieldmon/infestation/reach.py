@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
-from typing import TYPE_CHECKING
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import fft
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.grid import PlantGrid
 
-    Floats = NDArray[np.float64]
+    Floats = NDArray[np.floating[Any]]
+    Spectrum = NDArray[np.complexfloating[Any, Any]]
 
 #: what jumps farther than so many plants comes from anywhere
 RADIUS = 12
@@ -60,7 +61,7 @@ def kernels(size_m: Floats) -> Floats:
 
 
 def pest_kernels(
-    size_m: Floats, kernel: DistanceKernel, wind_m_s: tuple[float, float] = (0.0, 0.0)
+    size_m: NDArray[np.float64], kernel: DistanceKernel, wind_m_s: tuple[float, float] = (0.0, 0.0)
 ) -> Floats:
     """Return the candidates of a pest with a kernel of its own, ``(6, d, d)``.
 
@@ -102,7 +103,8 @@ class KernelsOnCells:
     kernels
         ``(k, d, d)`` how what is sent is shared out over the cells about a plant. Each sums to 1.
     spectra
-        ``(k, h, w)`` their Fourier transforms, on cells with room about them.
+        ``(k, h, w)`` their Fourier transforms, on cells with room about them. All is worked out
+        with as many digits as they have.
     padded
         Cells across and along with that room.
     at_edge
@@ -112,17 +114,17 @@ class KernelsOnCells:
 
     cells: Cells
     kernels: Floats
-    spectra: NDArray[np.complex128]
+    spectra: Spectrum
     padded: tuple[int, int]
     at_edge: Floats
 
-    def mixed(self, shares: Floats) -> NDArray[np.complex128]:
+    def mixed(self, shares: Floats) -> Spectrum:
         """Return the transform of the kernels' mixture, of which each has a share ``(k,)``."""
         # not by a matrix library: its threads cost a hundred times what is added here
-        spectrum: NDArray[np.complex128] = np.einsum("k,kij->ij", shares, self.spectra)
+        spectrum: Spectrum = np.einsum("k,kij->ij", shares.astype(self._real), self.spectra)
         return spectrum
 
-    def landed(self, sent: Floats, mixed: NDArray[np.complex128]) -> Floats:
+    def landed(self, sent: Floats, mixed: Spectrum) -> Floats:
         """Return what lands on each plant, ``(n,)``, of what all plants send out.
 
         Parameters
@@ -135,15 +137,35 @@ class KernelsOnCells:
         """
         return self._landed(self._sent(sent) * mixed)
 
-    def _sent(self, values: Floats) -> NDArray[np.complex128]:
-        sent: NDArray[np.complex128] = fft.rfft2(self.cells.summed(values), self.padded)
+    def _sent(self, values: Floats) -> Spectrum:
+        size = self.padded[0] * self.padded[1]
+        if self._alone:
+            room = np.zeros(size, self._real)
+            room[self._place] = values
+        else:
+            room = np.bincount(self._place, values, size).astype(self._real)
+        sent: Spectrum = fft.rfft2(room.reshape(self.padded))
         return sent
 
-    def _landed(self, spectrum: NDArray[np.complex128]) -> Floats:
-        across, along = self.cells.shape
-        landed = fft.irfft2(spectrum, self.padded)[:across, :along]
-        brought: Floats = np.maximum(landed.ravel()[self.cells.of_plant], 0.0)
-        return brought
+    def _landed(self, spectrum: Spectrum) -> Floats:
+        landed: Floats = fft.irfft2(spectrum, self.padded).ravel()[self._place]
+        return np.maximum(landed, 0.0, out=landed)
+
+    @property
+    def _real(self) -> np.dtype[np.floating[Any]]:
+        return self.spectra.real.dtype
+
+    @cached_property
+    def _place(self) -> NDArray[np.int64]:
+        """The cell of each plant among those with room about them, ``(n,)``."""
+        across, along = np.divmod(self.cells.of_plant, self.cells.shape[1])
+        place: NDArray[np.int64] = across * self.padded[1] + along
+        return place
+
+    @cached_property
+    def _alone(self) -> bool:
+        """Tell whether no two plants stand in one cell."""
+        return bool(np.diff(self.cells.start).max() <= 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,7 +248,10 @@ def pest_reach_of(
 def transformed(cells: Cells, made: Floats) -> tuple[NDArray[np.complex128], tuple[int, int]]:
     """Return the transforms of kernels ``(6, d, d)``, and the cells with room about them."""
     d = made.shape[1]
-    across, along = (fft.next_fast_len(int(side) + d - 1, real=True) for side in cells.shape)
+    # what goes over one edge comes in again over the other, but only so far that no plant is there
+    across, along = (
+        fft.next_fast_len(max(int(side) + d // 2, d), real=True) for side in cells.shape
+    )
     room = np.zeros((len(made), across, along))
     room[:, :d, :d] = made
     return fft.rfft2(np.roll(room, (-(d // 2), -(d // 2)), axis=(1, 2))), (across, along)

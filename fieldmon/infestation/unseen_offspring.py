@@ -11,7 +11,8 @@ Mornings and nights are counted as in `drawn_ancestry`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.landing import Landing
 
-    Floats = NDArray[np.float64]
+    Floats = NDArray[np.floating[Any]]
 
 
 class Unseen(NamedTuple):
@@ -31,7 +32,7 @@ class Unseen(NamedTuple):
     chance
         That nothing is seen of it and of all that comes from it.
     offspring
-        That nothing is seen of what it sends out, as a logarithm.
+        That nothing is seen of what it sends out.
     """
 
     chance: Floats
@@ -49,8 +50,8 @@ def stays_unseen(
     Parameters
     ----------
     alone
-        ``(t, n)`` that no inspection shows an infestation, as a logarithm; minus infinity where the
-        plant was found since.
+        ``(t, n)`` the chance that no inspection shows an infestation; 0 where the plant was found
+        since.
     taken
         ``(t, n)`` the chance that the plant is infested already: what lands there does nothing.
     sends
@@ -58,13 +59,14 @@ def stays_unseen(
     shares
         ``(k,)`` how much of it goes by each kernel.
     """
-    offspring, back = np.zeros_like(alone), np.conj(landing.mixed(shares))
-    chance = np.empty_like(alone)
+    back, lost = np.conj(landing.mixed(shares)), np.zeros_like(alone[0])
+    chance, offspring = np.empty((2, *alone.shape), alone.dtype)
     for night in range(len(alone) - 1, -1, -1):
-        np.exp(alone[night] + offspring[night], out=chance[night])
+        np.exp(lost, out=offspring[night])
+        np.multiply(alone[night], offspring[night], out=chance[night])
         if night:
-            caught = landing.landed((1.0 - chance[night]) * (1.0 - taken[night]), back)
-            offspring[night - 1] = offspring[night] - sends[night - 1] * caught
+            caught = (1.0 - chance[night]) * (1.0 - taken[night])
+            lost -= float(sends[night - 1]) * landing.landed(caught, back)
     return Unseen(chance, offspring)
 
 
@@ -85,12 +87,13 @@ def unseen_now(
         As for `stays_unseen`.
     """
     mixed = landing.mixed(shares)
-    there, so_far = np.zeros(active.shape[1]), np.empty_like(active)
-    for morning in range(len(active)):
-        new = roots[morning]
-        if morning:
-            senders = active[morning - 1] + there
-            new = new + sends[morning - 1] * landing.landed(senders, mixed)
-        there = there + unseen.chance[morning] * new * np.maximum(1.0 - there, 0.0)
-        so_far[morning] = there
+    so_far = np.empty_like(active)
+    np.multiply(roots[0], unseen.chance[0], out=so_far[0])
+    for night, (before, there) in enumerate(pairwise(so_far)):
+        new = landing.landed(active[night] + before, mixed)
+        new *= float(sends[night])
+        new += roots[night + 1]
+        new *= unseen.chance[night + 1]
+        new *= np.maximum(1.0 - before, 0.0)
+        np.add(before, new, out=there)
     return so_far

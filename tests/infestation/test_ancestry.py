@@ -29,6 +29,19 @@ def after(plants, found, ancestry=None, detects=0.84):
     return known.overnight(0.3)
 
 
+def test_weeks_of_clean_inspections_that_hardly_overlook_anything_leave_numbers():
+    """A chance of 1e-4 on each of 24 days is none that a computer tells from nothing."""
+    plants, known = np.arange(N), Ancestry.of(GRID, FLAT)
+    for day in range(25):
+        found = (plants == MIDDLE) & (day == 24)
+        known, chance = after(plants, found, known, 0.9999)
+        assert np.isfinite(chance).all()
+    begins = known.infestations.begins[known.infestations.found]
+    assert begins.tolist() == [BEFORE + 24]
+    # it came last night, and had sent nothing out yet
+    assert chance.max() < 0.01
+
+
 def test_a_find_speaks_for_the_plants_about_it():
     _, chance = after([MIDDLE], [True])
     assert chance[[MIDDLE - 1, MIDDLE + 1, MIDDLE - 20, MIDDLE + 20]].min() > 3.0 * chance[0]
@@ -78,7 +91,7 @@ def test_nights_are_mixed_as_they_are_likely():
     missed[BEFORE:-1, 0] = np.log(0.2) * np.arange(4, 0, -1)
     missed[:BEFORE] = missed[BEFORE]
     hiding = np.array([0.5, 0.3, 0.15, 0.05])
-    overlooked = np.exp(module._overlooked(missed, hiding)[:, 0])
+    overlooked = module._overlooked(missed, hiding)[:, 0]
     assert overlooked[: BEFORE + 1] == pytest.approx(0.2**4)
     for began in range(1, 5):
         # as many inspections as it could have been seen by
@@ -86,7 +99,7 @@ def test_nights_are_mixed_as_they_are_likely():
         assert overlooked[BEFORE + began] == pytest.approx(hiding @ 0.2 ** np.array(many))
     # the same until a find on the last day but one, where it must show by then
     finds = np.array([BEFORE + 3]), np.array([0])
-    until = module._until_found(missed, np.zeros((t, 1)), finds, hiding)[0]
+    until = module._until_found(missed, np.ones((t, 1)), finds, hiding)[0]
     assert until[: BEFORE + 1] == pytest.approx(0.2**3)
     for began in range(1, 4):
         each = [0.2 ** (3 - began - k) if k <= 3 - began else 0.0 for k in (0, 2, 4, 7)]

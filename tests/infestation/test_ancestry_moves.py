@@ -22,8 +22,8 @@ def test_an_ancestry_holds_together():
         made.plant[place], made.ends[place] = plant, rng.integers(3, mornings - 1)
         made.begins[place], made.found[place] = made.ends[place], True
         made.there[place], last_find[plant] = True, made.ends[place]
-    lasting = np.exp(-rng.uniform(0.0, 2.0, (144 + made.plant.size, mornings)))
-    roots = np.full((144, mornings), 1e-4)
+    lasting = np.exp(-rng.uniform(0.0, 2.0, (144 + made.plant.size, mornings)).astype(np.float32))
+    roots = np.full((144, mornings), 1e-4, np.float32)
     sends = np.full(mornings, 0.3)
     so_far = np.cumsum(kernel) / kernel.sum()
     world = Weights(landing.cells, kernel, so_far, sends, roots, 3, -1, lasting)

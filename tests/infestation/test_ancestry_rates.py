@@ -28,6 +28,7 @@ def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL, unseen=None):
         nothing + seen,
         nothing,
         drawn,
+        drawn.active,
         nothing if unseen is None else unseen,
         ARRIVE,
     )
@@ -63,8 +64,7 @@ def test_as_many_come_from_none_as_was_told_grow_to_what_was_told():
 @pytest.mark.parametrize("times", [0.3, 1.0, 4.0])
 def test_the_number_at_the_start_follows_what_was_drawn(times):
     rates, drawn = Rates.at_first(), nothing_drawn()
-    drawn.roots[:] = rates.roots(FLAT, LANDING.at_edge, T) * times
-    drawn.roots[BEFORE + 1 :] = 0.0
+    drawn.roots[0] = rates.roots(FLAT, LANDING.at_edge, T)[: BEFORE + 1].sum(axis=0) * times
     known = after(rates, evidence(drawn))
     told = drawn.roots.sum() / times
     # three finds, and two by the edge, are what was believed
@@ -77,7 +77,7 @@ def test_the_number_at_the_start_follows_what_was_drawn(times):
 def test_growth_and_the_number_at_the_start_are_known_together():
     """Few jumps before the season: there were more roots then for the same first morning."""
     rates, drawn = Rates.at_first(), nothing_drawn()
-    drawn.active[:BEFORE, :300] = 1.0
+    drawn.turned[0, :300], drawn.turned[BEFORE, :300] = 1.0, -1.0
     drawn.roots[0, :300] = 0.02
     drawn.jumps[0] = KERNEL * 20.0
     known = after(rates, evidence(drawn))
@@ -90,13 +90,13 @@ def test_growth_and_the_number_at_the_start_are_known_together():
 
 def test_what_stands_by_the_edge_came_over_it():
     rates, at_edge = Rates.at_first(), LANDING.at_edge
-    for night in (0, BEFORE + 3):
+    for when in (0, 1):
         drawn = nothing_drawn()
-        drawn.roots[night] = 30.0 * at_edge**2 / (at_edge**2).sum()
+        drawn.roots[when] = 30.0 * at_edge**2 / (at_edge**2).sum()
         edge = after(rates, evidence(drawn))
-        drawn.roots[night] = 30.0 / N
+        drawn.roots[when] = 30.0 / N
         inside = after(rates, evidence(drawn))
-        k = 3 if night == 0 else 5
+        k = 3 if when == 0 else 5
         assert edge[k] > 3.0 * edge[k - 1]
         assert inside[k] < edge[k] / 3.0
 
@@ -105,7 +105,7 @@ def test_what_stands_by_the_edge_came_over_it():
 def test_shares_are_those_of_the_jumps_that_were_drawn(k):
     """Jumps of one kernel of ten times as many as are sent come mostly to its share."""
     rates, drawn = Rates.at_first(), nothing_drawn()
-    drawn.active[BEFORE:, 820] = 1.0
+    drawn.turned[BEFORE, 820] = 1.0
     drawn.jumps[1] = LANDING.kernels[k] * 30.0
     kernel = KERNEL
     for _ in range(30):
@@ -119,7 +119,7 @@ def test_shares_are_those_of_the_jumps_that_were_drawn(k):
 def test_who_was_never_seen_would_have_been_seen_by_what_it_sent_out():
     """So infestations of which nothing was seen lower what each is taken to send out."""
     rates, drawn, unseen = Rates.at_first(), nothing_drawn(), np.zeros((T, N))
-    drawn.active[:BEFORE, 820] = 1.0
+    drawn.turned[0, 820], drawn.turned[BEFORE, 820] = 1.0, -1.0
     drawn.jumps[0] = KERNEL * 4.0
     alone = rates.exposure(evidence(drawn), LANDING)
     unseen[:BEFORE, 830] = 2.0

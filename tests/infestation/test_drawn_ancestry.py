@@ -26,8 +26,8 @@ def believed(seed=0):
     kernel = np.einsum("k,kij->ij", rng.dirichlet(np.ones(8)), landing.kernels)
     kernel /= kernel.sum()
     sends = rng.uniform(0.5, 3.0, MORNINGS)
-    lasting = rng.uniform(0.2, 1.0, (N + PLACES, MORNINGS))
-    roots = rng.uniform(0.01, 0.3, (N, MORNINGS))
+    lasting = rng.uniform(0.2, 1.0, (N + PLACES, MORNINGS)).astype(np.float32)
+    roots = rng.uniform(0.01, 0.3, (N, MORNINGS)).astype(np.float32)
     return Weights(landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, -1, lasting)
 
 
@@ -91,7 +91,7 @@ def test_ancestries_are_drawn_as_often_as_they_are_likely(finds):
     made, last_find = with_finds(finds)
     if finds[0][0] == finds[-2 % len(finds)][0] and len(finds) == 3:
         made.earliest[1] = made.ends[0] + 1
-    active, hidden, roots = np.zeros((MORNINGS, N)), np.zeros(N), np.zeros((MORNINGS, N))
+    active, hidden, roots = np.zeros((MORNINGS, N)), np.zeros(N), np.zeros((2, N))
     total = 0.0
     for weight, nodes in all_ancestries(world, finds, last_find):
         if len(finds) == 3 and nodes[1][1] <= finds[0][1]:
@@ -100,7 +100,7 @@ def test_ancestries_are_drawn_as_often_as_they_are_likely(finds):
         for k, (plant, begins, end, parent) in enumerate(nodes):
             active[begins:end, plant] += weight
             hidden[plant] += weight * (k >= len(finds))
-            roots[begins, plant] += weight * (parent == NOBODY)
+            roots[int(begins > SEASON), plant] += weight * (parent == NOBODY)
     drawn = DrawnSums.none(MORNINGS, N, len(world.kernel))
     kept = draw_ancestries(made, np.full(N, NOBODY), world, last_find, (1, 100_000, 1_000), drawn)
     assert kept == 99_000

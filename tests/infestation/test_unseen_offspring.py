@@ -10,15 +10,15 @@ from tests.infestation.landing_by_hand import LANDING, SHARES, N, by_hand
 def test_nothing_is_seen_of_an_infestation_with_the_chance_of_a_branching_process():
     """Two nights, worked out plant by plant."""
     rng = np.random.default_rng(3)
-    alone = np.log(rng.uniform(0.2, 1.0, (3, N)))
-    alone[:, 5] = -np.inf
+    alone = rng.uniform(0.2, 1.0, (3, N))
+    alone[:, 5] = 0.0
     taken, sends, lands = rng.random((3, N)) * 0.5, np.array([0.7, 0.4, 0.0]), by_hand(SHARES)
     unseen = stays_unseen(alone, taken, sends, SHARES, LANDING)
-    last = np.exp(alone[2])
+    last = alone[2]
     second_night = np.exp(-0.4 * lands @ ((1.0 - last) * (1.0 - taken[2])))
-    second = np.exp(alone[1]) * second_night
+    second = alone[1] * second_night
     first_night = np.exp(-0.7 * lands @ ((1.0 - second) * (1.0 - taken[1])))
-    first = np.exp(alone[0]) * first_night * second_night
+    first = alone[0] * first_night * second_night
     assert unseen.chance == pytest.approx(np.array([first, second, last]))
     assert (unseen.chance[:, 5] == 0.0).all()
     assert repr(unseen) == "<Unseen on 3 mornings>"
@@ -32,7 +32,7 @@ def test_as_many_are_unseen_as_on_simulated_plots_of_which_nothing_was_seen():
     missed, sends = 0.3, np.array([0.6, 0.6, 0.0])
     roots, lands = np.zeros((3, N)), by_hand(SHARES)
     roots[0], roots[1] = 0.004, 0.002
-    alone = np.cumsum(np.where(looks, np.log(missed), 0.0)[::-1], axis=0)[::-1]
+    alone = np.cumprod(np.where(looks, missed, 1.0)[::-1], axis=0)[::-1]
     unseen = stays_unseen(alone, np.zeros((3, N)), sends, SHARES, LANDING)
     active = np.zeros((3, N))
     active[0, 30] = 1.0

@@ -271,6 +271,15 @@ def test_offspring_is_no_surer_than_what_it_came_from(beside):
     assert doubted.doubt == pytest.approx(counts.doubt[AT_START], rel=1e-4)
 
 
+def test_once_a_night_has_told_who_infested_whom_the_number_is_in_less_doubt():
+    belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
+    idle, evening = belief.overnight(QUIET), belief.learn(plants, plants == 7, LEARNING)
+    morning = evening.overnight(QUIET)
+    for told in (belief, idle, evening):
+        assert told.doubt == replace(told, ancestry=None).doubt
+    assert morning.doubt == pytest.approx(0.85 * replace(morning, ancestry=None).doubt)
+
+
 def test_as_far_as_more_were_there_at_the_start_than_was_told_the_number_is_in_doubt():
     belief, nothing, doubts = mid_season(), np.zeros(N_ORIGINS), []
     for times in (0.2, 0.5, 1.0, 2.0, 4.0, 16.0):

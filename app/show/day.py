@@ -11,6 +11,7 @@ import pandas as pd
 import streamlit as st
 
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import row_label
@@ -123,6 +124,7 @@ def changes(choices: Choices) -> list[str]:
         said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
     expected = {"now": about(now.expected), "before": about(before.expected)}
     said.append(texts.CHANGED_OUT.format(**expected))
+    said += map(in_words, flagged_said(chosen_day.flagged(choices))[:1])
     spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (yesterday, choices.day)]
     if spots[0] != spots[1]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))

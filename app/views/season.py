@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.compute.wording import joined
+from fieldmon.monitoring.day_figures import flagged_said
+
 from ..actions import assuming, beginning
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..state import assumptions, chosen_day
 from ..words import texts
-from ..words.language import about, number
+from ..words.language import about, in_words, number
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import DayFigures, Progress
@@ -30,6 +33,8 @@ def show(choices: Choices) -> None:
         return
     days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
     _figures(choices, days[-1], progress)
+    if beside := flagged_said(chosen_day.flagged(choices)):
+        st.caption(in_words(joined(" ", beside)))
     _again(progress)
     cautions.show(choices)
     cautions.show_treatments(choices)

@@ -175,7 +175,7 @@ def init(options: InitOptions) -> None:
     ahead = season.status(settings.begins).estimate
     typer.echo(
         f"Season begun in {path}: {len(known.records)} records, about {estimate(ahead.expected)} "
-        f"plants believed infested ({ahead.low} to {ahead.high})."
+        f"plants believed infested ({ahead.low:,} to {ahead.high:,})."
     )
     if (taught := season.taught()) is not None:
         typer.echo(taught)

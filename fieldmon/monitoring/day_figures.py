@@ -48,10 +48,10 @@ def flagged_said(flagged: float) -> list[Worded]:
         return []
     return [
         worded(
-            "Besides these, about {n} plants that were found and flagged are still infested.",
+            "About {n} more plants, which were found and only flagged, are still infested.",
             n=estimate(flagged),
         ),
-        worded("The chance that the plot is clean leaves them out too."),
+        worded("The chance that the plot is clean leaves these out."),
     ]
 
 

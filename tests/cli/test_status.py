@@ -49,10 +49,10 @@ def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
         Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(kept.settings.begins)), "x"
     )
     out = run("status", file)[1]
-    assert "Besides these, about 20 plants that were found and flagged are still infested." in out
+    assert "About 20 more plants, which were found and only flagged, are still infested." in out
     words = ["--efficacy", "0.5", "--date", kept.settings.begins]
     treated = run("treat", file, *words)[1]
-    assert "Besides these, about 10 plants that were found and flagged are still" in treated
+    assert "About 10 more plants, which were found and only flagged, are still" in treated
 
 
 def test_rows_that_nobody_was_in_are_told(run, season):

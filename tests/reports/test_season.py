@@ -150,4 +150,4 @@ def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
     looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
     season.record(looked, "finds")
     lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
-    assert "Besides these, about 20 plants that were found and flagged are still infested." in lead
+    assert "About 20 more plants, which were found and only flagged, are still infested." in lead

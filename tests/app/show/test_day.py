@@ -91,7 +91,7 @@ def test_plants_only_flagged_are_said_beside_those_not_found(tmp_path):
     looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
     season.record(looked, "finds")
     said = "\n".join(day.changes(on(season, 1)))
-    assert "Besides these, about 20 plants that were found and flagged are still infested." in said
+    assert "About 20 more plants, which were found and only flagged, are still infested." in said
 
 
 def test_rows_that_rose_most_come_first(worked):

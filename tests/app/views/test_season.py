@@ -43,5 +43,5 @@ def test_the_season_says_how_many_plants_are_only_flagged(season_app, monkeypatc
     monkeypatch.setattr(Season, "flagged", lambda *_: 20.0)
     go(season_app, "season")
     assert not season_app.exception
-    assert "Besides these, about 20 plants that were found and flagged" in texts_of(season_app)
-    assert "leaves them out too." in texts_of(season_app)
+    assert "About 20 more plants, which were found and only flagged" in texts_of(season_app)
+    assert "leaves these out." in texts_of(season_app)

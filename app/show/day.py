@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.wording import joined
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
@@ -108,6 +109,15 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
             return
     if said:
         st.warning(said)
+
+
+def beside_figures(choices: Choices) -> None:
+    """Say what a season's figures leave out: flagged plants, and what was found again."""
+    progress = chosen_day.progress(choices)
+    if said := flagged_said(chosen_day.flagged(choices)):
+        st.caption(in_words(joined(" ", said)))
+    if (finds := progress.finds) > (plants := progress.found):
+        st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
 
 def changes(choices: Choices) -> list[str]:

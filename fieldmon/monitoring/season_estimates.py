@@ -134,7 +134,7 @@ class SeasonEstimates(OpenSeason):
         return history.forecast(morning, day)  # others may plan meanwhile
 
     def flagged(self, on: date) -> float:
-        """Return how many of the plants found are still infested, as expected: flagged only."""
+        """Return how many of the plants found up to `on` are only flagged and still infested."""
         if self._now().settings.belief.treated:
             return 0.0  # no morning is needed for it
         with self._asked(on) as (contents, morning, day):

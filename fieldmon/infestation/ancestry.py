@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.infestation.ancestry_moves import Infestations, Weights
-from fieldmon.infestation.ancestry_rates import ARRIVAL_FINDS, BEFORE, SHARES, DrawnEvidence, Rates
+from fieldmon.infestation.ancestry_rates import (
+    ARRIVAL_FINDS,
+    BEFORE,
+    KERNELS,
+    SHARES,
+    DrawnEvidence,
+    Rates,
+)
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
 from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
 from fieldmon.infestation.landing import landing_of
@@ -48,9 +55,10 @@ MOST_PLANTS = 10_000
 _MOST_DAYS, _MOST_INFESTATIONS = 30, 1500
 # places for infestations that were not found: at least, and as a share of all
 _LEAST_ROOM, _ROOM = 32, 0.25
-# how far the number at the start may be off beyond what drawn ancestries say of it, as a share,
-# since they take the rates as known (our choice)
-_START_DOUBT = 0.1
+# how far the number at the start may be off beyond what drawn ancestries say of it, since they take
+# the rates as known: as a share of it (our choice), and of what was not found of it (chosen on 400
+# seasons of ten worlds)
+_START_DOUBT, _UNFOUND_DOUBT = 0.1, 0.5
 # the draws of a night have other seeds than all others: days, rounds and updates
 _SEEDS = (100_000, 8, 16)
 # never surer than this
@@ -85,14 +93,19 @@ class Ancestry:
     rates
         What is believed of how infestations come about.
     at_start
-        ``(2,)`` how many plants are taken to have been infested on the first morning of the season,
-        and the variance of that; NaN: nothing is known yet.
+        ``(3,)`` how many plants are taken to have been infested on the first morning of the season,
+        the variance of that, and how many were found on that day; NaN: nothing is known yet.
     arrived
         How many of the infestations drawn arrived from outside.
     began_anew
         Whether it began later than the season.
+    heard, idle
+        In how many nights there was something new to learn from, and how many have passed since.
     hiding
         ``(4,)`` how likely infestations hide for each of `HIDDEN_NIGHTS`.
+    earlier, taught
+        ``(2, 10)`` what ancestries before this one taught of jumps and arrivals, and what all have,
+        see `Rates.taught`.
     """
 
     grid: PlantGrid
@@ -104,10 +117,14 @@ class Ancestry:
     taken: NDArray[np.float16]
     infestations: Infestations = field(default_factory=lambda: Infestations.room(_LEAST_ROOM))
     rates: Rates = field(default_factory=Rates.at_first)
-    at_start: Floats = field(default_factory=lambda: np.full(2, np.nan))
+    at_start: Floats = field(default_factory=lambda: np.full(3, np.nan))
     arrived: float = 0.0
     began_anew: bool = False
+    heard: int = 0
+    idle: int = 0
     hiding: Floats = field(default_factory=lambda: np.eye(len(HIDDEN_NIGHTS))[0])
+    earlier: Floats = field(default_factory=lambda: np.zeros((2, KERNELS + 2)))
+    taught: Floats = field(default_factory=lambda: np.zeros((2, KERNELS + 2)))
 
     def __repr__(self) -> str:
         return f"<Ancestry of {np.count_nonzero(self.infestations.found)} finds>"
@@ -141,33 +158,33 @@ class Ancestry:
         rates = self.rates._replace(start=start.start, start_by_edge=start.start_by_edge)
         begun = Ancestry.of(self.grid, chance)
         return replace(
-            begun, rates=rates, at_start=self.at_start, began_anew=True, hiding=self.hiding
-        )
+            begun, rates=rates, at_start=self.at_start, began_anew=True, heard=self.heard,
+            idle=self.idle, hiding=self.hiding, earlier=self.taught, taught=self.taught,
+        )  # fmt: skip
 
     @property
-    def so_far(self) -> Ancestry:
-        """The same by all inspections so far, if nothing more comes about tonight."""
-        waits = bool(self.new) or len(self.missed) > len(self.sends)
-        return self.overnight(0.0)[0] if waits else self
+    def waits(self) -> bool:
+        """Tell whether inspections wait to be learnt from, as a night brings it."""
+        return bool(self.new) or len(self.missed) > len(self.sends)
 
     @property
     def infested_at_start(self) -> Estimate | None:
         """How many plants were infested on the season's first morning; None: nothing is known yet.
 
-        Beyond what ancestries say of it, the rates are not known.
+        What was found on that day was there.
         """
-        mean, variance = map(float, self.at_start)
+        mean, variance, least = map(float, self.at_start)
         if np.isnan(mean):
             return None
-        off = SIGMAS * float(np.hypot(np.sqrt(variance), _START_DOUBT * mean))
+        off = SIGMAS * float(np.sqrt(variance))
         # what was never seen may be believed where something was found, too
-        return Estimate(*np.clip([mean, mean - off, mean + off], 0.0, len(self.grid)).tolist())
+        return Estimate(*np.clip([mean, mean - off, mean + off], least, len(self.grid)).tolist())
 
     @property
     def arrivals(self) -> Estimate:
         """How many plants are infested from outside in a night, known by as many as were drawn."""
         nightly = (self.rates.anywhere + self.rates.by_edge) * len(self.grid)
-        known = 2.0 * ARRIVAL_FINDS + self.arrived
+        known = 2.0 * ARRIVAL_FINDS + float(self.earlier[0, KERNELS:].sum()) + self.arrived
         return Estimate.of_rate(known, known, nightly)
 
     @property
@@ -187,7 +204,9 @@ class Ancestry:
         moving = max(int(np.count_nonzero(~settled)), 1)
         few = max(_LEAST_SWEEPS, min(_FEW_SWEEPS, _FEW_MOVES // moving))
         many = max(_LEAST_SWEEPS, min(_MANY_SWEEPS, _MANY_MOVES // moving))
-        return (*[few] * _on(len(self.sends) - 1, _UPDATES), many)
+        # nights that taught nothing left their share of the work to this one
+        updates = _on(self.heard - 1, _UPDATES) * (1 + self.idle)
+        return (*[few] * min(updates, _SEEDS[2] - 1), many)
 
     def overnight(
         self, sends: float, arrive: float = ARRIVE
@@ -204,20 +223,26 @@ class Ancestry:
             The share of all plants that is told to be infested from outside in a night.
         """
         day, n = len(self.sends), len(self.grid)
+        hears = bool(self.new) or bool(self.missed[day:].any())
         nothing = np.zeros((day + 1 - len(self.missed), n), np.float16)
         night = _with_finds(
             replace(
                 self,
                 missed=np.concatenate([self.missed, nothing]),
                 sends=np.append(self.sends, sends),
-                rates=self.rates if day else self.rates._replace(anywhere=arrive),
+                rates=self.rates
+                if day or self.began_anew
+                else self.rates._replace(anywhere=arrive),
+                heard=self.heard + hears,
+                idle=self.idle + (self.knows and not hears),
             )
         )
         if not self.knows:
             return night, None
         many = int(np.count_nonzero(night.infestations.there))
-        for k in range(_on(day, _ROUNDS)):
-            night, hidden, unseen = _drawn(night, landing_of(self.grid), k, arrive)
+        for k in range(_on(night.heard - 1, _ROUNDS) if hears else 1):
+            night, hidden, unseen = _drawn(night, landing_of(self.grid), (k, hears), arrive)
+        night = replace(night, idle=0 if hears else night.idle)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
         )
@@ -237,8 +262,10 @@ class Ancestry:
             "infestations": np.array(self.infestations, np.int64),
             "rates": np.concatenate([self.rates.shares, self.rates[1:]]),
             "at_start": self.at_start,
-            "since": np.array([self.arrived, self.began_anew]),
+            "since": np.array([self.arrived, self.began_anew, self.heard, self.idle]),
             "hiding": self.hiding,
+            "earlier": self.earlier,
+            "taught": self.taught,
         }
 
     @classmethod
@@ -247,8 +274,13 @@ class Ancestry:
         kept = dict(arrays)
         plant, begins, ends, found, parent, children, there, earliest = kept.pop("infestations")
         shares, others = np.split(kept.pop("rates"), [len(SHARES)])
-        arrived, anew = kept.pop("since")
-        n = len(grid)
+        # a season's file of before says no more than the first two
+        arrived, anew, *since = kept.pop("since").tolist()
+        heard, idle = since or (len(kept["sends"]), 0)
+        n, at_start = len(grid), kept["at_start"]
+        if len(at_start) == 2:  # so it was kept before: without what follows for the rates
+            number, variance = at_start
+            kept["at_start"] = np.array([number, variance + (_START_DOUBT * number) ** 2, 0.0])
         if any(kept[name].shape[-1:] != (n,) for name in ("start", "missed", "last_find", "taken")):
             raise ValueError(f"An ancestry of {n} plants must have arrays of so many.")
         infestations = Infestations(
@@ -257,7 +289,8 @@ class Ancestry:
         rates = Rates(shares, *map(float, others))
         return cls(
             grid, new=(), infestations=infestations, rates=rates,
-            arrived=float(arrived), began_anew=bool(anew), **kept,
+            arrived=arrived, began_anew=bool(anew),
+            heard=int(heard), idle=int(idle), **kept,
         )  # fmt: skip
 
 
@@ -287,12 +320,13 @@ def _with_finds(of: Ancestry) -> Ancestry:
 
 
 def _drawn(
-    of: Ancestry, landing: Landing, nth: int, arrive: float
+    of: Ancestry, landing: Landing, nth: tuple[int, bool], arrive: float
 ) -> tuple[Ancestry, Floats, NDArray[np.float64]]:
-    """Draw ancestries and estimate rates by them, for the `nth` time in a night.
+    """Draw ancestries, and estimate rates by them if there is something new to learn from.
 
-    Return also how likely each plant is infested as the ancestor of a find, and how many
-    infestations of which nothing was seen are expected there.
+    `nth` is how often that was done before in this night, and whether there is. Return also how
+    likely each plant is infested as the ancestor of a find, and how many infestations of which
+    nothing was seen are expected there.
     """
     t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
     # half the digits: on a large plot it is memory that takes the time
@@ -316,7 +350,8 @@ def _drawn(
     lasting[n:][found] = _until_found(missed, unseen.offspring, finds, of.hiding)
     np.maximum(lasting, _TINY, out=lasting)
     drawn = DrawnSums.none(t, n, landing.kernels.shape[1])
-    sweeps, day = of.sweeps, len(of.sends) - 1
+    (nth_round, hears), day = nth, len(of.sends) - 1
+    sweeps = of.sweeps if hears else of.sweeps[-1:]
     for k, many in enumerate(sweeps):
         sends = of.sent(rates)
         kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
@@ -327,7 +362,7 @@ def _drawn(
         )  # fmt: skip
         for sums in drawn:
             sums.fill(0.0)
-        seed = int(np.ravel_multi_index((day, nth, k), _SEEDS))
+        seed = int(np.ravel_multi_index((day, nth_round, k), _SEEDS))
         draws = seed, many, int(_LEFT_OUT * many)
         kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
         for sums in drawn[1:]:
@@ -339,23 +374,39 @@ def _drawn(
             taken = active.copy()
             taken[finds] = 1.0
             unfound = unseen_now(unseen, active, roots, sends, rates.shares, landing)
-        night = DrawnEvidence(of.start, sends, kernel, seen, taken, drawn, active, unfound, arrive)
+        if not hears:
+            break
+        night = DrawnEvidence(
+            of.start, sends, kernel, seen, taken, drawn, active, unfound, arrive, of.earlier
+        )
         if k == 0:
             exposure = rates.exposure(night, landing)
         rates = rates.after(night, exposure, landing)
-    known, square = drawn.at_start
     made = replace(
         of,
         infestations=infestations,
         taken=taken.astype(np.float16),
         rates=rates,
-        # those unseen vary by chance
         at_start=of.at_start
         if of.began_anew
-        else np.array([known, square - known**2]) + unfound[BEFORE].sum(),
+        else _at_start(drawn, infestations, float(unfound[BEFORE].sum())),
         arrived=float(drawn.roots[1].sum()),
+        taught=rates.taught(night, exposure, landing) if hears else of.taught,
     )
     return made, drawn.hidden, unfound[-1].astype(np.float64)
+
+
+def _at_start(drawn: DrawnSums, infestations: Infestations, unfound: float) -> Floats:
+    """Return how many there were on the first morning, ``(3,)`` as `Ancestry.at_start` has it.
+
+    `unfound` are those of which nothing was seen; they vary by chance.
+    """
+    known, square = drawn.at_start
+    number, variance = known + unfound, square - known**2 + unfound
+    found = infestations.there & infestations.found
+    not_found = max(number - np.count_nonzero(found), 0.0)
+    variance += (_START_DOUBT * number) ** 2 + (_UNFOUND_DOUBT * not_found) ** 2
+    return np.array([number, variance, np.count_nonzero(found & (infestations.ends == BEFORE))])
 
 
 def _overlooked(missed: Floats, hiding: Floats) -> Floats:

@@ -31,6 +31,8 @@ _SENT_BEFORE, _SENT_BEFORE_FINDS = 0.4, 4.0
 #: how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
 #: the kernels of `reach` (our choice)
 SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
+#: how many kernels there are
+KERNELS = len(SHARES)
 #: how many finds the first guess of what arrives is worth (our choice)
 ARRIVAL_FINDS = 0.5
 # the same of the share at the start (our choice)
@@ -66,6 +68,8 @@ class DrawnEvidence(NamedTuple):
         ``(t, n)`` how many infestations there are of which nothing was seen.
     arrive
         The share of all plants that is told to be infested from outside in a night.
+    earlier
+        ``(2, 10)`` what ancestries before these taught, see `Rates.taught`.
     """
 
     start: Floats
@@ -77,6 +81,7 @@ class DrawnEvidence(NamedTuple):
     active: Floats
     unseen: Floats
     arrive: float
+    earlier: Floats
 
     def __repr__(self) -> str:
         return f"<Evidence of {len(self.sends)} mornings>"
@@ -182,38 +187,66 @@ class Rates(NamedTuple):
 
     def with_jumps(self, night: DrawnEvidence, exposure: Exposure, landing: Landing) -> Rates:
         """Return the same with the jumps that were drawn."""
-        drawn = night.drawn
-        all_jumps = drawn.jumps.sum(axis=0) / np.maximum(night.kernel, LEAST_CHANCE)
-        jumps = self.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
-        shares = (SHARES + jumps) / (SHARES.sum() + exposure.by_kernel)
-        before = _SENT_BEFORE_FINDS + float(drawn.jumps[0].sum())
+        jumps = SHARES + night.earlier[0, :KERNELS] + self._jumps(night, landing)
+        shares = jumps / (SHARES.sum() + night.earlier[1, :KERNELS] + exposure.by_kernel)
+        before = _SENT_BEFORE_FINDS + float(night.drawn.jumps[0].sum())
         before /= _SENT_BEFORE_FINDS / _SENT_BEFORE + exposure.before
         return self._replace(shares=shares / shares.sum(), before=before)
+
+    def _jumps(self, night: DrawnEvidence, landing: Landing) -> Floats:
+        """How many of the jumps that were drawn went by each kernel, ``(8,)``."""
+        all_jumps = night.drawn.jumps.sum(axis=0) / np.maximum(night.kernel, LEAST_CHANCE)
+        jumps: Floats = self.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
+        return jumps
 
     def with_roots(self, night: DrawnEvidence, at_edge: Floats) -> Rates:
         """Return the same with those that were drawn as coming from none."""
         told = self._told(night.start)
-        first, later = _AGES @ night.seen[_FIRST], night.seen[_LATER].sum(axis=0)
+        first, nightly = _AGES @ night.seen[_FIRST], _nightly(night, at_edge)
         seen = float(first @ told), float(first @ at_edge * told.mean())
-        nightly = float(later.sum()), float(later @ at_edge)
-        rates, once = self, Rates(self.shares, self.before, *[1.0] * 4)
-        parts = [
+        found, known = night.earlier[:, KERNELS:]
+        parts, rates = self._parts(night, at_edge), self
+        for _ in range(_SHARED_OUT):
+            start, start_by_edge = _shared_out(parts[0], rates.start, rates.start_by_edge)
+            arrived = _shared_out(parts[1], rates.anywhere, rates.by_edge)
+            expected = ARRIVAL_FINDS / np.array([night.arrive, ARRIVE_BY_EDGE])
+            anywhere, by_edge = (ARRIVAL_FINDS + found + arrived) / (expected + known + nightly)
+            rates = rates._replace(
+                start=(_START_FINDS * (1.0 - _BY_EDGE) + start) / (_START_FINDS + seen[0]),
+                start_by_edge=(_BY_EDGE_FINDS * _BY_EDGE + start_by_edge)
+                / (_BY_EDGE_FINDS + seen[1]),
+                anywhere=float(anywhere),
+                by_edge=float(by_edge),
+            )
+        return rates
+
+    def taught(self, night: DrawnEvidence, exposure: Exposure, landing: Landing) -> Floats:
+        """Return what these ancestries and those before teach of the season, ``(2, 10)``.
+
+        How many finds went by each kernel and came from outside, anywhere and by the edge, and how
+        many would have at a rate of 1.
+        """
+        arrived = _shared_out(self._parts(night, landing.at_edge)[1], self.anywhere, self.by_edge)
+        found = np.concatenate([self._jumps(night, landing), arrived])
+        expected = np.concatenate([exposure.by_kernel, _nightly(night, landing.at_edge)])
+        taught: Floats = night.earlier + np.array([found, expected])
+        return taught
+
+    def _parts(self, night: DrawnEvidence, at_edge: Floats) -> list[tuple[Floats, Floats, Floats]]:
+        """Return what `_shared_out` takes, of those that came before the season and in it."""
+        once = Rates(self.shares, self.before, *[1.0] * 4)
+        return [
             (drawn[drawn > 0.0], others[drawn > 0.0], by_edge[drawn > 0.0])
             for drawn, (others, by_edge) in zip(
                 night.drawn.roots, once._from_none(night.start, at_edge), strict=True
             )
         ]
-        for _ in range(_SHARED_OUT):
-            start, start_by_edge = _shared_out(parts[0], rates.start, rates.start_by_edge)
-            anywhere, by_edge = _shared_out(parts[1], rates.anywhere, rates.by_edge)
-            rates = rates._replace(
-                start=(_START_FINDS * (1.0 - _BY_EDGE) + start) / (_START_FINDS + seen[0]),
-                start_by_edge=(_BY_EDGE_FINDS * _BY_EDGE + start_by_edge)
-                / (_BY_EDGE_FINDS + seen[1]),
-                anywhere=(ARRIVAL_FINDS + anywhere) / (ARRIVAL_FINDS / night.arrive + nightly[0]),
-                by_edge=(ARRIVAL_FINDS + by_edge) / (ARRIVAL_FINDS / ARRIVE_BY_EDGE + nightly[1]),
-            )
-        return rates
+
+
+def _nightly(night: DrawnEvidence, at_edge: Floats) -> tuple[float, float]:
+    """Return how many arrivals would have been seen at a rate of 1, anywhere and by the edge."""
+    later = night.seen[_LATER].sum(axis=0)
+    return float(later.sum()), float(later @ at_edge)
 
 
 def _shared_out(

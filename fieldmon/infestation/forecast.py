@@ -109,7 +109,7 @@ def forecast(
     weather
         As `Forecast` has it.
     now
-        How many are infested this evening, where that was worked out already.
+        How many are infested this evening, where more is known of that than `evening` says.
 
     Examples
     --------
@@ -133,10 +133,15 @@ def forecast(
     tonight = now or estimate_plot(
         grid, evening.chance, evening.pair_chance, doubt=evening.doubt, named=named
     )
+    if now is not None and expected[0] > 0.0:
+        inside[0] *= now.expected / expected[0]
+        expected[0] = now.expected
     doubts = _deviation(tonight), _OF_A_PEST if named else _LEVEL_DOUBT
-    ends = _interval(inside, expected - inside, doubts, found)
-    high = np.minimum(np.ceil(ends[1]), len(evening.chance))
-    return Forecast(expected, np.floor(ends[0]), high, weather)
+    low, high = _interval(inside, expected - inside, doubts, found)
+    low, high = np.floor(low), np.minimum(np.ceil(high), len(evening.chance))
+    if now is not None:
+        low[0], high[0] = now.low, now.high
+    return Forecast(expected, low, high, weather)
 
 
 def _without_arrivals(evening: Belief) -> Belief:

@@ -143,10 +143,9 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
     was never found is not among them.
     """
     if belief.ancestry is not None:
-        ancestry = belief.ancestry.so_far
-        at_start = ancestry.infested_at_start
+        at_start = belief.ancestry.infested_at_start
         if at_start is not None:
-            return at_start, ancestry.arrivals
+            return at_start, belief.ancestry.arrivals
     n, estimate = len(belief.chance), belief.counts.estimate
     suspected, elsewhere = map(float, belief.at_start)
     return (

@@ -76,8 +76,8 @@ _LEAST_JUMPS = 0.05
 # doubt: finds beside finds are put down to clusters first (chosen on nine real maps, and on 36
 # seasons with 3 to 30 % infested where 1.5 % were told)
 _STILL_TOO_FEW = 0.7
-# the ancestry of finds knows the number better than origins, by which it is doubted: so much of that
-# doubt remains (chosen on 400 seasons of ten worlds)
+# the ancestry of finds knows the number better than origins, by which it is doubted: so much of
+# the doubt remains (chosen on 400 seasons of ten worlds)
 _LESS_DOUBT = 0.85
 # two maps are believed: the odds by the ancestry of finds and those by origins with such powers,
 # times so much (chosen on 560 seasons of ten worlds)
@@ -358,17 +358,28 @@ class TracedPairs:
     def overnight(self, spread: Spread) -> TracedPairs:
         """Return what is believed the next morning."""
         morning = self._overnight(spread, tells_apart=True)
+        return self._with_ancestry(morning, self._sends(spread), spread)
+
+    def in_hindsight(self, spread: Spread) -> TracedPairs:
+        """Return the same as the ancestry of finds has it by now, before the night of a `spread`.
+
+        It is what to tell in the evening; the night begins without it, as it would count twice.
+        """
+        waits = self.ancestry is not None and self.ancestry.waits
+        return self._with_ancestry(self, 0.0, spread) if waits else self
+
+    def _with_ancestry(self, by_origins: TracedPairs, sends: float, spread: Spread) -> TracedPairs:
+        """Return what both maps say after a night in which an infested plant sent out so many."""
         if self.ancestry is None:
-            return morning
-        arrive = max(spread.arrivals_per_day, ARRIVE)
+            return by_origins
         hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
-        ancestry = replace(self.ancestry, hiding=hiding)
-        ancestry, chance = ancestry.overnight(self._sends(spread), arrive)
+        arrive = max(spread.arrivals_per_day, ARRIVE)
+        ancestry, chance = replace(self.ancestry, hiding=hiding).overnight(sends, arrive)
         if chance is not None:
             # a logarithmic pool of both maps (Genest & Zidek 1986)
-            odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(morning.chance) ** _ORIGINS
-            morning = morning.times(odds / (1.0 + odds) / morning.chance)
-        return _levelled(replace(morning, ancestry=ancestry))
+            odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(by_origins.chance) ** _ORIGINS
+            by_origins = by_origins.times(odds / (1.0 + odds) / by_origins.chance)
+        return _levelled(replace(by_origins, ancestry=ancestry))
 
     def untold_night(self, spread: Spread) -> TracedPairs:
         """Return the same chances next morning; where they came from is not told apart any more.

@@ -162,7 +162,7 @@ def _write_states(
         "last_inspected = excluded.last_inspected, hot_spot = excluded.hot_spot",
         changed,
     )
-    _write_chances(db, np.round(history.evening(morning, day).chance, 6).tolist())
+    _write_chances(db, np.round(history.in_hindsight(morning, day).chance, 6).tolist())
     for table in (schema.PLANT_STATE, schema.CHANCE, schema.DAYS):
         touch(db, table.name)
 

@@ -269,6 +269,28 @@ class History:
         self._last_evening[day] = morning, believed
         return believed
 
+    def in_hindsight(self, morning: Belief, day: int) -> Belief:
+        """Return what to tell of the evening of a day: what its finds say of others counts too.
+
+        The next morning it counts of itself, so that a night begins with `evening`.
+        """
+        with self._looking_back:  # who infested whom is drawn for it: once for all who ask
+            last = self._last_hindsight.get(day)
+            if last is not None and last[0] is morning:
+                return last[1]
+            believed = in_hindsight(self.evening(morning, day), self.night(day))
+            self._last_hindsight.clear()
+            self._last_hindsight[day] = morning, believed
+            return believed
+
+    @cached_property
+    def _looking_back(self) -> threading.Lock:
+        return threading.Lock()
+
+    @cached_property
+    def _last_hindsight(self) -> dict[int, tuple[Belief, Belief]]:
+        return {}
+
     @cached_property
     def _last_evening(self) -> dict[int, tuple[Belief, Belief]]:
         return {}
@@ -279,7 +301,10 @@ class History:
         believed = self.belief.evening(morning, done.plant, found, self._detection(done))
         for treatment in self.treatments:
             if treatment.day == day:
-                believed = believed.treated(np.where(treatment.plants, 1 - treatment.efficacy, 1.0))
+                # who infested whom ends here: what it says of today's finds counts before
+                believed = in_hindsight(believed, self.night(day)).treated(
+                    np.where(treatment.plants, 1 - treatment.efficacy, 1.0)
+                )
         return believed
 
     def _detection(self, done: Inspections) -> float | NDArray[np.float64]:
@@ -333,7 +358,7 @@ class History:
 
     def _still_out(self, morning: Belief, day: int) -> Belief:
         """Return what is believed of plants not found yet."""
-        evening = self.evening(morning, day)
+        evening = self.in_hindsight(morning, day)
         if self.belief.treated:
             return evening
         # what was found is known: it is not out there any more
@@ -341,7 +366,7 @@ class History:
 
     def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of a day tell of the insects."""
-        return learnt_from(self.evening(morning, day), self.detection)
+        return learnt_from(self.in_hindsight(morning, day), self.detection)
 
     def first_find(self, on: date) -> date | None:
         """Return the day of the first find up to a date; None: there is none yet."""
@@ -426,6 +451,11 @@ class History:
 def in_sight(belief: Belief) -> Belief:
     """Return what is believed of what inspections can see: a day is planned by it."""
     return belief.in_sight if isinstance(belief, TracedPairs) else belief
+
+
+def in_hindsight(evening: Belief, night: Spread) -> Belief:
+    """Return what is believed of an evening as its finds say of others, before a night."""
+    return evening.in_hindsight(night) if isinstance(evening, TracedPairs) else evening
 
 
 def made_by(inspections: Inspections, who: str | None) -> Inspections:

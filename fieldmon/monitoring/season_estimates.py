@@ -66,7 +66,7 @@ class SeasonEstimates(OpenSeason):
     def evening(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far."""
         with self._asked(on) as (contents, morning, day):
-            return contents.history.evening(morning, day).chance
+            return contents.history.in_hindsight(morning, day).chance
 
     def level_range(self, on: date) -> LevelRange:
         """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
@@ -92,7 +92,7 @@ class SeasonEstimates(OpenSeason):
             ``(n,)`` the part of the plot that is asked about; None: all.
         """
         with self._asked(on) as (contents, morning, day):
-            evening = contents.history.evening(morning, day)
+            evening = contents.history.in_hindsight(morning, day)
         return map_verdict(
             contents.history.grid, evening.chance, level, evening.pair_chance,
             plants=plants, sure=sure, doubt=evening.doubt_of_rates,
@@ -110,7 +110,7 @@ class SeasonEstimates(OpenSeason):
         """
         with self._asked(on) as (contents, morning, day):
             scene = self._scene(contents, on)
-            evening = contents.history.evening(morning, day)
+            evening = contents.history.in_hindsight(morning, day)
         return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
 
     def status(self, on: date) -> Status:

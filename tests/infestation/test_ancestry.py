@@ -257,7 +257,8 @@ def test_as_many_were_infested_at_the_start_as_were_found_at_once():
     at_once = whole_plot([[21, 88, 173, 250, 251, 333], [], [], []])
     number = at_once.infested_at_start
     assert number.value == pytest.approx(6.0, abs=0.7)
-    assert number.low < 6.0 < number.high
+    # what was found on the first day was there
+    assert number.low == 6.0 < number.high
     # told were eight: with a quarter inspected it is between both
     quarter, _ = after(np.arange(100), np.arange(100) % 50 == 0, known, 0.95)
     assert 4.0 < quarter.infested_at_start.value < 10.0
@@ -282,19 +283,62 @@ def test_finds_far_from_all_others_on_a_clean_plot_arrived_from_outside():
 
 def test_by_the_evening_it_is_known_what_was_inspected_that_day():
     known = whole_plot([[21, 88], []])
-    assert known.so_far is known
+    assert not known.waits
     plants = np.arange(N)
     evening = known.learn(plants, plants == 22, np.full(N, 0.95))
-    morning, _ = evening.overnight(0.3)
-    assert evening.so_far.infested_at_start.value == pytest.approx(
+    assert evening.waits
+    so_far, (morning, _) = evening.overnight(0.0)[0], evening.overnight(0.3)
+    assert so_far.infested_at_start.value == pytest.approx(
         morning.infested_at_start.value, rel=0.05
     )
-    assert evening.so_far.arrivals.value == pytest.approx(morning.arrivals.value, rel=0.2)
+    assert so_far.arrivals.value == pytest.approx(morning.arrivals.value, rel=0.2)
+
+
+def test_nights_without_inspections_teach_nothing_of_the_past():
+    """With few finds another draw of them would tell of twice as many, or half."""
+    known, _ = after(np.arange(60), np.arange(60) % 10 == 0)
+    first, numbers = known, []
+    for _ in range(6):
+        known, _ = known.overnight(0.05)
+        assert np.array_equal(known.rates.shares, first.rates.shares)
+        assert known.rates[1:] == first.rates[1:]
+        numbers.append(known.infested_at_start.value)
+    assert numbers == pytest.approx([first.infested_at_start.value] * 6, rel=0.15)
+    assert known.heard == first.heard == 1
+    # the next day that teaches something is given the work that they left
+    assert (known.idle, len(replace(known, heard=3).sweeps)) == (6, 16)
+    later, _ = after([399], [False], known)
+    assert (later.heard, later.idle, len(later.sweeps)) == (2, 0, 6)
+
+
+def test_what_was_learnt_of_arrivals_and_jumps_outlives_a_beginning_anew():
+    finds = [[21], *([20 * (2 * day + 1) + 7 * day % 19] for day in range(1, 9))]
+    known = whole_plot(finds)
+    quiet, _ = known.anew(FLAT).overnight(0.3)
+    assert quiet.arrivals.value == pytest.approx(known.arrivals.value)
+    later, _ = after(np.arange(N), np.zeros(N, bool), known.anew(FLAT), 0.95)
+    assert later.arrivals.value == pytest.approx(known.arrivals.value, rel=0.2)
+    assert later.arrivals.value > 3.0 * whole_plot([[21], *[[]] * 8]).arrivals.value
+    assert later.rates.shares == pytest.approx(known.rates.shares, abs=0.05)
+    kept = Ancestry.of_arrays(GRID, known.anew(FLAT).arrays)
+    assert np.array_equal(kept.earlier, known.taught)
+
+
+def test_an_ancestry_that_was_kept_without_what_is_new_is_read():
+    known = whole_plot([[21, 88], []])
+    arrays = known.arrays
+    arrays["since"], arrays["at_start"] = arrays["since"][:2], np.array([5.0, 0.04])
+    del arrays["earlier"], arrays["taught"]
+    kept = Ancestry.of_arrays(GRID, arrays)
+    assert kept.heard == 2
+    assert not kept.taught.any()
+    off = 1.645 * np.hypot(0.2, 0.5)
+    assert kept.infested_at_start.high == pytest.approx(5.0 + off, rel=0.01)
 
 
 def test_how_many_there_were_at_the_start_stays_known_when_it_begins_anew():
     known = whole_plot([[21, 88, 173], []])
     later = known.anew(FLAT)
     on, _ = after(np.arange(N), np.arange(N) % 3 == 0, later)
-    assert (on.at_start == known.at_start).all()
+    assert on.infested_at_start == known.infested_at_start
     assert Ancestry.of_arrays(GRID, on.arrays).began_anew

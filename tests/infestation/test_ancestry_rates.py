@@ -31,6 +31,7 @@ def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL, unseen=None):
         drawn.active,
         nothing if unseen is None else unseen,
         ARRIVE,
+        np.zeros((2, 10)),
     )
 
 

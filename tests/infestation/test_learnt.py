@@ -11,6 +11,7 @@ from fieldmon.infestation.learnt import Learnt, _length, learnt_from, worth_sayi
 from fieldmon.infestation.origins import ANYWHERE, AT_START, AT_START_ELSEWHERE, BY_EDGE, JUMPED
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.reach import kernel_means
+from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
@@ -120,8 +121,9 @@ def test_what_comes_from_none_is_told_by_the_ancestry_of_finds():
     belief = TracedPairs.of(GRID, FLAT)
     plants = np.arange(81, dtype=np.int32)
     evening = belief.learn(plants, np.isin(plants, [4, 40, 44, 70]), Learning())
+    evening = evening.in_hindsight(Spread(0.3))
     told = {one.name: one for one in learnt_from(evening, 0.84)}
-    known = evening.ancestry.so_far
+    known = evening.ancestry
     assert told["infested at the start"].value == known.infested_at_start.value
     assert 4.0 < told["infested at the start"].value < 6.0
     assert told["arrivals a night"].high == known.arrivals.high

@@ -330,7 +330,8 @@ class History:
         """
         if self.belief.treated:
             return 0.0
-        return float(self.evening(morning, day).chance[self.states(day) == PRESENT].sum())
+        known = self.in_hindsight(morning, day).chance
+        return float(known[self.states(day) == PRESENT].sum())
 
     def remember(self, morning: Belief, day: int, estimate: PlotEstimate) -> None:
         """Take this for what is estimated of a day: it was worked out from the same before."""

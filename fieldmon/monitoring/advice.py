@@ -263,7 +263,7 @@ class Advice:
 
     def _worth_said(self) -> str:
         return worded(
-            "It takes {litres:.0f} l and costs {saved} less than treating the whole plot.",
+            "It takes {litres:,.0f} l and costs {saved} less than treating the whole plot.",
             litres=self.litres, saved=self.saved,
         )  # fmt: skip
 

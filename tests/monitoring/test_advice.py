@@ -1,5 +1,6 @@
 """Advice: one answer in one sentence, the looks that it lacks, and zones that can be written."""
 
+import re
 from dataclasses import replace
 from datetime import timedelta
 from itertools import product
@@ -158,6 +159,15 @@ def test_zones_that_the_threshold_does_not_ask_for_are_said_to_pay_only(
     assert len(though) == bool(said)
     assert said in " ".join(though)
     assert advice.is_below == ("below" in said)
+
+
+def test_thousands_are_parted_in_what_zones_take_and_cost(season):
+    zones = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).zones
+    many = replace(zones, cost=21379.5, saved=130457.0)
+    assert many.sentence().endswith("It costs 21,379.50 and saves 130,457.00.")
+    asked = AdviceSettings(0.01, costs=CHEAP, rate_l_ha=50_000.0)
+    said = " ".join(season.advice(BEGINS, asked).said_of_zones())
+    assert re.search(r"It takes \d{1,2},\d{3} l ", said)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ from fieldmon.reports.advice import advice_report
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
 
-from ..show.advice import is_below
 from ..state import deciding, notices, widget_memory
 from ..state.chosen_units import units
 from ..words import language, texts
@@ -171,7 +170,7 @@ def files(choices: Choices, advice: Advice) -> None:
     of = partial(advice.treatment_map, choices.plot.field, product)
     st.download_button(
         texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of(), name), name,
-        type="secondary" if is_below(advice) else "primary",
+        type="secondary" if advice.is_below else "primary",
         key="decide download", on_click="ignore",
     )  # fmt: skip
 
@@ -183,7 +182,7 @@ def treated(choices: Choices, advice: Advice) -> None:
     with st.expander(texts.DECIDE_TREATED):
         whole = shapely.union_all(advice.outlines)
         area = shapely.MultiPolygon(list(shapely.get_parts(whole)))
-        treating.show(choices, area, f"{advice.headline()} {advice.plot.sentence()}")
+        treating.show(choices, area, advice.in_short())
 
 
 def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report

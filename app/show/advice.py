@@ -12,7 +12,6 @@ import shapely
 import streamlit as st
 from pydeck import Layer
 
-from fieldmon.decisions.sequential import LEAVE
 from fieldmon.plot.grid import row_label
 
 from ..state import cached
@@ -50,8 +49,8 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
     if not len(advice.zones):
         st.markdown(in_words(advice.zones.sentence()))
         return
-    if is_below(advice):
-        st.markdown(texts.DECIDE_ANYWAY)
+    for sentence in advice.though():
+        st.markdown(in_words(sentence))
     zones, units = advice.zones, choices.units
     of_plot = zones.m2 / zones.plot_m2
     share = number(of_plot, ".1%" if of_plot < _SMALL else ".0%")
@@ -64,11 +63,6 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
         st.metric(texts.DECIDE_SAVING, in_words(advice.saved), width="content")
         st.metric(texts.DECIDE_ENOUGH, number(advice.said.enough, ".0%"), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip
-
-
-def is_below(advice: Advice) -> bool:
-    """Return whether there are zones though neither the plot nor any of them is to be treated."""
-    return advice.verdict == LEAVE and not advice.above and len(advice.zones) > 0
 
 
 def zones(advice: Advice) -> None:

@@ -10,7 +10,9 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.wording import joined
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
 from fieldmon.plot.grid import row_label
@@ -109,6 +111,15 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
         st.warning(said)
 
 
+def beside_figures(choices: Choices) -> None:
+    """Say what a season's figures leave out: flagged plants, and what was found again."""
+    progress = chosen_day.progress(choices)
+    if said := flagged_said(chosen_day.flagged(choices)):
+        st.caption(in_words(joined(" ", said)))
+    if (finds := progress.finds) > (plants := progress.found):
+        st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
+
+
 def changes(choices: Choices) -> list[str]:
     """Return sentences on what changed since yesterday."""
     if choices.season is None:
@@ -123,6 +134,7 @@ def changes(choices: Choices) -> list[str]:
         said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
     expected = {"now": about(now.expected), "before": about(before.expected)}
     said.append(texts.CHANGED_OUT.format(**expected))
+    said += map(in_words, flagged_said(chosen_day.flagged(choices))[:1])
     spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (yesterday, choices.day)]
     if spots[0] != spots[1]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))

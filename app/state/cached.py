@@ -195,6 +195,12 @@ def progress(path: str, revision: str, day: str, _season: Season) -> Progress:
 
 
 @st.cache_resource(max_entries=_MAPS)
+def flagged(path: str, revision: str, day: str, _season: Season) -> float:
+    """Return how many plants found are still infested after a day of a season."""
+    return _season.flagged(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
 def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())

@@ -156,6 +156,11 @@ def progress(choices: Choices) -> Progress:
     return cached.progress(choices.key, choices.revision, choices.day, choices.season)
 
 
+def flagged(choices: Choices) -> float:
+    """Return how many of the plants found are still infested, as expected: flagged only."""
+    return cached.flagged(choices.key, choices.revision, choices.day, choices.season)
+
+
 def learnt(choices: Choices) -> tuple[Learnt, ...]:
     """Return what a season's inspections tell of the insects."""
     return cached.learnt(choices.key, choices.revision, choices.day, choices.season)

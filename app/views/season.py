@@ -10,6 +10,7 @@ import streamlit as st
 
 from ..actions import assuming, beginning
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
+from ..show import day as show_day
 from ..state import assumptions, chosen_day
 from ..words import texts
 from ..words.language import about, number
@@ -30,7 +31,7 @@ def show(choices: Choices) -> None:
         return
     days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
     _figures(choices, days[-1], progress)
-    _again(progress)
+    show_day.beside_figures(choices)
     cautions.show(choices)
     cautions.show_treatments(choices)
     assuming.show(choices)
@@ -56,12 +57,6 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
         seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
         st.metric(texts.INSPECTED_EVER, seen, width="content")
         st.metric(f"{texts.CLEAN_CHANCE}{star}", number(now.chance_clean, ".1%"), width="content")
-
-
-def _again(progress: Progress) -> None:
-    """Say why the days' finds are more than the plants found, where they are."""
-    if (finds := progress.finds) > (plants := progress.found):
-        st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:

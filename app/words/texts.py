@@ -555,10 +555,6 @@ DECIDE_AREA, DECIDE_LIQUID, DECIDE_LITRES = "To be sprayed", "Liquid", "{value} 
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
 DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
-DECIDE_ANYWAY = (
-    "The zones on the map are below the threshold too. By these costs, spraying them would still "
-    "save more than it costs."
-)
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
 DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "wrong in"

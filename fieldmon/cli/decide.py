@@ -203,13 +203,14 @@ def decide(  # noqa: PLR0913, PLR0917 - the command's options
         ),
     )
     if level:
-        said = advice.said_of_plot()
+        said, short = [advice.headline(), *advice.reasons()], advice.in_short()
     else:
         named = "" if leaves else " (--leaves, --counted)"
         said = [of_leaves(asked, leaves, counted, presence=presence) + named]
+        short = " ".join([*said, advice.zones.sentence()])
     where = advice.said_of_zones(above=bool(level))
     typer.echo("\n".join([f"{when}, after the day's work.", asked.sentence(), *said, *where]))
-    kept.advise(when, " ".join([*said[:1], *where[:1]]))
+    kept.advise(when, short)
     if output:
         _write(_AdviceAsked(kept, when, advice, product), output)
 

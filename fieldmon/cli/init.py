@@ -34,7 +34,7 @@ from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.compute.ranges import CHANCE, SEED
-from fieldmon.compute.wording import estimate
+from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -174,8 +174,8 @@ def init(options: InitOptions) -> None:
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)
     ahead = season.status(settings.begins).estimate
     typer.echo(
-        f"Season begun in {path}: {len(known.records)} records, about {estimate(ahead.expected)} "
-        f"plants believed infested ({ahead.low} to {ahead.high})."
+        f"Season begun in {path}: {counted(len(known.records), 'record')}, about "
+        f"{estimate(ahead.expected)} plants believed infested ({ahead.low:,} to {ahead.high:,})."
     )
     if (taught := season.taught()) is not None:
         typer.echo(taught)

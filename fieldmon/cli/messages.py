@@ -113,19 +113,21 @@ class Terminal:
 
 def describe(plot: Plot) -> None:
     """Print how a plot is planted."""
+    from fieldmon.compute.wording import counted
+
     grid, name = plot.grid, plot.field.name
     if not grid.in_rows:
-        typer.echo(f"{name}: {len(grid)} plants in no rows, visited by nearness.")
+        typer.echo(f"{name}: {grid.counts}, visited by nearness.")
         return
     if plot.rows is not None and not plot.rows.in_rows:
-        typer.echo(f"{name}: {len(grid)} plants in no rows.")
+        typer.echo(f"{name}: {counted(len(grid), 'plant')} in no rows.")
         return
     run = f"bearing {grid.frame.bearing_deg % 180:.1f} degrees"
     if grid.aisles_m is not None:
-        run = f"which run as they bend, in {grid.n_blocks} block" + "s" * (grid.n_blocks > 1)
+        run = f"which run as they bend, in {counted(grid.n_blocks, 'block')}"
     typer.echo(
-        f"{name}: {len(grid)} plants in {grid.n_rows} rows, {run}, rows {grid.row_spacing_m:.2f} m "
-        f"and plants {grid.plant_spacing_m:.2f} m apart."
+        f"{name}: {counted(len(grid), 'plant')} in {counted(grid.n_rows, 'row')}, {run}, rows "
+        f"{grid.row_spacing_m:.2f} m and plants {grid.plant_spacing_m:.2f} m apart."
     )
 
 

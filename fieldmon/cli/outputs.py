@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.compute.wording import estimate
+from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -87,8 +87,9 @@ def write_chance_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -
 
 def day_in_words(route: Route) -> str:
     """Return what a planned day comes to, and what no other route can exceed, where it is known."""
+    plants = counted(len(route.aisles.grid), "plant")
     said = (
-        f"{len(route)} of {len(route.aisles.grid)} plants in {route.end_s / 3600:.1f} h, "
+        f"{len(route):,} of {plants} in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_finds)} of them infested, "
         f"about {estimate(route.expected_found)} of these would be found."
     )

@@ -253,12 +253,14 @@ def _write(folder: Path, order: Iterable[str], rows: dict[str, Row]) -> None:
 
 
 def _tell(rows: dict[str, Row], folder: Path) -> None:
+    from fieldmon.compute.wording import counted
+
     planned = [row for row in rows.values() if row["state"] == "planned"]
     for line in _refusals([row for row in rows.values() if row["state"] == "refused"]):
         typer.echo(line, err=True)
     stops = sum(int(row["stops"]) for row in planned)
     typer.echo(
-        f"{len(planned)} of {len(rows)} plots planned, {stops} plants in "
+        f"{len(planned)} of {len(rows)} plots planned, {counted(stops, 'plant')} in "
         f"{sum(float(row['hours']) for row in planned):.0f} h. Routes and {SUMMARY} in {folder}"
     )
 

@@ -110,19 +110,22 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
     from fieldmon.compute.wording import estimate
     from fieldmon.infestation.learnt import worth_saying
+    from fieldmon.monitoring.day_figures import flagged_said
 
     ahead = now.estimate
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
-    yield f"  inspected that day     {now.inspected_today:6d}, {now.found_today} found infested"
+    yield f"  inspected that day     {now.inspected_today:6,}, {now.found_today:,} found infested"
     yield (
-        f"  inspected so far       {now.inspected:6d} of {now.plants} plants "
-        f"({100 * now.inspected / now.plants:.0f} %), {now.found} found infested"
-        + (f" ({now.finds} finds: some again)" if now.finds > now.found else "")
+        f"  inspected so far       {now.inspected:6,} of {now.plants:,} plants "
+        f"({100 * now.inspected / now.plants:.0f} %), {now.found:,} found infested"
+        + (f" ({now.finds:,} finds: some again)" if now.finds > now.found else "")
     )
     yield (
-        f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low} to {ahead.high} with "
-        "a chance of 90 %)"
+        f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low:,} to {ahead.high:,} "
+        "with a chance of 90 %)"
     )
+    for said in flagged_said(now.flagged):
+        yield f"  {'':22} {said}"
     least, most = now.detection_range_pct
     yield (
         f"  found of all           {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %), "

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from fieldmon.cli.times import clock
-from fieldmon.compute.wording import estimate
+from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -65,8 +65,9 @@ def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -
 
 def tell_member(name: str, start: datetime, route: Route) -> None:
     """Say what one of a team is to do."""
+    plants = counted(len(route), "plant")
     typer.echo(
-        f"{name}: from {start:%H:%M}, {len(route)} plants in {route.end_s / 3600:.1f} h, "
+        f"{name}: from {start:%H:%M}, {plants} in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_found)} finds."
     )
 

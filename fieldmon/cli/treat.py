@@ -133,6 +133,7 @@ def treat(options: TreatOptions) -> None:
     """
     from fieldmon.io.read import read_treated
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.day_figures import flagged_said
 
     if options.area is not None and options.rows is not None:
         raise SettingError("Give --area or --rows, not both.")
@@ -151,11 +152,14 @@ def treat(options: TreatOptions) -> None:
         typer.echo("This treatment was noted already; nothing changed.")
         return
     tell_not_come(on_day, kept.plot.field, "the day of the treatment")
-    ahead = kept.status(on_day).estimate
+    now = kept.status(on_day)
+    ahead = now.estimate
     typer.echo(
         f"Treatment noted as batch {done.batch}; about {estimate(ahead.expected)} plants are "
-        f"believed infested now ({ahead.low} to {ahead.high})."
+        f"believed infested now ({ahead.low:,} to {ahead.high:,})."
     )
+    for sentence in flagged_said(now.flagged)[:1]:
+        typer.echo(sentence)
     _say_what_follows(kept, done.batch, learnt=options.efficacy is None)
 
 

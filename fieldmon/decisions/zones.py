@@ -97,8 +97,8 @@ class Zones:
             )
         return worded(
             "Treat {area:.2f} ha in {zones}, {share:.0%} of the plot: {inside} infested plants "
-            "are expected there and {outside} elsewhere. It costs {cost:.2f} and saves "
-            "{saved:.2f}.",
+            "are expected there and {outside} elsewhere. It costs {cost:,.2f} and saves "
+            "{saved:,.2f}.",
             area=self.m2 / 10_000, zones=counted(len(self), "zone"), share=self.m2 / self.plot_m2,
             inside=estimate(self.inside), outside=estimate(self.outside), cost=self.cost,
             saved=self.saved,

@@ -73,9 +73,9 @@ class Forecast:
         """Return it in words."""
         nights = counted(self.nights, "night")
         return (
-            f"{self.expected[-1]:.0f} plants infested after {nights} without inspections "
-            f"({self.low[-1]:.0f} to {self.high[-1]:.0f} with a chance of 90 %), now "
-            f"{self.expected[0]:.0f}; {self.basis()}"
+            f"{self.expected[-1]:,.0f} plants infested after {nights} without inspections "
+            f"({self.low[-1]:,.0f} to {self.high[-1]:,.0f} with a chance of 90 %), now "
+            f"{self.expected[0]:,.0f}; {self.basis()}"
         )
 
     def basis(self) -> str:

@@ -59,8 +59,8 @@ class PlotEstimate:
     def sentence(self) -> str:
         """Return the estimate in words."""
         return (
-            f"About {self.expected:.0f} plants are still infested "
-            f"(between {self.low} and {self.high}); "
+            f"About {self.expected:,.0f} plants are still infested "
+            f"(between {self.low:,} and {self.high:,}); "
             f"the chance that the plot is clean is {100 * self.chance_clean:.0f} %."
         )
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import counted, figure, worded
+from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
@@ -198,24 +198,13 @@ class Advice:
         """Return the answer and what it rests on, in sentences."""
         return [self.headline(units), *self.reasons(), *self.said_of_zones(units)]
 
+    def in_short(self) -> str:
+        """Return what the season's log keeps of it: the answer, and what it rests on."""
+        return joined(" ", (self.headline(), self.plot.believed()))
+
     def reasons(self) -> list[str]:
         """Return what the answer rests on, and what would end it sooner."""
         return [self.plot.believed(), *self._sooner_said()]
-
-    def said_of_plot(self) -> list[str]:
-        """Return the verdict of the plot, and the looks that it lacks."""
-        return [self.plot.sentence(), *self._inspections_said(), *self._sooner_said()]
-
-    def _inspections_said(self) -> list[str]:
-        more = self.more
-        if more is None or more.if_clean is None:
-            return []
-        return [
-            worded(
-                "If nothing is found on {plants} more, it need not be treated.",
-                plants=counted(more.if_clean, "plant"),
-            )
-        ]
 
     def _sooner_said(self) -> list[str]:
         more = self.more
@@ -223,19 +212,45 @@ class Advice:
             return []
         return [
             worded(
-                "If {plants} more are all infested, it must be treated.",
-                plants=counted(more.if_found, "plant"),
+                "If {plants} more {n:is|are all} infested, it must be treated.",
+                plants=counted(more.if_found, "plant"), n=more.if_found,
             )
-        ]
+        ]  # fmt: skip
 
     def said_of_zones(self, units: Units | None = None, *, above: bool = True) -> list[str]:
         """Return where it pays, and what was assumed; `above` compares with the threshold."""
-        said = [self.zones.sentence()]
+        said = [*self.though(above=above), self.zones.sentence()]
         if len(self.zones):
             said += (
                 [self._zones_said()] * above + [self._worth_said()] + [self._enough_said()] * above
             )
         return [*said, self.asked.assumed(units)]
+
+    def though(self, *, above: bool = True) -> list[str]:
+        """Return why there are zones, where what is said of the plot does not ask for them."""
+        if not len(self.zones):
+            return []
+        if above and (self.verdict == TREAT or (self.verdict == LEAVE and self.above)):
+            return []  # the headline asks for them
+        if above and self.is_below:
+            return [
+                worded(
+                    "The zones are below the threshold too. By these costs, spraying them would "
+                    "still save more than it costs."
+                )
+            ]
+        return [
+            worded(
+                "By these costs, spraying the zones would save more than it costs, whatever the "
+                "threshold says."
+            )
+        ]
+
+    @property
+    def is_below(self) -> bool:
+        """Return whether there are zones, though they are below the threshold as the plot is."""
+        below = [one.verdict == LEAVE for one in self.said.zones]
+        return self.verdict == LEAVE and len(below) > 0 and all(below)
 
     def _zones_said(self) -> str:
         verdicts = [one.verdict for one in self.said.zones]
@@ -248,7 +263,7 @@ class Advice:
 
     def _worth_said(self) -> str:
         return worded(
-            "It takes {litres:.0f} l and costs {saved} less than treating the whole plot.",
+            "It takes {litres:,.0f} l and costs {saved} less than treating the whole plot.",
             litres=self.litres, saved=self.saved,
         )  # fmt: skip
 

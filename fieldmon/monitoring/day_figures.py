@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import Worded, estimate, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.samplers.base import NEVER
@@ -31,6 +32,27 @@ def found_pct(found: int, left: float) -> float:
     """
     everything = found + left
     return 100.0 * found / everything if everything else 100.0
+
+
+def flagged_said(flagged: float) -> list[Worded]:
+    """Return what is to be said beside an estimate of what was not found yet, if anything.
+
+    The second sentence is for where the chance that the plot is clean is told too.
+
+    Parameters
+    ----------
+    flagged
+        How many plants that were found are still infested (`Status.flagged`).
+    """
+    if round(flagged, 1) == 0.0:
+        return []
+    return [
+        worded(
+            "About {n} more plants, which were found and only flagged, are still infested.",
+            n=estimate(flagged),
+        ),
+        worded("The chance that the plot is clean leaves these out."),
+    ]
 
 
 @dataclass(frozen=True)

@@ -323,6 +323,16 @@ class History:
             self.remember(morning, day, estimate)
         return estimate
 
+    def flagged(self, morning: Belief, day: int) -> float:
+        """Return how many of the plants found are still infested after a day's work, as expected.
+
+        They are found and not treated (`BeliefSettings.treated`), and so not in `estimate`.
+        """
+        if self.belief.treated:
+            return 0.0
+        known = self.in_hindsight(morning, day).chance
+        return float(known[self.states(day) == PRESENT].sum())
+
     def remember(self, morning: Belief, day: int, estimate: PlotEstimate) -> None:
         """Take this for what is estimated of a day: it was worked out from the same before."""
         self._last_estimate.clear()

@@ -133,6 +133,13 @@ class SeasonEstimates(OpenSeason):
             history = contents.history
         return history.forecast(morning, day)  # others may plan meanwhile
 
+    def flagged(self, on: date) -> float:
+        """Return how many of the plants found up to `on` are only flagged and still infested."""
+        if self._now().settings.belief.treated:
+            return 0.0  # no morning is needed for it
+        with self._asked(on) as (contents, morning, day):
+            return contents.history.flagged(morning, day)
+
     def learnt(self, on: date) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of `on` tell of the insects."""
         with self._asked(on) as (contents, morning, day):

@@ -42,6 +42,8 @@ class Status:
         Plants inspected and found infested on this day.
     estimate
         How many are infested and not found yet, as believed.
+    flagged
+        How many of the plants found are still infested, as expected: they were flagged only.
     learnt
         What the inspections so far tell of the insects; empty where finds are not traced.
     days_since
@@ -61,6 +63,7 @@ class Status:
     inspected_today: int
     found_today: int
     estimate: PlotEstimate
+    flagged: float
     learnt: tuple[Learnt, ...]
     days_since: NDArray[np.float64]
     hot_spots: HotSpots
@@ -76,6 +79,7 @@ class Status:
             plants=len(history.grid),
             **vars(progress),
             estimate=history.estimate(morning, day),
+            flagged=history.flagged(morning, day),
             learnt=history.learnt(morning, day),
             hot_spots=hot_spots(history.grid, history.known(day)),
         )

@@ -388,7 +388,7 @@ def legend(
     find = np.array([[x + 1.2, y]])
     parts += [Discs(find, 1.2, fill=colours.FOUND, edge=colours.INK),
               Lettering(x + 3.5, y, words.LEGEND_FOUND, 7.0)]  # fmt: skip
-    x += 21.5
+    x += 22.5
     ring = np.concatenate([_box(x, y, 3.5), _box(x, y, 3.5)[:1]])
     outlined = words.LEGEND_ZONES if zones else words.LEGEND_HOT
     parts += [Strokes((ring,), colours.INK, 0.5, dashed=zones),
@@ -409,9 +409,9 @@ def _chances(y: float) -> tuple[float, list[Part]]:
     parts: list[Part] = [Lettering(0.0, y, words.LEGEND_CHANCE, 7.0, colours.SOFT)]
     x = 37.0
     for colour, name in zip(colours.CHANCE, colours.chance_names(), strict=True):
-        parts.append(Areas((_box(x, y, 8.0),), fill=colour))
-        parts.append(Lettering(x + 4.0, y + 3.6, name, 6.0, colours.SOFT, "middle"))
-        x += 8.0
+        parts.append(Areas((_box(x, y, 7.0),), fill=colour))
+        parts.append(Lettering(x + 3.5, y + 3.6, name, 6.0, colours.SOFT, "middle"))
+        x += 7.0
     return x + 3.5, parts
 
 

@@ -13,7 +13,7 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.cautions import label_of, waits
-from fieldmon.monitoring.day_figures import found_pct
+from fieldmon.monitoring.day_figures import flagged_said, found_pct
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
@@ -131,6 +131,7 @@ def _stands(facts: _Facts) -> Iterator[Block]:
             found=counted(status.found, "plant"),
         )
     ]  # fmt: skip
+    said += flagged_said(status.flagged)
     if ahead.chance_clean >= 0.005:
         said.append(worded(words.STANDS_CLEAN, chance=ahead.chance_clean))
     if len(status.hot_spots):

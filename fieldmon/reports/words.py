@@ -138,7 +138,10 @@ MEANING = "How the numbers are meant"
 MEANINGS = (
     "Unknown is not clean: a plant was found infested, or looked clean, or was never inspected.",
     "A chance is what a model believes after all records, inspections and nights; it is no count.",
-    "An interval of 90 % is to hold the true number nine times in ten. On simulated seasons: 88 %.",
+    (
+        "An interval of 90 % is to hold the true number nine times in ten; in simulated seasons of "
+        "some kinds it holds less often."
+    ),
     "A hot spot is where finds cluster more than chance allows, three or more; false ones: 5 %.",
     "What is marked as assumed was neither measured nor chosen. Other values give other chances.",
 )

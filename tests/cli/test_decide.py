@@ -1,28 +1,45 @@
 """`fieldmon decide`: spray or not, and where."""
 
+from datetime import date
+
 import geopandas as gpd
 import pytest
 
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.advice import AdviceSettings
 from tests.cli.estate import BEGINS
 
 CHEAP = ["--per-ha", "1", "--per-zone", "0", "--least-on", "0", "--section-rows", "1"]
+ALMOND = ["--leaves", "40", "--counted", "1"]
 
 
-def test_the_verdict_is_the_seasons_and_what_is_assumed_is_said(run, season):
+def test_the_answer_is_the_headline_of_the_app_and_what_is_assumed_is_said(run, season):
     code, out, err, _ = run("decide", season, "--threshold", "30%", "--date", BEGINS)
     assert code == 0, err
     kept = Season(season)
-    from datetime import date
-
-    said = kept.verdict(date.fromisoformat(BEGINS), 0.3).sentence()
-    assert out.splitlines()[:3] == [
+    on = date.fromisoformat(BEGINS)
+    advice = kept.advice(on, AdviceSettings(0.3))
+    assert out.splitlines()[:4] == [
         f"{BEGINS}, after the day's work.",
         "Treat from 30 % of the plants infested on (your own).",
-        said,
+        advice.headline(),
+        advice.plot.believed(),
     ]
-    assert said.startswith("Do not treat: ")
+    assert advice.headline() == "Do not treat today."
     assert "Assumed: to treat 1 ha costs 100 and" in out
+    assert kept.log()[-1].what["said"] == advice.in_short()
+
+
+def test_zones_that_only_pay_are_told_from_what_the_threshold_asks_for(run, season):
+    cheap = ["--date", BEGINS, *CHEAP]
+    below = run("decide", season, "--threshold", "99%", *cheap)[1].splitlines()
+    said = next(k for k, line in enumerate(below) if line.startswith("The zones are below the"))
+    assert below[2] == "Do not treat today."
+    assert below[said + 1].startswith("Treat ")
+    of_leaves = run("decide", season, "--threshold", "almond", *cheap, *ALMOND)[1].splitlines()
+    assert "do not treat" in of_leaves[2]
+    assert of_leaves[3].endswith("whatever the threshold says.")
+    assert of_leaves[4].startswith("Treat ")
 
 
 def test_the_zones_are_written_for_the_sprayer(run, season):

@@ -5,7 +5,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-from fieldmon.cli.messages import Terminal, tell_past_midnight, tell_unusable
+from fieldmon.cli.messages import Terminal, describe, tell_past_midnight, tell_unusable
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
@@ -44,6 +44,16 @@ def test_a_plot_is_described_with_what_was_assumed_for_it(capsys):
     out, err = capsys.readouterr()
     assert out.startswith("Gate: 12 plants in 3 rows, bearing 90.0 degrees, rows 4.00 m and")
     assert err == "guessed: row spacing 4 m [--row-spacing]\n"
+
+
+def test_a_plot_of_one_plant_is_described_as_one_and_thousands_are_parted(capsys):
+    grid = rectangle(100, 12)
+    field = Field("Gate", grid.frame.geometry_lonlat(grid.drivable_m))
+    describe(Plot.among("Tree", np.array([[35.1, 30.2]])))
+    describe(Plot(field, Aisles.of(grid)))
+    alone, many = capsys.readouterr().out.splitlines()
+    assert alone == "Tree: 1 plant in no rows, visited by nearness."
+    assert many.startswith("Gate: 1,200 plants in 100 rows, ")
 
 
 @pytest.mark.parametrize(

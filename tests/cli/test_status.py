@@ -1,5 +1,6 @@
 """`fieldmon status`: where a season stands."""
 
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
@@ -7,9 +8,12 @@ import pytest
 
 from fieldmon.cli.status import lines
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.local_clock import local_clock
 from tests.cli.estate import BEGINS
+from tests.monitoring.seasons import a_season
 
 
 def test_a_season_is_told_in_the_lines_of_its_status(run, season):
@@ -20,12 +24,35 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     ahead = f"  forecast               {kept.forecast(now.on).sentence()}"
     assert out.splitlines() == [*lines(kept, now), ahead]
     assert "found of all                0 % (0 to 0 %), as believed" in out
-    assert f"{now.plants} plants (0 %), 0 found infested" in out
+    assert f"{now.plants:,} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
     assert "believed at first      An inspection finds 84 % of what is there" in out
     kept.record(Inspections.of(np.array([1]), np.array([0]), np.datetime64(BEGINS)), "x")
     assert "learnt so far          An inspection finds " in run("status", season)[1]
     assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
+
+
+def test_thousands_are_parted_in_every_number_of_a_status(season):
+    kept = Season(season)
+    now = kept.status(kept.last_date())
+    many = {"plants": 12345, "inspected": 6543, "found": 2345, "finds": 3456}
+    estimate = PlotEstimate(1207.6, 237, 3688, 0.0)
+    said = "\n".join(lines(kept, replace(now, **many, estimate=estimate)))
+    assert "    1,208 (237 to 3,688 with" in said
+    assert " 6,543 of 12,345 plants (53 %), 2,345 found infested (3,456 finds: some again)" in said
+
+
+def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
+    file = tmp_path / "flagged.gpkg"
+    kept = a_season(file, belief=BeliefSettings(treated=False))
+    kept.record(
+        Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(kept.settings.begins)), "x"
+    )
+    out = run("status", file)[1]
+    assert "About 20 more plants, which were found and only flagged, are still infested." in out
+    words = ["--efficacy", "0.5", "--date", kept.settings.begins]
+    treated = run("treat", file, *words)[1]
+    assert "About 10 more plants, which were found and only flagged, are still" in treated
 
 
 def test_rows_that_nobody_was_in_are_told(run, season):

@@ -114,6 +114,9 @@ def test_it_says_what_weather_it_is_made_from(weather, basis):
         "40 plants infested after 14 nights without inspections (20 to 80 with a chance of 90 %), "
         f"now 10; {basis}"
     )
+    many = Forecast(100 * made, 50 * made, 200 * made, weather).sentence()
+    assert many.startswith("4,000 plants infested")
+    assert "(2,000 to 8,000 with a chance of 90 %), now 1,000;" in many
 
 
 @pytest.mark.parametrize("inside", [5.0, 40.0])

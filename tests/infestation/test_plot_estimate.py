@@ -10,7 +10,12 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
-from fieldmon.infestation.plot_estimate import doubted_level, draw_fields, estimate_plot
+from fieldmon.infestation.plot_estimate import (
+    PlotEstimate,
+    doubted_level,
+    draw_fields,
+    estimate_plot,
+)
 from fieldmon.plot.layout import rectangle
 from tests.infestation.enumerated import Enumerated
 
@@ -81,6 +86,8 @@ def test_it_says_so_in_a_sentence():
     ahead = estimate_plot(GRID, np.full(400, 0.05))
     assert "About 20 plants" in ahead.sentence()
     assert f"between {ahead.low} and {ahead.high}" in ahead.sentence()
+    many = PlotEstimate(5603.7, 1975, 15364, 0.0).sentence()
+    assert "About 5,604 plants are still infested (between 1,975 and 15,364);" in many
 
 
 @pytest.mark.parametrize("sure", [0.0, 1.0, -2.0])

@@ -1,5 +1,6 @@
 """Advice: one answer in one sentence, the looks that it lacks, and zones that can be written."""
 
+import re
 from dataclasses import replace
 from datetime import timedelta
 from itertools import product
@@ -10,7 +11,7 @@ import pytest
 
 from fieldmon.compute.wording import counted
 from fieldmon.decisions.map_verdict import map_verdict
-from fieldmon.decisions.sequential import LEAVE, TREAT
+from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
@@ -64,7 +65,8 @@ def test_when_nobody_can_say_it_tells_how_many_looks_decide(season):
     assert looks.if_clean is not None
     assert f"look at {looks.if_clean} plants more; if nothing is found" in advice.headline()
     assert f"If {looks.if_found} plants more are all infested" in advice.reasons()[-1]
-    assert f"If nothing is found on {looks.if_clean} plants" in " ".join(advice.said_of_plot())
+    one_more = replace(advice, more=replace(looks, if_found=1))
+    assert one_more.reasons()[-1] == "If 1 plant more is infested, it must be treated."
     only_found = replace(advice, more=replace(looks, if_clean=None))
     assert f"look at {looks.if_found} plants more, then" in only_found.headline()
     neither = replace(advice, more=None)
@@ -136,6 +138,36 @@ def test_each_verdict_has_its_sentence(season, m2, above, verdict, said):
     assert advice.litres == pytest.approx(m2 / 50.0)
     assert (advice.saving, advice.saved) == (pytest.approx(12.345), "12.35")
     assert repr(advice) == f"<Advice: {verdict}, {counted(len(of), 'zone')}>"
+
+
+@pytest.mark.parametrize(
+    ("verdict", "zones", "above", "said"),
+    [
+        (LEAVE, [LEAVE, LEAVE], True, "The zones are below the threshold too."),
+        (LEAVE, [LEAVE, LOOK_ON], True, "whatever the threshold says."),
+        (LEAVE, [LEAVE, TREAT], True, ""), (TREAT, [LEAVE], True, ""), (LEAVE, [], True, ""),
+        (LOOK_ON, [TREAT], True, "whatever the threshold says."),
+        (TREAT, [TREAT], False, "whatever the threshold says."), (LEAVE, [], False, ""),
+    ],
+)  # fmt: skip
+def test_zones_that_the_threshold_does_not_ask_for_are_said_to_pay_only(
+    season, verdict, zones, above, said
+):
+    of = SimpleNamespace(zones=[SimpleNamespace(verdict=one) for one in zones])
+    advice = Advice(season.plot.grid, AdviceSettings(), SimpleNamespace(verdict=verdict), zones, of)
+    though = advice.though(above=above)
+    assert len(though) == bool(said)
+    assert said in " ".join(though)
+    assert advice.is_below == ("below" in said)
+
+
+def test_thousands_are_parted_in_what_zones_take_and_cost(season):
+    zones = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).zones
+    many = replace(zones, cost=21379.5, saved=130457.0)
+    assert many.sentence().endswith("It costs 21,379.50 and saves 130,457.00.")
+    asked = AdviceSettings(0.01, costs=CHEAP, rate_l_ha=50_000.0)
+    said = " ".join(season.advice(BEGINS, asked).said_of_zones())
+    assert re.search(r"It takes \d{1,2},\d{3} l ", said)
 
 
 @pytest.mark.parametrize(

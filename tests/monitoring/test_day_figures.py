@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.day_figures import DayFigures, Progress
+from fieldmon.monitoring.day_figures import DayFigures, Progress, flagged_said
 from tests.monitoring.seasons import BEGINS, Insects, a_plot, a_season
 
 
@@ -98,3 +98,10 @@ def test_the_share_found_is_least_where_most_is_left():
     figures = DayFigures(BEGINS, 9, 4, 36.0, 6, 156, 0.0)
     assert figures.found_of_all_pct(4) == pytest.approx((10.0, 2.5, 40.0))
     assert DayFigures(BEGINS, 9, 0, 0.0, 0, 0, 1.0).found_of_all_pct(0) == (100.0,) * 3
+
+
+def test_flagged_plants_are_said_beside_those_not_found_where_there_are_any():
+    assert flagged_said(0.0) == flagged_said(0.04) == []
+    besides, clean = flagged_said(1207.6)
+    assert besides.startswith("About 1,208 more plants, which were found and only flagged, ")
+    assert clean == "The chance that the plot is clean leaves these out."

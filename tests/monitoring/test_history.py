@@ -96,9 +96,11 @@ def test_finds_left_alone_are_known_and_so_no_longer_counted_as_out_there():
     flagged = History(PLOT.grid, BEGINS, MORNING, DONE, belief=BeliefSettings(treated=False))
     evening = flagged.evening(MORNING, 0)
     assert evening.chance[6] > 0.99
-    assert flagged.estimate(MORNING, 0).expected == pytest.approx(
-        evening.chance.sum() - 1, abs=0.01
-    )
+    left = flagged.estimate(MORNING, 0).expected
+    assert left == pytest.approx(evening.chance.sum() - 1, abs=0.01)
+    # who counts both counts all that decide, plan and forecast count
+    assert left + flagged.flagged(MORNING, 0) == pytest.approx(evening.chance.sum())
+    assert HISTORY.flagged(MORNING, 0) == 0.0, "treated"
 
 
 def test_the_scene_of_a_day_stands_where_and_when_its_last_inspection_was_made():

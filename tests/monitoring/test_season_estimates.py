@@ -38,6 +38,9 @@ def test_finds_that_are_only_flagged_stay_infested(tmp_path):
     status = season.status(BEGINS)
     assert status.found == 1
     assert status.estimate.expected < season.evening(BEGINS).sum() - 0.9  # found is not out there
+    assert status.flagged == season.flagged(BEGINS) > 0.99
+    now = season.forecast(BEGINS).expected[0]
+    assert status.estimate.expected + status.flagged == pytest.approx(now)
 
 
 def test_the_status_counts(season):

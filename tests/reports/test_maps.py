@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fpdf import FPDF
 from PIL import Image
 
 from fieldmon.compute.units import Units
@@ -215,6 +216,18 @@ def test_the_legend_fits_the_page_and_names_its_signs(route, by_state):
     assert set(said) - {"route, arrows show the way"} == (
         set(of_zones.words()) - {"zones to treat"} | {"hot spot"}
     )
+
+
+@pytest.mark.parametrize("zones", [False, True])
+def test_the_legend_has_room_for_the_wider_letters_of_a_browser(zones):
+    pdf, drawing = FPDF(), maps.legend(186.0, route=not zones, zones=zones)
+    starts = sorted(places(part)[:, 0].min() for part in drawing.parts)
+    for part in parts(drawing, Lettering):
+        pdf.set_font("helvetica", size=part.size_pt)
+        wide = 1.1 * pdf.get_string_width(part.text)  # system-ui may be a tenth wider
+        if part.anchor == "start":
+            after = min([one for one in starts if one > part.x], default=186.0)
+            assert part.x + wide <= after, part.text
 
 
 def test_a_day_without_a_stop_has_a_map_without_a_way():

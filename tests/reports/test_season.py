@@ -9,7 +9,9 @@ import pytest
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.grid import row_label
 from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
 from fieldmon.reports.season import season_report
@@ -141,3 +143,11 @@ def test_finds_of_one_plant_on_two_days_are_said_to_be_one_plant(tmp_path):
     report = season_report(season, BEGINS + timedelta(days=1), Units())
     (found,) = [each for each in one(report, KeyFigures).figures if each.label == "Plants found"]
     assert (found.value, found.note) == ("1", "in 2 finds")
+
+
+def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
+    season = a_season(tmp_path / "flagged.gpkg", belief=BeliefSettings(treated=False))
+    looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
+    season.record(looked, "finds")
+    lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
+    assert "About 20 more plants, which were found and only flagged, are still infested." in lead

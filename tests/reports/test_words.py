@@ -16,3 +16,8 @@ def test_every_text_is_used():
 
 def test_a_name_set_apart_reads_right_inside_any_sentence():
     assert words.isolated("ענבים") == "\u2068ענבים\u2069"
+
+
+def test_how_often_intervals_hold_is_said_without_a_number_that_ages():
+    (said,) = (one for one in words.MEANINGS if "simulated" in one)
+    assert re.findall(r"\d+", said) == ["90"]

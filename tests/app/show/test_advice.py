@@ -1,7 +1,5 @@
 """What is shown of advice: a row a zone, an outline a zone on the map, each with its number."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -44,13 +42,3 @@ def test_each_zone_is_outlined_and_numbered_on_the_map(made):
         corners = np.array(zone["p"])
         assert (corners.min(axis=0) <= number["p"]).all()
         assert (corners.max(axis=0) >= number["p"]).all()
-
-
-@pytest.mark.parametrize(
-    ("verdict", "above", "zones", "below"),
-    [("do not treat", 0, 2, True), ("do not treat", 1, 2, False), ("do not treat", 0, 0, False),
-     ("treat", 0, 2, False), ("look on", 0, 2, False)],
-)  # fmt: skip
-def test_zones_that_only_pay_are_said_to_be_below_the_threshold(verdict, above, zones, below):
-    advice = SimpleNamespace(verdict=verdict, above=above, zones=range(zones))
-    assert shown.is_below(advice) == below

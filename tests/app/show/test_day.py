@@ -11,6 +11,8 @@ from app.show import day
 from app.state import chosen_day
 from app.state.chosen_day import DayRoute
 from app.words import texts
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.grid import row_label
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.app.driving import apart, go, row_box, tap, texts_of
@@ -82,6 +84,14 @@ def test_what_changed_is_the_difference_of_two_days(worked):
     assert day.changes(on(worked, 0)) == [texts.CHANGED_FIRST]
     assert "Nothing was recorded" in day.changes(on(worked, 3))[0]
     assert day.changes(chosen(a_plot())) == []
+
+
+def test_plants_only_flagged_are_said_beside_those_not_found(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
+    looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
+    season.record(looked, "finds")
+    said = "\n".join(day.changes(on(season, 1)))
+    assert "About 20 more plants, which were found and only flagged, are still infested." in said
 
 
 def test_rows_that_rose_most_come_first(worked):

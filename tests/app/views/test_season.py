@@ -6,6 +6,7 @@ import numpy as np
 
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season
 from tests.app.driving import begun, go, metric, texts_of
 
 
@@ -36,3 +37,11 @@ def test_the_season_says_why_days_sum_to_more_than_the_plants_found(season_app, 
     season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
     go(season_app, "season")
     assert "6 finds on 3 plants: 3 of them on plants that had been found" in texts_of(season_app)
+
+
+def test_the_season_says_how_many_plants_are_only_flagged(season_app, monkeypatch):
+    monkeypatch.setattr(Season, "flagged", lambda *_: 20.0)
+    go(season_app, "season")
+    assert not season_app.exception
+    assert "About 20 more plants, which were found and only flagged" in texts_of(season_app)
+    assert "leaves these out." in texts_of(season_app)

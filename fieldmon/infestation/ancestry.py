@@ -389,7 +389,8 @@ def _drawn(
         rates=rates,
         at_start=of.at_start
         if of.began_anew
-        else _at_start(drawn, infestations, float(unfound[BEFORE].sum())),
+        # several may have come to one plant
+        else _at_start(drawn, infestations, float(-np.expm1(-unfound[BEFORE]).sum())),
         arrived=float(drawn.roots[1].sum()),
         taught=rates.taught(night, exposure, landing) if hears else of.taught,
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import estimate, figure, worded
+from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.origins import (
     ANYWHERE,
     ARRIVE,
@@ -17,6 +18,7 @@ from fieldmon.infestation.origins import (
     BY_EDGE,
     JUMPED,
     SIGMAS,
+    Estimate,
 )
 from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
@@ -26,7 +28,6 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.origins import Estimate
 
 
 @dataclass(frozen=True)
@@ -148,8 +149,18 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
             return at_start, belief.ancestry.arrivals
     n, estimate = len(belief.chance), belief.counts.estimate
     suspected, elsewhere = map(float, belief.at_start)
+    at_start = estimate(AT_START, suspected) + estimate(AT_START_ELSEWHERE, elsewhere)
+    if not belief.counts.expected.any():
+        # nothing was inspected yet: in as much doubt as what is there now
+        low, high = level_range(belief.chance, belief.doubt, named=belief.pest is not None).of(
+            belief.chance
+        )
+        told = (suspected + elsewhere) / belief.chance.sum()
+        at_start = Estimate(
+            suspected + elsewhere, float(low.sum() * told), float(high.sum() * told)
+        )
     return (
-        estimate(AT_START, suspected) + estimate(AT_START_ELSEWHERE, elsewhere),
+        at_start,
         estimate(ANYWHERE, n * ARRIVE) + estimate(BY_EDGE, n * ARRIVE_BY_EDGE),
     )
 

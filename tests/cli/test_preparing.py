@@ -14,7 +14,7 @@ ROWS = RecordSource(Upload("r.csv", b"row,plant,date,count\n3,7,2026-03-01,4\n")
 def test_a_plot_is_prepared_and_what_there_is_to_say_is_said(capsys):
     made = prepared(PlotRequest(PlotSources(ZIP, PlotOptions(feature="Nursery")), records=ROWS))
     out, err = capsys.readouterr()
-    assert out.startswith(f"Nursery: {len(made.plot.grid)} plants in")
+    assert out.startswith(f"Nursery: {len(made.plot.grid):,} plants in")
     assert err.splitlines() == [said.message.line() for said in made.messages]
 
 

@@ -30,7 +30,7 @@ NIGHTS = 14
 # how far the number now may be off beyond what the chance map says of itself, where nobody named
 # the pest and where somebody did; and how far the logarithm of the rate at which it grows (1 sigma;
 # our choice)
-_LEVEL_DOUBT, _OF_A_PEST = 0.6, 0.25
+_LEVEL_DOUBT, _OF_A_PEST = 0.3, 0.25
 _RATE_DOUBT = 0.5
 # what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
 # found are not told from others. So it may well be that nothing arrives, or many times as much

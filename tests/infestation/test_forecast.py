@@ -34,6 +34,15 @@ def test_where_nothing_spreads_little_is_added():
     assert ahead.expected[0] < ahead.expected[-1] < ahead.expected[0] + 6.0
 
 
+def test_it_begins_with_what_is_known_of_the_evening():
+    belief, nights = TracedPairs.of(GRID, np.full(784, 0.02)), [Spread(0.1)] * 3
+    usual = forecast(belief, GRID, nights)
+    ahead = forecast(belief, GRID, nights, now=PlotEstimate(40.0, 25, 61, 0.0))
+    assert (ahead.expected[0], ahead.low[0], ahead.high[0]) == (40.0, 25.0, 61.0)
+    # what the nights bring is that of the chance map
+    assert ahead.expected[1:] == pytest.approx(usual.expected[1:])
+
+
 def test_each_morning_is_that_of_the_chance_map():
     belief = TracedPairs.of(GRID, np.full(784, 0.02))
     ahead = forecast(belief, GRID, [Spread(0.1)] * 3)

@@ -271,6 +271,18 @@ def test_offspring_is_no_surer_than_what_it_came_from(beside):
     assert doubted.doubt == pytest.approx(counts.doubt[AT_START], rel=1e-4)
 
 
+def test_in_hindsight_an_evening_says_what_the_next_morning_does_of_the_same_finds():
+    """Where a third of what was inspected is infested, and a fiftieth was told."""
+    belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
+    evening, still = belief.learn(plants, plants % 3 == 0, LEARNING), Spread(0.0)
+    told, morning = evening.in_hindsight(still), evening.overnight(still)
+    assert morning.chance.sum() > 1.3 * evening.chance.sum()
+    assert told.chance.sum() == pytest.approx(morning.chance.sum(), rel=0.05)
+    # with nothing new there is nothing to look back on
+    for known in (belief, morning, told, replace(evening, ancestry=None)):
+        assert known.in_hindsight(still) is known
+
+
 def test_once_a_night_has_told_who_infested_whom_the_number_is_in_less_doubt():
     belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
     idle, evening = belief.overnight(QUIET), belief.learn(plants, plants == 7, LEARNING)

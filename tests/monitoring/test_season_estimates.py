@@ -30,6 +30,25 @@ def test_a_find_raises_its_neighbours_and_a_clean_look_lowers(season):
     assert after[find] < 1e-3  # treated
 
 
+def test_the_evening_and_the_next_morning_tell_the_same_of_many_finds(season):
+    """As many are found as nobody expected, and then nothing is inspected."""
+    season.record(some_results(season, n=60, found=range(0, 60, 2)), "x")
+    evening, next_evening, after = (season.status(on(day)) for day in range(3))
+    assert next_evening.estimate.expected == pytest.approx(evening.estimate.expected, rel=0.2)
+    assert after.estimate.expected == pytest.approx(next_evening.estimate.expected, rel=0.35)
+    assert season.evening(on(0)).sum() == pytest.approx(evening.estimate.expected)
+    ahead = season.forecast(on(0))
+    assert ahead.expected[0] == evening.estimate.expected
+    assert (ahead.low[0], ahead.high[0]) == (evening.estimate.low, evening.estimate.high)
+    start = [
+        {one.name: one for one in told.learnt}["infested at the start"]
+        for told in (evening, next_evening)
+    ]
+    assert start[0].value == pytest.approx(start[1].value)
+    # what was found on the first day was there
+    assert start[0].low >= 30
+
+
 def test_finds_that_are_only_flagged_stay_infested(tmp_path):
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
     results = some_results(season, found=[0])

@@ -220,7 +220,9 @@ def _tonight(inside: float, arrived: float, doubt: float, draws: np.random.Gener
     over = (doubt * (inside + arrived)) ** 2 / (inside + arrived) / inside - 1.0 / inside
     if over <= _LEAST:
         return np.full(_DRAWS, inside)
-    return inside * draws.gamma(1.0 / over, over, _DRAWS)
+    variance = float(np.log1p(over))
+    tonight: Floats = inside * draws.lognormal(-variance / 2.0, np.sqrt(variance), _DRAWS)
+    return tonight
 
 
 def _grown(

@@ -24,10 +24,8 @@ def show(choices: Choices) -> None:
     axes = (texts.DATE_AXIS, texts.AHEAD_AXIS)
     chart = charts.ahead(choices.day, ahead, axes, choices.units.short_day)
     st.altair_chart(chart, alt=texts.AHEAD_TITLE)
-    last, low, high, now = (
-        about(value)
-        for value in (ahead.expected[-1], ahead.low[-1], ahead.high[-1], ahead.expected[0])
-    )
+    last, now = (about(ahead.expected[day]) for day in (-1, 0))
+    low, high = (number(end[-1], ",.0f") for end in (ahead.low, ahead.high))
     nights = number(ahead.nights, "d")
     st.markdown(texts.AHEAD.format(last=last, low=low, high=high, now=now, nights=nights))
     st.caption(_basis(ahead))

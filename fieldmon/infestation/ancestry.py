@@ -241,8 +241,9 @@ class Ancestry:
             return night, None
         many = int(np.count_nonzero(night.infestations.there))
         for k in range(_on(night.heard - 1, _ROUNDS) if hears else 1):
-            night, hidden, unseen = _drawn(night, landing_of(self.grid), (k, hears), arrive)
-        night = replace(night, idle=0 if hears else night.idle)
+            night, hidden, unseen = _drawn(night, landing_of(self.grid), k, arrive, hears=hears)
+        if hears:
+            night = replace(night, idle=0)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
         )
@@ -320,13 +321,13 @@ def _with_finds(of: Ancestry) -> Ancestry:
 
 
 def _drawn(
-    of: Ancestry, landing: Landing, nth: tuple[int, bool], arrive: float
+    of: Ancestry, landing: Landing, nth: int, arrive: float, *, hears: bool
 ) -> tuple[Ancestry, Floats, NDArray[np.float64]]:
-    """Draw ancestries, and estimate rates by them if there is something new to learn from.
+    """Draw ancestries for the `nth` time in a night, and estimate rates by them.
 
-    `nth` is how often that was done before in this night, and whether there is. Return also how
-    likely each plant is infested as the ancestor of a find, and how many infestations of which
-    nothing was seen are expected there.
+    Unless the night `hears` of nothing new to learn from: then rates stay. Return also how likely
+    each plant is infested as the ancestor of a find, and how many infestations of which nothing was
+    seen are expected there.
     """
     t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
     # half the digits: on a large plot it is memory that takes the time
@@ -350,7 +351,7 @@ def _drawn(
     lasting[n:][found] = _until_found(missed, unseen.offspring, finds, of.hiding)
     np.maximum(lasting, _TINY, out=lasting)
     drawn = DrawnSums.none(t, n, landing.kernels.shape[1])
-    (nth_round, hears), day = nth, len(of.sends) - 1
+    day = len(of.sends) - 1
     sweeps = of.sweeps if hears else of.sweeps[-1:]
     for k, many in enumerate(sweeps):
         sends = of.sent(rates)
@@ -362,7 +363,7 @@ def _drawn(
         )  # fmt: skip
         for sums in drawn:
             sums.fill(0.0)
-        seed = int(np.ravel_multi_index((day, nth_round, k), _SEEDS))
+        seed = int(np.ravel_multi_index((day, nth, k), _SEEDS))
         draws = seed, many, int(_LEFT_OUT * many)
         kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
         for sums in drawn[1:]:

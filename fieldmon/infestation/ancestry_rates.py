@@ -88,18 +88,24 @@ class DrawnEvidence(NamedTuple):
 
 
 class Exposure(NamedTuple):
-    """How many jumps would have been seen.
+    """How many jumps and arrivals would have been seen.
 
     Parameters
     ----------
     by_kernel
-        ``(8,)`` so many if all go by that kernel.
+        ``(8,)`` so many jumps if all go by that kernel.
     before
         So many before the season, if every infestation sends out one a night.
+    at_start
+        ``(n,)`` so many that came from none before the season, if one does at each plant.
+    nightly
+        ``(2,)`` so many arrivals at a rate of 1, anywhere and by the edge.
     """
 
     by_kernel: Floats
     before: float
+    at_start: Floats
+    nightly: Floats
 
     def __repr__(self) -> str:
         return f"<Exposure to {len(self.by_kernel)} kernels>"
@@ -151,7 +157,8 @@ class Rates(NamedTuple):
 
     def after(self, night: DrawnEvidence, exposure: Exposure, landing: Landing) -> Rates:
         """Return the rates by what ancestries have, over what would have been seen of it."""
-        return self.with_jumps(night, exposure, landing).with_roots(night, landing.at_edge)
+        with_jumps = self.with_jumps(night, exposure, landing)
+        return with_jumps.with_roots(night, exposure, landing.at_edge)
 
     def _from_none(self, start: Floats, at_edge: Floats) -> tuple[tuple[Floats, Floats], ...]:
         """Return how many come from none before the season and in each of its nights, ``(n,)``.
@@ -174,7 +181,7 @@ class Rates(NamedTuple):
         return told
 
     def exposure(self, night: DrawnEvidence, landing: Landing) -> Exposure:
-        """Return how many jumps would have been seen, had all gone by each kernel.
+        """Return how many would have been seen, had all gone by each kernel.
 
         Also infestations of which nothing was seen would have sent out some that were.
         """
@@ -183,7 +190,11 @@ class Rates(NamedTuple):
         meets = 1.0 - night.taken
         meets *= night.seen
         before, all_nights = landing.met(sent[:-1], meets[1:], BEFORE)
-        return Exposure(all_nights, float(before @ self.shares) / self.before)
+        later = night.seen[_LATER].sum(axis=0)
+        return Exposure(
+            all_nights, float(before @ self.shares) / self.before, _AGES @ night.seen[_FIRST],
+            np.array([float(later.sum()), float(later @ landing.at_edge)]),
+        )  # fmt: skip
 
     def with_jumps(self, night: DrawnEvidence, exposure: Exposure, landing: Landing) -> Rates:
         """Return the same with the jumps that were drawn."""
@@ -199,18 +210,19 @@ class Rates(NamedTuple):
         jumps: Floats = self.shares * np.einsum("kij,ij->k", landing.kernels, all_jumps)
         return jumps
 
-    def with_roots(self, night: DrawnEvidence, at_edge: Floats) -> Rates:
+    def with_roots(self, night: DrawnEvidence, exposure: Exposure, at_edge: Floats) -> Rates:
         """Return the same with those that were drawn as coming from none."""
-        told = self._told(night.start)
-        first, nightly = _AGES @ night.seen[_FIRST], _nightly(night, at_edge)
+        told, first = self._told(night.start), exposure.at_start
         seen = float(first @ told), float(first @ at_edge * told.mean())
         found, known = night.earlier[:, KERNELS:]
+        expected = ARRIVAL_FINDS / np.array([night.arrive, ARRIVE_BY_EDGE])
         parts, rates = self._parts(night, at_edge), self
         for _ in range(_SHARED_OUT):
             start, start_by_edge = _shared_out(parts[0], rates.start, rates.start_by_edge)
             arrived = _shared_out(parts[1], rates.anywhere, rates.by_edge)
-            expected = ARRIVAL_FINDS / np.array([night.arrive, ARRIVE_BY_EDGE])
-            anywhere, by_edge = (ARRIVAL_FINDS + found + arrived) / (expected + known + nightly)
+            anywhere, by_edge = (ARRIVAL_FINDS + found + arrived) / (
+                expected + known + exposure.nightly
+            )
             rates = rates._replace(
                 start=(_START_FINDS * (1.0 - _BY_EDGE) + start) / (_START_FINDS + seen[0]),
                 start_by_edge=(_BY_EDGE_FINDS * _BY_EDGE + start_by_edge)
@@ -228,7 +240,7 @@ class Rates(NamedTuple):
         """
         arrived = _shared_out(self._parts(night, landing.at_edge)[1], self.anywhere, self.by_edge)
         found = np.concatenate([self._jumps(night, landing), arrived])
-        expected = np.concatenate([exposure.by_kernel, _nightly(night, landing.at_edge)])
+        expected = np.concatenate([exposure.by_kernel, exposure.nightly])
         taught: Floats = night.earlier + np.array([found, expected])
         return taught
 
@@ -241,12 +253,6 @@ class Rates(NamedTuple):
                 night.drawn.roots, once._from_none(night.start, at_edge), strict=True
             )
         ]
-
-
-def _nightly(night: DrawnEvidence, at_edge: Floats) -> tuple[float, float]:
-    """Return how many arrivals would have been seen at a rate of 1, anywhere and by the edge."""
-    later = night.seen[_LATER].sum(axis=0)
-    return float(later.sum()), float(later @ at_edge)
 
 
 def _shared_out(

@@ -149,8 +149,9 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
             return at_start, belief.ancestry.arrivals
     n, estimate = len(belief.chance), belief.counts.estimate
     suspected, elsewhere = map(float, belief.at_start)
-    at_start = estimate(AT_START, suspected) + estimate(AT_START_ELSEWHERE, elsewhere)
-    if not belief.counts.expected.any():
+    if belief.counts.expected.any():
+        at_start = estimate(AT_START, suspected) + estimate(AT_START_ELSEWHERE, elsewhere)
+    else:
         # nothing was inspected yet: in as much doubt as what is there now
         low, high = level_range(belief.chance, belief.doubt, named=belief.pest is not None).of(
             belief.chance

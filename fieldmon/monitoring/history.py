@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from datetime import timedelta
 from functools import cached_property
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from datetime import date
 
     from numpy.typing import NDArray
@@ -45,6 +45,29 @@ if TYPE_CHECKING:
     from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.travel import Aisles
+
+
+_T = TypeVar("_T")
+
+
+class _Last(Generic[_T]):
+    """What was worked out last, of a morning and its day: once for all who ask."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._made: tuple[Belief, int, _T] | None = None
+
+    def of(self, morning: Belief, day: int, work: Callable[[Belief, int], _T]) -> _T:
+        """Return what `work` makes of a morning and a day."""
+        with self._lock:
+            made = self._made
+            if made is None or made[0] is not morning or made[1] != day:
+                made = self._made = morning, day, work(morning, day)
+            return made[2]
+
+    def keep(self, morning: Belief, day: int, made: _T) -> None:
+        """Take this for what was made of them."""
+        self._made = morning, day, made
 
 
 @checked
@@ -261,39 +284,27 @@ class History:
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""
-        last = self._last_evening.get(day)
-        if last is not None and last[0] is morning:  # asked for by each layer of a day
-            return last[1]
-        believed = self._evening(morning, day)
-        self._last_evening.clear()
-        self._last_evening[day] = morning, believed
-        return believed
+        # asked for by each layer of a day
+        return self._last_evening.of(morning, day, self._evening)
 
     def in_hindsight(self, morning: Belief, day: int) -> Belief:
         """Return what to tell of the evening of a day: what its finds say of others counts too.
 
         The next morning it counts of itself, so that a night begins with `evening`.
         """
-        with self._looking_back:  # who infested whom is drawn for it: once for all who ask
-            last = self._last_hindsight.get(day)
-            if last is not None and last[0] is morning:
-                return last[1]
-            believed = in_hindsight(self.evening(morning, day), self.night(day))
-            self._last_hindsight.clear()
-            self._last_hindsight[day] = morning, believed
-            return believed
+        # who infested whom is drawn for it
+        return self._last_hindsight.of(morning, day, self._in_hindsight)
+
+    def _in_hindsight(self, morning: Belief, day: int) -> Belief:
+        return in_hindsight(self.evening(morning, day), self.night(day))
 
     @cached_property
-    def _looking_back(self) -> threading.Lock:
-        return threading.Lock()
+    def _last_hindsight(self) -> _Last[Belief]:
+        return _Last()
 
     @cached_property
-    def _last_hindsight(self) -> dict[int, tuple[Belief, Belief]]:
-        return {}
-
-    @cached_property
-    def _last_evening(self) -> dict[int, tuple[Belief, Belief]]:
-        return {}
+    def _last_evening(self) -> _Last[Belief]:
+        return _Last()
 
     def _evening(self, morning: Belief, day: int) -> Belief:
         done = self.on(day).inspected
@@ -315,13 +326,8 @@ class History:
 
     def estimate(self, morning: Belief, day: int) -> PlotEstimate:
         """Return how many plants are infested and not found yet, after a day's work."""
-        with self._estimating:  # hundreds of fields are drawn for it: once for all who ask
-            last = self._last_estimate.get(day)
-            if last is not None and last[0] is morning:
-                return last[1]
-            estimate = self._estimate(morning, day)
-            self.remember(morning, day, estimate)
-        return estimate
+        # hundreds of fields are drawn for it
+        return self._last_estimate.of(morning, day, self._estimate)
 
     def flagged(self, morning: Belief, day: int) -> float:
         """Return how many of the plants found are still infested after a day's work, as expected.
@@ -335,16 +341,11 @@ class History:
 
     def remember(self, morning: Belief, day: int, estimate: PlotEstimate) -> None:
         """Take this for what is estimated of a day: it was worked out from the same before."""
-        self._last_estimate.clear()
-        self._last_estimate[day] = morning, estimate
+        self._last_estimate.keep(morning, day, estimate)
 
     @cached_property
-    def _estimating(self) -> threading.Lock:
-        return threading.Lock()
-
-    @cached_property
-    def _last_estimate(self) -> dict[int, tuple[Belief, PlotEstimate]]:
-        return {}
+    def _last_estimate(self) -> _Last[PlotEstimate]:
+        return _Last()
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
         left = self._still_out(morning, day)

@@ -24,7 +24,7 @@ FLOORS = [
     {"studies", "reports", "drive"},
     {"__init__"},
     {"cli"},
-    {"app"},
+    {"app", "__main__"},
 ]
 FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 #: likewise within the app

@@ -9,7 +9,7 @@ from tests.paths import ROOT
 LIBRARY, TESTS = ROOT / "fieldmon", ROOT / "tests"
 #: modules without logic: constants, and arrays that only compiled loops are handed
 DECLARATIONS = {
-    "cli/__main__.py",
+    "__main__.py",
     "cli/stopped.py",
     "samplers/adaptive/arrays.py",
     "studies/thesis/chapter5/fitted_choices.py",

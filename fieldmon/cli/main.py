@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Annotated, Any
+
+import typer
+
 from fieldmon.cli import problems, study
 from fieldmon.cli.app import open_app
 from fieldmon.cli.backup import backup
@@ -40,29 +44,50 @@ app = Commands(
     "    fieldmon plan estate.zip --feature Gate --observations mites.csv -o route.geojson\n\n"
     "    fieldmon simulate estate.zip --feature Gate --observations mites.csv",
 )
-app.add_typer(study.app, name="study")
-app.command()(record)
-app.command()(status)
-app.command()(report)
-app.command()(undo)
-app.command()(decide)
-app.command()(treat)
-app.command()(labels)
-app.command()(log)
-app.command()(export)
-app.command()(change)
-app.command()(correct)
-app.command()(merge)
-app.command()(backup)
-app.command()(salvage)
-app.command("app")(open_app)
-app.command()(plots)
-app.command()(plan)
-app.command()(init)
-app.command()(simulate)
-app.command()(compare)
-app.command()(drive)
-app.command("stand-in")(stand_in)
+_PANELS: dict[str, dict[str, Any]] = {
+    "Begin": {"app": open_app, "plots": plots, "plan": plan, "init": init},
+    "Every day": {"record": record, "status": status, "report": report, "undo": undo},
+    "Spray or not": {"decide": decide, "treat": treat, "labels": labels},
+    "Keep a season": {
+        "change": change,
+        "correct": correct,
+        "log": log,
+        "export": export,
+        "merge": merge,
+        "backup": backup,
+        "salvage": salvage,
+    },
+    "Try it out": {
+        "simulate": simulate,
+        "compare": compare,
+        "drive": drive,
+        "stand-in": stand_in,
+    },
+}
+for _panel, _commands in _PANELS.items():
+    for _name, _command in _commands.items():
+        app.command(_name, rich_help_panel=_panel)(_command)
+app.add_typer(study.app, name="study", rich_help_panel="Try it out")
+
+
+def _say_version(asked: bool) -> None:  # noqa: FBT001 - typer's own
+    if asked:
+        import fieldmon
+
+        typer.echo(f"fieldmon {fieldmon.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _fieldmon(
+    *,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_say_version, is_eager=True, help="Say which fieldmon this is."
+        ),
+    ] = False,
+) -> None: ...
 
 
 def main() -> None:

@@ -132,7 +132,7 @@ def address(browser, served_seasons, tmp_path_factory):  # noqa: ARG001 - no bro
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port", str(port),
+    command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--port", str(port),
                "--seasons", str(served_seasons)]  # fmt: skip
     log = tmp_path_factory.mktemp("app") / "log"
     with log.open("wb") as out:

@@ -44,7 +44,7 @@ def served(begin=lambda folder: None):  # noqa: ARG005 - none is begun
         port = free.getsockname()[1]
     with tempfile.TemporaryDirectory() as seasons:
         begin(Path(seasons))
-        command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser",
+        command = [sys.executable, "-m", "fieldmon", "app", "--no-browser",
                    "--port", str(port), "--seasons", seasons]  # fmt: skip
         server = subprocess.Popen(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)})
         try:

@@ -175,7 +175,7 @@ def main():
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port",
+        command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--port",
                    str(port), "--seasons", folder]  # fmt: skip
         server = subprocess.Popen(command, stdout=subprocess.DEVNULL, process_group=0)
         try:

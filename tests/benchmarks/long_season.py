@@ -220,7 +220,7 @@ def _edited(copy: Path, row: int) -> None:
 
 
 def _command(*words: object) -> list[str]:
-    return [sys.executable, "-m", "fieldmon.cli", *map(str, words)]
+    return [sys.executable, "-m", "fieldmon", *map(str, words)]
 
 
 def _quietly(*words: object, at: Path | None = None) -> None:

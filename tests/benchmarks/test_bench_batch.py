@@ -38,7 +38,7 @@ def parcels(tmp_path):
 @pytest.mark.timeout(1800)
 def test_a_thousand_plots_are_planned_in_one_command(benchmark, parcels):
     """Within 60 s on two cores, starting the workers included."""
-    words = [*[sys.executable, "-m", "fieldmon.cli", "plan", str(parcels), "--all", "-o"], "routes"]
+    words = [*[sys.executable, "-m", "fieldmon", "plan", str(parcels), "--all", "-o"], "routes"]
 
     def command():
         subprocess.run(words, cwd=parcels.parent, check=True, capture_output=True)

@@ -65,7 +65,7 @@ def test_others_come_to_an_encrypted_address_of_its_own_only(address, said, run,
 
 
 def test_an_address_that_is_not_private_is_a_sentence(tmp_path):
-    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--lan", "--port",
+    command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--lan", "--port",
                str(free_port()), "--address", "8.8.8.8"]  # fmt: skip
     env = os.environ | {"FIELDMON_AUTHORITY": str(tmp_path)}
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=env)
@@ -94,7 +94,7 @@ def test_a_signal_to_the_command_ends_the_server_and_all_that_it_started(tmp_pat
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "fieldmon.cli", "app", "--no-browser", "--port", str(port),
+    command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--port", str(port),
                "--seasons", str(tmp_path)]  # fmt: skip
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as app:
         until(lambda: answers(f"http://127.0.0.1:{port}/_stcore/health"))

@@ -15,7 +15,7 @@ class Stops:
             raise KeyboardInterrupt
 sys.meta_path.insert(0, Stops())
 sys.argv = ["fieldmon", "--help"]
-runpy.run_module("fieldmon.cli", run_name="__main__")
+runpy.run_module("fieldmon", run_name="__main__")
 """
 
 

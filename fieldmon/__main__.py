@@ -1,4 +1,4 @@
-"""`python -m fieldmon.cli`: the same as the command `fieldmon`."""
+"""`python -m fieldmon`: the same as the command `fieldmon`."""
 
 from fieldmon.cli.start import main
 

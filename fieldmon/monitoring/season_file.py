@@ -13,7 +13,7 @@ from fieldmon.compute.arguments import array_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.observations import Observations, warn_of_left_out
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     derived_layers,
@@ -122,7 +122,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         plot: Plot,
         observations: Observations | None = None,
         settings: MonitoringSettings | None = None,
-        messages: Iterable[KeptMessage] = (),
+        messages: Iterable[KeptMessage] | None = None,
         risk: Floats | Sequence[Any] | None = None,
         **chosen: Any,  # noqa: ANN401 - fields of the settings
     ) -> Season:
@@ -139,7 +139,8 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         settings
             What is chosen; None: the defaults, from today on in the plot's time zone.
         messages
-            What imports had to say, to be kept.
+            What imports had to say, to be kept; None: nothing, and `ImportDoubt` warns of records
+            that are left out.
         risk
             ``(n,)`` one more chance of being infested at the start, from a raster for instance,
             see `fieldmon.infestation.prior.prior_chance`; None: none.
@@ -159,7 +160,10 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
             settings = settings_from({"begins": today} | chosen)
         if observations is None:
             observations = Observations.none()
+        settings.must_detect()
         begins = np.datetime64(settings.begins, "D")
+        if messages is None:
+            warn_of_left_out(observations, begins)
         if risk is not None:
             risk = array_of(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
@@ -168,7 +172,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
-            tables.write_messages(db, messages)
+            tables.write_messages(db, messages or ())
             if risk is not None:
                 tables.write_array(db, "risk", risk)
             settings_log.write(db, as_json(settings))
@@ -209,6 +213,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         FileProblem
             If something else than `seen` counts by now.
         """
+        settings.must_detect()
         with self._lock, self.store.writing() as db:
             if as_json(settings_of(db)) != as_json(seen):
                 raise FileProblem(

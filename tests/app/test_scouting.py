@@ -7,19 +7,22 @@ import hashlib
 import os
 import random
 import shutil
-from datetime import date
+from datetime import date, timedelta
 
 import pytest
 
 from app.state.scout_page import invitation
 from app.words import texts
+from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, photos, scouts
 from fieldmon.monitoring.day_ahead import route_ahead
+from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.local_clock import utc_now
 from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
 from tests.app.test_hostile_texts import EVIL, NAMES, hostile_season
-from tests.monitoring.phone import told
+from tests.monitoring.phone import a_finding, told
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -236,6 +239,21 @@ def holds(season, there, said):
         assert (kind, hashlib.sha256(data).hexdigest()) == ("image/jpeg", digest)
     assert len(photos.photos_of(season)) == PHOTOS
     keeps_the_rules(season.path)
+
+
+def test_a_tap_is_of_the_plant_in_large_print_whoever_records_it_meanwhile(season, line, phone):
+    invited(phone, line, season, "Dan")
+    page = phone.page
+    page.locator(SENT).wait_for()
+    plant = plant_of(page)
+    theirs = a_finding(plant, FOUND, on=BEGINS, at=utc_now())
+    take(season, scouts.let_in(season, "Ann"), [theirs], utc_now())
+    page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator("#place", has_text="Ann").wait_for()
+    assert plant_of(page) == plant
+    told_now(page, "clean")
+    assert [one["plant"] for one in kept(page).records] == [plant]
 
 
 def test_a_glove_that_bounces_says_nothing_of_the_next_plant(season, line, phone):

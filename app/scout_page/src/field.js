@@ -118,7 +118,8 @@ export class Field {
     this.#take({ ...day, route, seconds_left });
     const isNew = this.asked().some((one) => !asked.has(one.id));
     this.ahead = isNew ? this.#withAsked(this.ahead) : this.ahead.filter((one) => !this.done.has(one));
-    this.draft = this.#keepDraft();
+    // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
+    if (this.plant < 0) this.draft = this.#keepDraft();
     await this.#keep("day", "ahead", "draft");
   }
 

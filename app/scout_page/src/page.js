@@ -49,6 +49,7 @@ export class Page {
   }
 
   #laidOut = null;
+  #shown = null;
 
   get theme() {
     const { theme } = this.choices;
@@ -73,7 +74,9 @@ export class Page {
     this.left = await this.store.left();
     this.#drawBar();
     if (this.menu.open && this.menu.dataset.of === "menu") this.#openMenu();
-    if (state === "sent") this.#drawMap();
+    if (state !== "sent") return;
+    if (this.#shown !== this.field.day) this.#drawSheet();
+    this.#drawMap();
   }
 
   async refresh() {
@@ -170,6 +173,7 @@ export class Page {
 
   #layOut() {
     const { field } = this;
+    this.#shown = field.day;
     if (!field.access) return this.sheet.replaceChildren(h("p", { class: "large" }, say("scan")));
     if (!field.day) {
       return this.sheet.replaceChildren(h("p", { class: "large" }, say("not_loaded", { season: field.season })),
@@ -236,6 +240,8 @@ export class Page {
 
   async #tell(result, beat) {
     if (performance.now() < this.rests) return;
+    // another window of this page may have gone on
+    if (Number(this.place.dataset.plant) !== this.field.plant) return this.#draw();
     this.rests = performance.now() + REST_MS;
     setTimeout(() => document.getElementById("answers")?.removeAttribute("data-resting"), REST_MS);
     const kept = this.#act(() => this.field.tell(result), beat);

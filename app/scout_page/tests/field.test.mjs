@@ -127,6 +127,19 @@ test("what others found is seen, and not inspected twice; the way stays", async 
   assert.ok(field.known().found.has(10));
 });
 
+test("the plant in large print stays when another records it: a tap is of what is shown", async () => {
+  const { season, field } = await aField();
+  season.day = aDay([1, 2], { today: [{ plant: 0, result: "clean", who: "Ben", count: null, second: 1 }], clean: [0] });
+  await field.refresh();
+  assert.equal(field.plant, 0);
+  assert.deepEqual(field.ahead, [1, 2, 10, 11]);
+  await field.goBack();
+  assert.equal(field.plant, 1);
+  await field.goTo(0);
+  await field.tell("found");
+  assert.deepEqual(field.records.map((one) => [one.plant, one.result]), [[0, "found"]]);
+});
+
 test("the full planner plans the rest when the network is there", async () => {
   const { field } = await aField();
   await field.planRest();

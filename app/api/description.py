@@ -51,7 +51,12 @@ FINDING: dict[str, Any] = {
             "description": "From 0, as in plot.",
         },
         "result": {"enum": [*RESULT_NAMES.values(), None]},
-        "count": {"type": ["number", "null"], "minimum": 0, "maximum": MOST_COUNTED},
+        "count": {
+            "type": ["number", "null"],
+            "minimum": 0,
+            "maximum": MOST_COUNTED,
+            "description": "Pests of a find: whole, from 1. Anything else does not count.",
+        },
         "stage": {"type": "string", "maxLength": 60},
         "leaves": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
         "notes": {"type": "string", "maxLength": 2000},

@@ -239,6 +239,17 @@ def _inspection(season: Season, one: Finding, at: datetime) -> Inspections:
         raise ObservationError(
             worded("A finding must name a plant and a result, but one of them is missing.")
         )
+    if (
+        one.result == FOUND
+        and one.count is not None
+        and not (one.count >= 1 and one.count % 1 == 0)
+    ):
+        raise ObservationError(
+            worded(
+                "Pests of a find must be a whole number from 1, but it says {count:g}.",
+                count=one.count,
+            )
+        )
     local = local_clock(season.plot.field).at(at)
     second = np.nan if one.on else seconds(local.time())
     count = np.nan if one.count is None or one.result != FOUND else one.count

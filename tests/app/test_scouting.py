@@ -256,6 +256,31 @@ def test_a_tap_is_of_the_plant_in_large_print_whoever_records_it_meanwhile(seaso
     assert [one["plant"] for one in kept(page).records] == [plant]
 
 
+def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):
+    invited(phone, line, season, "Dan")
+    page, label = phone.page, season.label
+    page.locator(SENT).wait_for()
+    phone.window.set_offline(True)
+    page.locator("#sync[data-state=offline]").wait_for()
+    plant = plant_of(page)
+    page.locator("#place", has_text="Chance").wait_for()
+    page.locator("#found").click()
+    for count in ("2.5", "0"):
+        page.locator("#count").fill(count)
+        page.locator("#save").click()
+        page.locator("#note.bad", has_text="whole number").wait_for()
+        assert plant_of(page) == plant
+    page.locator("#cancel").click()
+    told_now(page, "found", 3)
+    assert "✓" not in page.locator("#sync[data-left='1']").inner_text()
+    page.locator("#other_plant").click()
+    page.locator("#other_row").fill(str(label.line[plant]))
+    page.locator("#other_plant").last.fill(str(label.number[plant]))
+    page.locator("#ok").click()
+    page.locator(f"#place[data-plant='{plant}']").wait_for()
+    assert "Chance" not in page.locator("#place").inner_text()
+
+
 def test_a_glove_that_bounces_says_nothing_of_the_next_plant(season, line, phone):
     invited(phone, line, season, "Fay")
     plant = plant_of(phone.page)

@@ -88,7 +88,7 @@ def test_two_people_at_one_plant_are_both_kept_and_the_contradiction_shown(seaso
         ({"plant": None}, "must name a plant"),
         ({"result": 7}, "must name a plant and a result"),
         ({"on": date(2001, 1, 1)}, "of this season"),
-        ({"result": FOUND, "count": -1.0}, "A count must be 0 or more"),
+        ({"result": FOUND, "count": -1.0}, "whole number from 1"),
     ],
 )
 def test_what_does_not_fit_is_kept_and_does_not_count(season, key, wrong, why):
@@ -216,3 +216,13 @@ def test_a_clock_is_put_right_if_it_is_two_minutes_wrong_and_else_believed(
     take(season, key, [a_finding(0, at=NOW + fast)], NOW + fast)
     second = season.history.inspections.second
     assert second[~np.isnan(second)].tolist() == [9 * 3600.0 + (0.0 if shifted else fast_s)]
+
+
+@pytest.mark.parametrize("count", [0.0, 0.5, 2.5])
+def test_pests_of_a_find_are_whole_and_at_least_one(season, key, count):
+    before = len(season.history.inspections)
+    (done,) = take(season, key, [a_finding(3, FOUND, count=count)], NOW)
+    assert "whole number from 1" in done.problem
+    assert len(season.history.inspections) == before
+    (done,) = take(season, key, [a_finding(3, count=0.0)], NOW)
+    assert done.problem == "", "none were counted on a clean plant"

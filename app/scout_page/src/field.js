@@ -240,6 +240,12 @@ export class Field {
       at: this.clock().toISOString(), on: this.day.live ? null : this.day.day };
   }
 
+  /** Whether a find can have the pests counted: a whole number from 1, or none is said. */
+  isCountable() {
+    const { count } = this.draft;
+    return count == null || (Number.isInteger(count) && count >= 1);
+  }
+
   /** Say what was found at the plant: the next one is there at once; resolves when it is on the disk. */
   tell(result) {
     const { id, plant, count, stage, leaves, notes, photos } = this.draft;

@@ -141,7 +141,8 @@ export class Page {
       h("span", { id: "hours" }, this.#hours()),
     ] : [h("b", {}, "fieldmon")];
     const n = this.left.records + this.left.photos + field.unwritten();
-    const ended = this.state === "ended", signs = { offline: "⏸", ended: "⚠", sending: "↑", sent: "✓", idle: "" };
+    const ended = this.state === "ended", done = n || this.left.refused.length ? "" : "✓", waits = navigator.onLine ? "↑" : "⏸";
+    const signs = { offline: "⏸", ended: "⚠", sending: done || "↑", sent: done || (n ? waits : ""), idle: "" };
     const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
     // the button stays the same: a keyboard may stand on it
     if (!this.bar.hasChildNodes()) {
@@ -219,7 +220,9 @@ export class Page {
     const where = away == null ? say("no_position") : field.isThere() ? say("there") : say("away", { m: Math.round(away) });
     place.replaceChildren(
       h("h1", {}, say("place", values)),
-      h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where), h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
+      h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where),
+        // what was seen today is no chance
+        !field.done.has(plant) && h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
         field.offRoute && h("span", { class: "tag" }, say("off_route"))),
     );
     for (const one of field.asked(plant)) {
@@ -240,6 +243,7 @@ export class Page {
 
   async #tell(result, beat) {
     if (performance.now() < this.rests) return;
+    if (result === "found" && !this.field.isCountable()) return this.#say(say("count_whole"), true);
     // another window of this page may have gone on
     if (Number(this.place.dataset.plant) !== this.field.plant) return this.#draw();
     this.rests = performance.now() + REST_MS;
@@ -254,9 +258,9 @@ export class Page {
   #details() {
     const { draft } = this.field, save = (changes) => { const kept = this.field.note(changes); kept.catch(() => this.#act(() => kept)); };
     const number = (name) => {
-      const input = h("input", { type: "number", inputmode: "numeric", min: "0", max: "1000000", id: name, value: draft[name] ?? "",
+      const input = h("input", { type: "number", inputmode: "numeric", min: "1", max: "1000000", id: name, value: draft[name] ?? "",
         oninput: () => save({ [name]: input.value === "" ? null : Math.max(0, Number(input.value)) }) });
-      const step = (by) => () => { input.value = Math.max(0, (Number(input.value) || 0) + by); input.dispatchEvent(new Event("input")); };
+      const step = (by) => () => { input.value = Math.max(0, Math.round(Number(input.value) || 0) + by) || ""; input.dispatchEvent(new Event("input")); };
       return h("div", { class: "number" }, h("label", { for: name }, say(name)),
         h("button", { type: "button", "aria-label": say("fewer", { what: say(name) }), onclick: step(-1) }, "−"), input,
         h("button", { type: "button", "aria-label": say("more", { what: say(name) }), onclick: step(1) }, "+"));
@@ -356,7 +360,8 @@ export class Page {
     const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),
-      h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
+      // it has not everything where it did not take something
+      !(refused.length && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
       refused.length ? h("ul", { class: "bad" }, ...refused) : null,
       field.access && act("load_day", () => this.load()),
       field.day && act("plan_rest", () => this.planRest()),

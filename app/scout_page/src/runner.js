@@ -9,6 +9,7 @@ export class Runner {
   constructor(sync, field, tell) {
     Object.assign(this, { sync, field, tell, wait: SOON_MS, state: "idle", news: 0 });
     addEventListener("online", () => this.now());
+    addEventListener("offline", () => { if (!this.running) this.#say("offline"); });
     document.addEventListener("visibilitychange", () => { if (!document.hidden) this.now(); });
   }
 

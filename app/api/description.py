@@ -61,7 +61,8 @@ FINDING: dict[str, Any] = {
         "leaves": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
         "notes": {"type": "string", "maxLength": 2000},
         **_PLACE,
-        "on": _DATE | {"description": "The day meant, where it is not today: it has no time then."},
+        "on": _DATE
+        | {"description": "The day meant; it has no time where that is not the day of `at`."},
         "off_route": {"type": "boolean"},
         "undoes": {"anyOf": [ID, {"const": ""}]},
     },
@@ -174,6 +175,7 @@ DAY: dict[str, Any] = {
         "plot": {"type": "string", "description": "Changes if the plot does: fetch it anew."},
         "day": {"type": "string", "format": "date"},
         "live": {"type": "boolean", "description": "Whether it is today on the plot."},
+        "past": {"type": "boolean", "description": "Whether it is over on the plot."},
         "starts": {"type": "string"},
         "robot": {"type": "object"},
         "seconds_left": {"type": "number"},

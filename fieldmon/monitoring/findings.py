@@ -63,7 +63,7 @@ class Finding:
     lonlat, accuracy_m
         Where the phone was, and how well it knew.
     on
-        The day it is meant for, where that is not today: then it has no time.
+        The day it is meant for, where that is not today; another one than `at` has no time.
     off_route
         Whether the plant was not on the route.
     undoes
@@ -251,7 +251,7 @@ def _inspection(season: Season, one: Finding, at: datetime) -> Inspections:
             )
         )
     local = local_clock(season.plot.field).at(at)
-    second = np.nan if one.on else seconds(local.time())
+    second = np.nan if one.on not in {None, local.date()} else seconds(local.time())
     count = np.nan if one.count is None or one.result != FOUND else one.count
     return Inspections.of(
         np.array([one.plant]),

@@ -226,3 +226,10 @@ def test_pests_of_a_find_are_whole_and_at_least_one(season, key, count):
     assert len(season.history.inspections) == before
     (done,) = take(season, key, [a_finding(3, count=0.0)], NOW)
     assert done.problem == "", "none were counted on a clean plant"
+
+
+def test_a_day_that_is_named_has_times_if_it_is_the_day_of_the_phone(season, key):
+    take(season, key, [a_finding(3, on=BEGINS), a_finding(4, on=BEGINS + timedelta(days=1))], NOW)
+    seen, day = season.history.inspections, BEGINS + timedelta(days=1)
+    assert seen.second[(seen.plant == 3) & (seen.date == np.datetime64(BEGINS))][-1] == 9 * 3600.0
+    assert np.isnan(seen.second[(seen.plant == 4) & (seen.date == np.datetime64(day))]).all()

@@ -94,6 +94,8 @@ export class Field {
 
   /** Load plot, plants, route, chances and hot spots, while there is a network. */
   async load() {
+    // a code made for a day ahead is of that day until it is over
+    if (this.access.on && this.isOld()) await this.store.allow((this.access = { ...this.access, on: null }));
     const { day, plot } = await fetchDay(this.ask, this.access, this.plot?.digest);
     await this.settled();
     if (plot) this.plot = laidOut(plot, day.plot);
@@ -125,8 +127,7 @@ export class Field {
 
   /** Let the full planner plan the rest. */
   async planRest() {
-    const on = this.day.live ? null : this.day.day;
-    const route = await fetchRest(this.ask, this.access, on, this.secondsLeft());
+    const route = await fetchRest(this.ask, this.access, this.meant(), this.secondsLeft());
     await this.settled();
     this.day = { ...this.day, route };
     this.ahead = this.#withAsked(route.plants);
@@ -237,7 +238,7 @@ export class Field {
 
   #common(id) {
     return { id, season: this.season, key: this.access.key, day: this.day.day, order: this.#order(),
-      at: this.clock().toISOString(), on: this.day.live ? null : this.day.day };
+      at: this.clock().toISOString(), on: this.meant() };
   }
 
   /** Whether a find can have the pests counted: a whole number from 1, or none is said. */
@@ -252,7 +253,9 @@ export class Field {
     if (plant < 0) return Promise.resolve();
     const of = result === "found" ? { count: count ?? null, stage: stage ?? "", leaves: leaves ?? null } : {};
     const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0 };
-    const begun = this.begun ?? this.clock().getTime();
+    // the hours of a day ahead begin on it
+    const isAhead = this.meant() !== null && this.day.past === false;
+    const begun = this.begun ?? (isAhead ? null : this.clock().getTime());
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
@@ -330,11 +333,19 @@ export class Field {
     return shown;
   }
 
-  /** Whether the route is of another day than it is on the plot now. */
+  #today() {
+    return new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.clock());
+  }
+
+  /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
+  meant() {
+    const { day, live, past = true } = this.day;
+    if (live || this.#today() === day) return null;
+    return past || this.#today() < day ? day : null;
+  }
+
+  /** Whether the route's day is over since it was loaded. */
   isOld() {
-    if (!this.day?.live) return false;
-    const today = new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.clock());
-    return today !== this.day.day;
+    return Boolean(this.day) && this.meant() === null && this.#today() !== this.day.day;
   }
 }
-

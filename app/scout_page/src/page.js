@@ -209,7 +209,8 @@ export class Page {
 
   #old() {
     const { field } = this;
-    return field.isOld() ? [h("button", { type: "button", class: "wide bad", onclick: () => this.load() }, say("old_day", { day: field.day.day }))] : [];
+    if (field.isOld()) return [h("button", { type: "button", class: "wide bad", id: "old", onclick: () => this.load() }, say("old_day", { day: field.day.day }))];
+    return field.meant() ? [h("p", { class: "tag", id: "other_day" }, say("other_day", { day: field.day.day }))] : [];
   }
 
   #drawPlace() {

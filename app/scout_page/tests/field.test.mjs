@@ -10,11 +10,11 @@ let stores = 0;
 const ACCESS = { season: "Gate", key: "k1", on: null };
 const PICTURE = () => ({ bytes: Uint8Array.from({ length: 5000 }, (_, k) => (k * 7) % 256).buffer, type: "image/jpeg" });
 
-async function aField(season = new ASeason()) {
+async function aField(season = new ASeason(), access = ACCESS) {
   const name = `test ${stores++}`, store = await openStore(name);
   const options = { ask: season.ask, clock: () => new Date("2026-11-22T08:00:00Z") };
   const field = new Field(store, options);
-  await field.open(ACCESS);
+  await field.open(access);
   await field.load();
   return { season, store, field, sync: new Sync(store, season.ask),
     again: async () => { const other = new Field(await openStore(name), options); await other.open(); return other; } };
@@ -151,6 +151,32 @@ test("a route of yesterday is called so", async () => {
   assert.equal(field.isOld(), false);
   field.clock = () => new Date("2026-11-22T22:30:00Z"); // past midnight on the plot
   assert.equal(field.isOld(), true);
+});
+
+test("a code for a day ahead is of that day until it is over, and with times on the day itself", async () => {
+  const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-23", live: false, past: false }));
+  const { field } = await aField(season, { ...ACCESS, on: "2026-11-23" });
+  await field.tell("clean"); // the evening before
+  field.clock = () => new Date("2026-11-23T06:00:00Z");
+  assert.deepEqual([field.meant(), field.isOld(), field.secondsLeft()], [null, false, 14400]);
+  await field.tell("clean");
+  field.clock = () => new Date("2026-11-24T06:00:00Z");
+  assert.equal(field.isOld(), true);
+  await field.tell("clean");
+  assert.deepEqual(field.records.map((one) => one.on), ["2026-11-23", null, null]);
+  season.day = aDay([3], { day: "2026-11-24" });
+  await field.load();
+  assert.ok(season.asked.at(-1).endsWith("/day"), "today's, whatever the code was made for");
+  assert.equal(field.isOld(), false);
+});
+
+test("a day that was over when it was loaded stays the day meant", async () => {
+  const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-01", live: false, past: true }));
+  const { field } = await aField(season, { ...ACCESS, on: "2026-11-01" });
+  await field.tell("clean");
+  assert.deepEqual([field.records[0].on, field.isOld()], ["2026-11-01", false]);
+  await field.load();
+  assert.ok(season.asked.at(-1).endsWith("?on=2026-11-01"));
 });
 
 test("another season on the same phone does not mix with the first, whose records still go in", async () => {

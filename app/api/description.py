@@ -27,7 +27,8 @@ ID: dict[str, Any] = {
 _MOMENT = {
     "type": "string",
     "format": "date-time",
-    "pattern": r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$",
+    # an empty battery sets a clock to 1970
+    "pattern": r"^(19[7-9]|2\d\d)\d-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$",
 }
 _PLACE = {
     "lon": {"type": ["number", "null"], "minimum": -180, "maximum": 180},
@@ -63,6 +64,11 @@ FINDING: dict[str, Any] = {
         **_PLACE,
         "on": _DATE
         | {"description": "The day meant; it has no time where that is not the day of `at`."},
+        "after": {"anyOf": [_MOMENT, {"type": "null"}]}
+        | {
+            "description": "The `Date` of the last answer before it was made, and what passed "
+            "since: a time before it is not believed."
+        },
         "off_route": {"type": "boolean"},
         "undoes": {"anyOf": [ID, {"const": ""}]},
     },

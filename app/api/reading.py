@@ -77,6 +77,7 @@ def _finding(sent: dict[str, Any]) -> Finding:
         lonlat=None if lon is None or lat is None else (lon, lat),
         accuracy_m=sent.get("accuracy_m"),
         on=day(sent.get("on")),
+        after=_moment(sent["after"]) if sent.get("after") else None,
         off_route=sent.get("off_route", False),
         undoes=sent.get("undoes", ""),
     )

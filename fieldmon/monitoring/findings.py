@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring.scouts import Scout
     from fieldmon.monitoring.season_file import Season, SeasonChange
+    from fieldmon.plot.local_clock import LocalClock
 
 SOURCE = "phone"
 #: what one person may tell in a day: ten times what anybody can inspect
@@ -64,6 +65,8 @@ class Finding:
         Where the phone was, and how well it knew.
     on
         The day it is meant for, where that is not today; another one than `at` has no time.
+    after
+        The least that the time can be, by the season's clock; None: nothing is known.
     off_route
         Whether the plant was not on the route.
     undoes
@@ -83,10 +86,13 @@ class Finding:
     on: date | None = None
     off_route: bool = False
     undoes: str = ""
+    after: datetime | None = None
 
     def content(self) -> str:
         """Return all of it as JSON, the same for the same finding only."""
-        return json.dumps(asdict(self), default=str, sort_keys=True, ensure_ascii=False)
+        # when phones did not say it, it was no part
+        said = {name: value for name, value in asdict(self).items() if name != "after" or value}
+        return json.dumps(said, default=str, sort_keys=True, ensure_ascii=False)
 
 
 @dataclass(frozen=True)
@@ -218,7 +224,7 @@ def _write(
         inspection = None
         if not one.undoes:
             try:
-                made = _inspection(season, one, one.at - letter.shift)
+                made = _inspection(season, one, letter)
                 days = (settings, (batch, scout.name))
                 (row,) = inspection_table.rows(made, season.plot.grid, season.label, *days)
                 inspection = _insert(change.db, row, one.id)
@@ -233,7 +239,7 @@ def _write(
     return problems, batch, seen
 
 
-def _inspection(season: Season, one: Finding, at: datetime) -> Inspections:
+def _inspection(season: Season, one: Finding, letter: _SentFindings) -> Inspections:
     """Return a finding as an inspection; raise `ObservationError` where it names none."""
     if one.plant is None or one.result not in RESULT_NAMES:
         raise ObservationError(
@@ -250,17 +256,41 @@ def _inspection(season: Season, one: Finding, at: datetime) -> Inspections:
                 count=one.count,
             )
         )
-    local = local_clock(season.plot.field).at(at)
-    second = np.nan if one.on not in {None, local.date()} else seconds(local.time())
+    day, second = _when(local_clock(season.plot.field), one, letter)
     count = np.nan if one.count is None or one.result != FOUND else one.count
     return Inspections.of(
         np.array([one.plant]),
         np.array([one.result]),
-        np.datetime64(one.on or local.date(), "D"),
+        np.datetime64(day, "D"),
         second=np.array([second]),
         count=np.array([count]),
         notes=np.array([one.notes], object),
     )
+
+
+def _when(clock: LocalClock, one: Finding, letter: _SentFindings) -> tuple[date, float]:
+    """Return a finding's day, and its second or NaN; raise `ObservationError` if no day is sure.
+
+    No time is believed after its arrival, or before the least that it can be.
+    """
+    received, at = letter.clocks[0], one.at - letter.shift
+    local, named = clock.at(at), one.on
+    least = one.after if one.after is None or one.after <= received + _WRONG else None
+    is_believed = at <= received + _WRONG and (least is None or at >= least - _WRONG)
+    if named is not None:
+        return named, seconds(local.time()) if is_believed and named == local.date() else np.nan
+    if is_believed:
+        return local.date(), seconds(local.time())
+    day = clock.at(received).date()
+    if least is None or clock.at(least).date() != day:
+        raise ObservationError(
+            worded(
+                "The clock of the phone was wrong when this was recorded ({at}), so nobody knows "
+                "its day. Record it by hand.",
+                at=f"{local:%Y-%m-%d %H:%M}",
+            )
+        )
+    return day, np.nan
 
 
 def _insert(db: sqlite3.Connection, row: tuple[object, ...], told: str) -> int:

@@ -233,3 +233,40 @@ def test_a_day_that_is_named_has_times_if_it_is_the_day_of_the_phone(season, key
     seen, day = season.history.inspections, BEGINS + timedelta(days=1)
     assert seen.second[(seen.plant == 3) & (seen.date == np.datetime64(BEGINS))][-1] == 9 * 3600.0
     assert np.isnan(seen.second[(seen.plant == 4) & (seen.date == np.datetime64(day))]).all()
+
+
+HOUR, DAY = timedelta(hours=1), timedelta(days=1)
+
+
+@pytest.mark.parametrize(
+    ("at", "after", "second"),
+    [
+        (NOW - HOUR, NOW - 2 * HOUR, 8 * 3600.0),
+        (NOW - HOUR, None, 8 * 3600.0),
+        (NOW - DAY, NOW - HOUR, np.nan),  # a battery was empty: the day is sure, the time is not
+        (NOW.replace(year=1970), NOW - HOUR, np.nan),
+        (NOW + 3 * DAY, NOW - HOUR, np.nan),
+        (NOW - DAY, NOW - 2 * DAY, None),  # a day that can be true is believed; of another day here
+        (NOW + 3 * DAY, NOW - DAY, None),
+        (NOW + 3 * DAY, None, None),
+        (NOW.replace(year=1970), None, None),
+    ],
+    ids=str,
+)
+def test_a_time_after_its_arrival_or_before_the_least_it_can_be_is_not_believed(
+    season, key, at, after, second
+):
+    (done,) = take(season, key, [a_finding(37, at=at, after=after)], NOW)
+    seen = season.history.inspections
+    seen = seen.take(seen.plant == 37)
+    assert bool(done.problem) == (second is None)
+    if second is None:
+        assert len(seen) == 0
+    else:
+        assert seen.date.tolist() == [BEGINS]
+        np.testing.assert_equal(seen.second, [second])
+
+
+def test_what_was_taken_before_phones_said_the_least_is_still_the_same():
+    assert "after" not in a_finding(3).content()
+    assert "after" in a_finding(3, after=NOW).content()

@@ -1,5 +1,6 @@
 // What a scout does in the field. A step is seen at once; it is said to be kept when it is on the phone's disk.
 
+import { Clock } from "./clock.js";
 import { laidOut, metres, offered, rings } from "./geo.js";
 import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
 import { fetchDay, fetchRest } from "./sync.js";
@@ -15,8 +16,8 @@ export class Field {
   #way = null;
   #pending = 0;
 
-  constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID() } = {}) {
-    Object.assign(this, { store, ask, clock, id });
+  constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID(), time = new Clock(() => this.clock()) } = {}) {
+    Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
     this.position = null;
     this.records = [];
   }
@@ -63,6 +64,7 @@ export class Field {
       kept = await Promise.all(KEPT.map((name) => this.store.get(name)));
     } while (this.#pending);
     Object.assign(this, Object.fromEntries(KEPT.map((name, k) => [name, kept[k]])));
+    this.time.knew(await this.store.get("heard"));
     if (access) {
       await this.store.allow(access);
       if (access.season !== this.season) this.#empty(access.season);
@@ -157,7 +159,7 @@ export class Field {
 
   #keep(...names) {
     const values = Object.fromEntries(names.map((name) => [name, this[name] ?? null]));
-    return this.#step({}, () => this.store.put(values));
+    return this.#step({}, () => this.store.put({ ...values, heard: this.time.least() }));
   }
 
   // -- photos asked for
@@ -238,13 +240,19 @@ export class Field {
 
   #common(id) {
     return { id, season: this.season, key: this.access.key, day: this.day.day, order: this.#order(),
-      at: this.clock().toISOString(), on: this.meant() };
+      at: this.clock().toISOString(), on: this.meant(), ...this.#after() };
   }
 
   /** Whether a find can have the pests counted: a whole number from 1, or none is said. */
   isCountable() {
     const { count } = this.draft;
     return count == null || (Number.isInteger(count) && count >= 1);
+  }
+
+  /** The least that the time can be, for where the clock is wrong. */
+  #after() {
+    const least = this.time.least();
+    return least === null ? {} : { after: new Date(least).toISOString() };
   }
 
   /** Say what was found at the plant: the next one is there at once; resolves when it is on the disk. */
@@ -255,14 +263,14 @@ export class Field {
     const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0 };
     // the hours of a day ahead begin on it
     const isAhead = this.meant() !== null && this.day.past === false;
-    const begun = this.begun ?? (isAhead ? null : this.clock().getTime());
+    const begun = this.begun ?? (isAhead ? null : this.time.best());
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
-      ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.clock().getTime()));
+      ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.time.best()));
     }
     const follows = { ahead, begun, draft: this.#fresh(ahead), last: { id, plant, ahead: this.ahead } };
-    return this.#step(follows, () => this.store.record(record, follows), record);
+    return this.#step(follows, () => this.store.record(record, { ...follows, heard: this.time.least() }), record);
   }
 
   /** The last record that can be taken back, or undefined. */
@@ -310,7 +318,7 @@ export class Field {
   /** How many plants are done and on the disk. */
   kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
 
-  secondsLeft() { return secondsLeft(this.day, this.begun, this.clock().getTime()); }
+  secondsLeft() { return secondsLeft(this.day, this.begun, this.time.best()); }
 
   /** The line ahead as it is gone, metres. */
   way() {
@@ -334,7 +342,7 @@ export class Field {
   }
 
   #today() {
-    return new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.clock());
+    return new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.time.best());
   }
 
   /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
@@ -346,6 +354,6 @@ export class Field {
 
   /** Whether the route's day is over since it was loaded. */
   isOld() {
-    return Boolean(this.day) && this.meant() === null && this.#today() !== this.day.day;
+    return Boolean(this.day) && this.meant() === null && this.#today() > this.day.day;
   }
 }

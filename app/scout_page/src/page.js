@@ -208,6 +208,11 @@ export class Page {
   }
 
   #old() {
+    const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
+    return [...wrong, ...this.#otherDay()];
+  }
+
+  #otherDay() {
     const { field } = this;
     if (field.isOld()) return [h("button", { type: "button", class: "wide bad", id: "old", onclick: () => this.load() }, say("old_day", { day: field.day.day }))];
     return field.meant() ? [h("p", { class: "tag", id: "other_day" }, say("other_day", { day: field.day.day }))] : [];
@@ -357,7 +362,11 @@ export class Page {
     const act = (name, work) => h("button", { type: "button", class: "wide", id: name, onclick: work }, say(name));
     const pick = (name, options) => h("fieldset", {}, h("legend", {}, say(name)), ...options.map(([value, text]) => h("button", {
       type: "button", lang: name === "language" ? value : null, "aria-pressed": String(choices[name] === value), onclick: () => this.choose({ [name]: value }) }, text)));
-    const refused = this.left.refused.map((one) => h("li", {}, one.problem || say("refused")));
+    // what could not even be read is no sentence for a person
+    const why = (one) => (one.state === "refused" ? say("refused") : own(one.problem));
+    const where = (one) => (one.season === field.season && one.plant >= 0 && field.plot
+      ? `${say("place", { row: rowOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}: ` : "");
+    const refused = this.left.refused.map((one) => h("li", {}, `${where(one)}${why(one)}`));
     const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),

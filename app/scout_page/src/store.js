@@ -137,7 +137,7 @@ export class Store {
 }
 
 const SENT = ["id", "at", "plant", "result", "count", "stage", "leaves", "notes", "lon", "lat",
-  "accuracy_m", "on", "off_route", "undoes"];
+  "accuracy_m", "on", "after", "off_route", "undoes"];
 
 /** A record as the interface describes a finding. */
 export function asSent(record) {

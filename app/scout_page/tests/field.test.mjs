@@ -179,6 +179,24 @@ test("a day that was over when it was loaded stays the day meant", async () => {
   assert.ok(season.asked.at(-1).endsWith("?on=2026-11-01"));
 });
 
+test("each record says the least that the time can be, over a kill too", async () => {
+  const { season, store, field, sync, again } = await aField();
+  await field.tell("clean");
+  assert.equal("after" in field.records[0], false, "nothing was heard");
+  season.date = "Sun, 22 Nov 2026 08:00:00 GMT";
+  await field.refresh();
+  await field.tell("clean");
+  const other = await again();
+  other.clock = () => new Date("1970-01-01T00:00:09Z");
+  assert.equal(other.time.isWrong(), true);
+  await other.tell("clean");
+  await sync.send();
+  const [, second, third] = [...season.taken.values()];
+  assert.ok(second.after >= "2026-11-22T08:00:00" && third.after >= second.after, `${second.after} ${third.after}`);
+  assert.equal(third.at, "1970-01-01T00:00:09.000Z");
+  assert.equal((await store.left()).records, 0);
+});
+
 test("another season on the same phone does not mix with the first, whose records still go in", async () => {
   const { season, store, field, sync } = await aField();
   await field.tell("clean");

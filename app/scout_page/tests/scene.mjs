@@ -38,7 +38,7 @@ export class ASeason {
   };
 
   async #answer(address, { method = "GET", body, headers = {} }) {
-    const said = (value, status = 200) => new Response(JSON.stringify(value), { status });
+    const said = (value, status = 200) => new Response(JSON.stringify(value), { status, headers: this.date ? { date: this.date } : {} });
     if (this.keys && !this.keys.includes(headers.authorization?.slice(7))) return said({ error: "no key" }, 401);
     const path = address.split("/").slice(5).join("/").split("?")[0];
     if (path === "plot") return said(aPlot());

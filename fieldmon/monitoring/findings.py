@@ -222,7 +222,9 @@ def _write(
     problems: dict[str, str] = {}
     for one in letter.findings:
         inspection = None
-        if not one.undoes:
+        if one.undoes:
+            problems |= _of_another(change.db, scout, one)
+        else:
             try:
                 made = _inspection(season, one, letter)
                 days = (settings, (batch, scout.name))
@@ -237,6 +239,15 @@ def _write(
     touch(change.db, phone_tables.FINDINGS.name)
     touch(change.db, schema.INSPECTIONS.name)
     return problems, batch, seen
+
+
+def _of_another(db: sqlite3.Connection, scout: Scout, one: Finding) -> dict[str, str]:
+    """Return why a finding takes nothing back, by its id: nobody takes back what others told."""
+    told = db.execute("SELECT scout FROM tellings WHERE id = ?", (one.undoes,)).fetchone()
+    if told is None or told[0] == scout.name:
+        return {}
+    said = worded("This was recorded by {who}, so nobody else can take it back here.", who=told[0])
+    return {one.id: said}
 
 
 def _inspection(season: Season, one: Finding, letter: _SentFindings) -> Inspections:

@@ -281,6 +281,44 @@ def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):
     assert "Chance" not in page.locator("#place").inner_text()
 
 
+def test_a_phone_handed_over_and_taken_to_another_plot_mixes_nothing(season, line, phone):
+    invited(phone, line, season, "Noa")
+    page, window = phone.page, phone.window
+    page.locator(SENT).wait_for()
+    window.set_offline(True)
+    first = told_now(page, "clean")
+    scouts.take_back(season, "Noa")
+    window.set_offline(False)
+    page.goto("about:blank")
+    invited(phone, line, season, "Gil")
+    second = told_now(page, "clean")
+    page.locator("#sync.bad[data-state=sent][data-left='1']").wait_for()
+    page.locator("#open_menu").click()
+    page.locator("dialog h2", has_text="Gil").wait_for()
+    page.locator("dialog .bad", has_text="Noa").wait_for()
+    page.keyboard.press("Escape")
+    # a code of another season, without a network
+    other = Season(shutil.copy(season.path, season.path.parent / "Other.gpkg"))
+    key, problems = scouts.let_in(other, "Bea"), []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    window.set_offline(True)
+    page.goto("about:blank")
+    page.goto(invitation(line.address, "Other", key, str(BEGINS), "en"))
+    page.locator("#note.bad", has_text="no network").wait_for()
+    window.set_offline(False)
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator("#clean").wait_for()
+    assert page.locator("#note").inner_text() == ""
+    told_now(page, "clean")
+    page.locator("#open_menu").click()
+    page.locator(".season", has_text="Gate 2026").click()
+    page.locator(f"#last[data-plant='{second[0]}']").wait_for()
+    assert problems == []
+    with Season(season.path).store.reading() as db:
+        assert db.execute("SELECT scout FROM tellings").fetchall() == [("Gil",)]
+    assert first[0] in {one["plant"] for one in kept(page).records}
+
+
 def test_a_glove_that_bounces_says_nothing_of_the_next_plant(season, line, phone):
     invited(phone, line, season, "Fay")
     plant = plant_of(phone.page)

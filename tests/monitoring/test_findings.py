@@ -270,3 +270,12 @@ def test_a_time_after_its_arrival_or_before_the_least_it_can_be_is_not_believed(
 def test_what_was_taken_before_phones_said_the_least_is_still_the_same():
     assert "after" not in a_finding(3).content()
     assert "after" in a_finding(3, after=NOW).content()
+
+
+def test_nobody_takes_back_what_another_told_and_that_is_said(season, key):
+    theirs = a_finding(37)
+    take(season, scouts.let_in(season, "Ben"), [theirs], NOW)
+    back = a_finding(None, None, undoes=theirs.id)
+    assert "recorded by Ben" in take(season, key, [back], NOW)[0].problem
+    assert "recorded by Ben" in take(season, key, [back], NOW)[0].problem, "as often as it comes"
+    assert 37 in season.history.inspections.plant

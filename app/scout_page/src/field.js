@@ -3,10 +3,11 @@
 import { Clock } from "./clock.js";
 import { laidOut, metres, offered, rings } from "./geo.js";
 import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
-import { fetchDay, fetchRest } from "./sync.js";
+import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
 
 const KEPT = ["season", "plot", "day", "ahead", "draft", "begun", "last"];
+const EMPTY = { plot: null, day: null, ahead: [], draft: null, begun: null, last: null };
 // a record that is on no disk yet
 const WRITING = "writing";
 
@@ -20,6 +21,8 @@ export class Field {
     Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
     this.position = null;
     this.records = [];
+    this.people = {};
+    this.seasons = [];
   }
 
   /**
@@ -65,13 +68,50 @@ export class Field {
     } while (this.#pending);
     Object.assign(this, Object.fromEntries(KEPT.map((name, k) => [name, kept[k]])));
     this.time.knew(await this.store.get("heard"));
-    if (access) {
-      await this.store.allow(access);
-      if (access.season !== this.season) this.#empty(access.season);
-    }
+    this.people = (await this.store.get("people")) ?? {};
+    if (access) await this.#comes(access);
+    await this.#begin();
+  }
+
+  /** Somebody has scanned a code. */
+  async #comes(access) {
+    const had = await this.store.access(access.season), now = this.season && await this.store.access(this.season);
+    // a page that did not note yet whose key it was
+    if (now && this.day && !this.people[now.key]) await this.#name(now.key, this.day.scout);
+    if (access.season !== this.season) await this.#change(access.season);
+    // the home screen of an iPhone says the same code whenever it is opened
+    if (had?.key === access.key) return;
+    await this.store.allow(access);
+    await this.#change(access.season, { plot: this.plot });
+  }
+
+  async #begin() {
     this.access = this.season ? await this.store.access(this.season) : null;
+    this.seasons = (await this.store.seasons()).sort();
     await this.reread();
     await this.#countPhotos();
+  }
+
+  #name(key, who) {
+    this.people = { ...this.people, [key]: who };
+    return this.store.put({ people: this.people });
+  }
+
+  /** Turn to another season of this phone; the day of this one stays as it is. */
+  async turnTo(season) {
+    await this.settled();
+    if (season !== this.season) await this.#change(season);
+    await this.#begin();
+  }
+
+  /** Go on with a season as it was left, or with what is given of it. */
+  async #change(season, given) {
+    const left = this.season ? { [`of ${this.season}`]: Object.fromEntries(Object.keys(EMPTY).map((name) => [name, this[name]])) } : {};
+    const kept = given ?? (await this.store.get(`of ${season}`));
+    Object.assign(this, EMPTY, kept, { season, position: null });
+    if (this.coords) this.moved(this.coords);
+    const values = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
+    await this.store.put({ ...left, ...values });
   }
 
   /** A photo may be on the disk, and the page was killed before it was counted. */
@@ -81,15 +121,13 @@ export class Field {
     if (photos !== (this.draft.photos ?? 0)) this.draft = { ...this.draft, photos };
   }
 
-  #empty(season) {
-    Object.assign(this, { season, plot: null, day: null, ahead: [], draft: null, begun: null, last: null });
-  }
-
   async reread() {
     const before = new Set(this.records.filter((one) => one.state !== WRITING).map((one) => one.id));
-    const kept = this.season ? await this.store.records(this.season) : [], ids = new Set(kept.map((one) => one.id));
+    const all = this.season ? await this.store.records(this.season) : [];
+    // what another person told on this phone is not one's own
+    const kept = all.filter((one) => isOf(this.people, one.key, this.access?.key)), ids = new Set(kept.map((one) => one.id));
     // what was told while the disk was read
-    const newer = this.records.filter((one) => one.season === this.season && !ids.has(one.id) && !before.has(one.id));
+    const newer = this.records.filter((one) => one.season === this.season && one.key === this.access?.key && !ids.has(one.id) && !before.has(one.id));
     this.records = [...kept, ...newer];
     this.#work();
   }
@@ -100,6 +138,7 @@ export class Field {
     if (this.access.on && this.isOld()) await this.store.allow((this.access = { ...this.access, on: null }));
     const { day, plot } = await fetchDay(this.ask, this.access, this.plot?.digest);
     await this.settled();
+    await this.#name(this.access.key, day.scout);
     if (plot) this.plot = laidOut(plot, day.plot);
     if (this.coords) this.moved(this.coords);
     this.#take(day);

@@ -3,6 +3,7 @@
 import { plantAt, rowOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
+import { KeyEnded, NotNow } from "./sync.js";
 import { LANGUAGES, own, say, speak } from "./words.js";
 
 // a glove that bounces must say nothing of the next plant
@@ -24,6 +25,7 @@ export class Page {
   constructor(root, field, store) {
     Object.assign(this, { root, field, store });
     this.state = "idle";
+    this.stranded = new Map();
     this.rests = 0;
     this.left = { records: 0, photos: 0, refused: [] };
   }
@@ -69,13 +71,16 @@ export class Page {
   }
 
   /** How sending goes. */
-  async sending(state) {
-    this.state = state;
+  async sending(state, stranded) {
+    Object.assign(this, { state, stranded });
     this.left = await this.store.left();
     this.#drawBar();
     if (this.menu.open && this.menu.dataset.of === "menu") this.#openMenu();
     if (state !== "sent") return;
-    if (this.#shown !== this.field.day) this.#drawSheet();
+    if (this.#shown !== this.field.day) {
+      if (!this.#shown) this.#say(""); // it was loaded now
+      this.#drawSheet();
+    }
     this.#drawMap();
   }
 
@@ -121,7 +126,7 @@ export class Page {
 
   #drawMap(late = false) {
     const { field } = this;
-    if (!field.plot || !field.day) return;
+    if (!field.plot || !field.day) { this.#laidOut = null; return this.map.clear(); }
     if (this.#laidOut !== field.day) { this.#laidOut = field.day; this.map.lay(field.plot, field.day.chance, field.day.spots); }
     const asked = field.asked().map((one) => one.plant);
     this.map.show({ ...field.known(), ahead: field.ahead, way: field.way(), asked, next: field.plant, position: field.position }, late);
@@ -141,7 +146,7 @@ export class Page {
       h("span", { id: "hours" }, this.#hours()),
     ] : [h("b", {}, "fieldmon")];
     const n = this.left.records + this.left.photos + field.unwritten();
-    const ended = this.state === "ended", done = n || this.left.refused.length ? "" : "✓", waits = navigator.onLine ? "↑" : "⏸";
+    const ended = this.state === "ended" || (this.state === "sent" && this.stranded.size > 0), done = n || this.left.refused.length ? "" : "✓", waits = navigator.onLine ? "↑" : "⏸";
     const signs = { offline: "⏸", ended: "⚠", sending: done || "↑", sent: done || (n ? waits : ""), idle: "" };
     const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
     // the button stays the same: a keyboard may stand on it
@@ -153,7 +158,7 @@ export class Page {
     head.replaceChildren(...said);
     sync.className = ended || this.left.refused.length ? "bad" : "";
     Object.assign(sync.dataset, { state: this.state, left: n });
-    sync.textContent = `${signs[this.state]} ${text}`;
+    sync.textContent = `${ended ? signs.ended : signs[this.state]} ${text}`;
   }
 
   #hours() {
@@ -371,12 +376,15 @@ export class Page {
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),
       // it has not everything where it did not take something
-      !(refused.length && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
+      !((refused.length || this.stranded.size) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
+      ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),
       refused.length ? h("ul", { class: "bad" }, ...refused) : null,
       field.access && act("load_day", () => this.load()),
       field.day && act("plan_rest", () => this.planRest()),
       refused.length ? act("send_again", () => this.store.again().then(() => this.onTold?.())) : null,
       this.left.records + this.left.photos + refused.length > 0 && act("save_file", () => this.#saveFile()),
+      field.seasons.length > 1 && h("fieldset", {}, h("legend", {}, say("plots")), ...field.seasons.map((one) => h("button", {
+        type: "button", class: "season", "aria-pressed": String(one === field.season), onclick: () => this.#turnTo(one) }, own(one)))),
       pick("hand", [["left", say("left")], ["right", say("right")]]),
       pick("theme", [["auto", say("auto")], ["sun", say("sun")], ["dark", say("dark")]]),
       pick("language", Object.entries(LANGUAGES)),
@@ -389,6 +397,21 @@ export class Page {
 
   planRest() { return this.#network(() => this.field.planRest()); }
 
+  async #turnTo(season) {
+    this.menu.close();
+    await this.field.turnTo(season);
+    await this.refresh();
+    this.#look();
+    if (this.field.day) this.onTold?.();
+    else await this.load();
+  }
+
+  #look() {
+    if (!this.field.day) return;
+    this.map.fit();
+    if (this.field.plant >= 0) this.map.look(this.field.plant);
+  }
+
   async #network(work) {
     if (this.menu.open) this.menu.close();
     this.#say(say("loading"));
@@ -396,12 +419,11 @@ export class Page {
       await work();
       this.#say("");
     } catch (error) {
-      const known = { KeyEnded: "state_ended", NotNow: "no_network" }[error?.constructor?.name];
+      const known = error instanceof KeyEnded ? "state_ended" : error instanceof NotNow ? "no_network" : null;
       this.#say(known ? say(known) : error.message, true);
     }
     await this.refresh();
-    this.map.fit();
-    if (this.field.plant >= 0) this.map.look(this.field.plant);
+    this.#look();
     this.onTold?.();
   }
 

@@ -44,10 +44,12 @@ export class Runner {
 
   async #news() {
     await this.field.reread();
+    // a code was scanned without a network
+    if (this.field.access && !this.field.day) return this.field.load();
     if (Date.now() - this.news < NEWS_MS) return;
     this.news = Date.now();
     await this.field.refresh();
   }
 
-  #say(state) { this.state = state; this.tell(state); }
+  #say(state) { this.state = state; this.tell(state, this.sync.stranded); }
 }

@@ -122,6 +122,9 @@ export class Store {
     await change.done;
   }
 
+  /** The seasons that somebody scanned a code of. */
+  seasons() { return this.db.getAllKeys("access"); }
+
   access(season) { return this.db.get("access", season); }
   async allow(access) { await this.db.put("access", access); }
 

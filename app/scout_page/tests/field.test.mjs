@@ -113,9 +113,56 @@ test("a key taken back keeps everything here until there is a new one", async ()
   season.keys = ["k2"];
   await assert.rejects(sync.send(), KeyEnded);
   assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [1, 1]);
-  await store.allow({ season: "Gate", key: "k2" });
+  await field.open({ season: "Gate", key: "k2", on: null });
+  await field.load();
+  assert.equal(field.records.length, 1, "the same person's");
   await sync.send();
-  assert.deepEqual([season.taken.size, season.photos.size], [1, 1]);
+  assert.deepEqual([season.taken.size, season.photos.size, sync.stranded.size], [1, 1, 0]);
+});
+
+test("another person's code brings another day, and what the first one told goes in as theirs or waits", async () => {
+  const { season, store, field, sync } = await aField();
+  await field.tell("clean");
+  await field.addPhoto(field.photoOf(), PICTURE());
+  await field.tell("found");
+  season.day = aDay([7, 8], { scout: "Gil" });
+  await field.open({ season: "Gate", key: "k2", on: null });
+  assert.equal(field.day, null, "it is to be loaded");
+  await field.load();
+  assert.deepEqual([field.day.scout, field.records.length, field.lastRecord()], ["Gil", 0, undefined]);
+  await field.tell("clean");
+  season.keys = ["k2"];
+  await sync.send();
+  assert.deepEqual([[...season.taken.values()].map((one) => one.plant), [...sync.stranded]], [[7], [["Ann", 3]]]);
+  assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [2, 1]);
+  season.keys = ["k1", "k2"];
+  await sync.send();
+  assert.deepEqual([season.by.get("k1"), season.by.get("k2"), sync.stranded.size], [2, 1, 0]);
+});
+
+test("the same code again, as an iPhone's home screen says it, changes nothing", async () => {
+  const { season, field } = await aField(new ASeason(aDay([0, 1], { live: false, past: false, day: "2026-11-23" })), { ...ACCESS, on: "2026-11-23" });
+  field.clock = () => new Date("2026-11-24T08:00:00Z");
+  season.day = aDay([3, 4], { day: "2026-11-24" });
+  await field.load();
+  await field.open({ ...ACCESS, on: "2026-11-23" });
+  assert.deepEqual([field.day.day, field.access.on], ["2026-11-24", null]);
+});
+
+test("two seasons on one phone: each goes on where it was left", async () => {
+  const { season, field, again } = await aField();
+  await field.tell("clean");
+  await field.note({ open: true, count: 2 });
+  season.day = aDay([7, 8], { season: "Other", scout: "Bea" });
+  await field.open({ season: "Other", key: "k9", on: null });
+  await field.load();
+  await field.tell("found");
+  const other = await again();
+  assert.deepEqual([other.season, other.seasons, other.records.length], ["Other", ["Gate", "Other"], 1]);
+  await other.turnTo("Gate");
+  assert.deepEqual([other.day.scout, other.plant, other.draft.count, other.access.key, other.records.length], ["Ann", 1, 2, "k1", 1]);
+  await other.turnTo("Other");
+  assert.deepEqual([other.day.scout, other.access.key, other.records[0].plant], ["Bea", "k9", 7]);
 });
 
 test("what others found is seen, and not inspected twice; the way stays", async () => {

@@ -682,7 +682,8 @@ CORRECTED_UNSAID = (
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
     "The route file with its found column filled in, any table or GPS file with plants, rows "
-    "or positions, or a copy of this season that QGIS or QField changed"
+    "or positions, a copy of this season that QGIS or QField changed, or what a phone saved as not "
+    "sent"
 )
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"

@@ -7,7 +7,8 @@ a network breaks; once `take` returns, it is on the disk, and comes to no second
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from collections import Counter
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, date, datetime, timedelta
 from typing import TYPE_CHECKING
 
@@ -21,12 +22,14 @@ from fieldmon.monitoring import (
     batches,
     inspection_table,
     phone_tables,
+    photos,
     schema,
     scouts,
     season_log,
 )
 from fieldmon.monitoring.geopackage import insert, point_blobs, touch
 from fieldmon.monitoring.open_season import settings_of
+from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.local_clock import local_clock, utc_now
 
@@ -34,7 +37,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
 
-    from fieldmon.monitoring.scouts import Scout
+    from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring.season_file import Season, SeasonChange
     from fieldmon.plot.local_clock import LocalClock
 
@@ -145,25 +148,89 @@ def take(
     shift = fast if abs(fast) > _WRONG else timedelta()
     with season.changing() as change:
         scout = scouts.who_in(change.db, season, key)
-        known = _known(change.db, [one.id for one in findings])
-        news = {one.id: one for one in findings if one.id not in known}
-        _limit(change.db, scout, received, len(news))
-        clocks = received, sent
-        for one in news.values():
-            known[one.id] = one.content(), ""
-        letter = _SentFindings(list(news.values()), clocks, shift)
-        problems, batch, made = _write(season, change, scout, letter)
-        taken_back = _take_back(change) if news else set()
-        if made:
-            states = season_log.states(change.db, {batch, *taken_back})
-            columns = (np.concatenate([getattr(one, name) for one in made])
-                       for name in ("result", "date"))  # fmt: skip
-            said = {"batch": batch, "source": SOURCE, **inspection_table.in_words(*columns)}
-            season_log.append(change.db, "seen", scout.name, states=states, **said)
-        elif taken_back:
-            states = season_log.states(change.db, taken_back)
-            said = {"said": "What a phone told was taken back by it."}
-            season_log.append(change.db, "undone", scout.name, states=states, **said)
+        return _take(season, change, scout, _SentFindings([*findings], (received, sent), shift))
+
+
+def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, ...]:
+    """Keep what phones saved to a file, as what they send; it may be in the season already.
+
+    Nobody needs a key who has the season's file. What is of another season is left out.
+
+    Parameters
+    ----------
+    season
+        The season.
+    saved
+        See `fieldmon.io.readers.phone_file`.
+    who
+        Whose it is, where the file does not say.
+
+    Raises
+    ------
+    SettingError
+        If nobody says whose it is.
+    LimitError
+        If somebody tells more than `MOST_A_DAY`.
+    """
+    received = utc_now()
+    taken: list[Taken] = []
+    findings, kept = ([one for one in some if one.season in {"", season.path.stem}]
+                      for some in (saved.findings, saved.photos))  # fmt: skip
+    names = {one.who or who for one in (*findings, *kept)}
+    if "" in names:
+        raise SettingError(
+            worded("Records must have an author, but the file names none. Say who (--who NAME).")
+        )
+    with season.changing() as change:
+        for name in sorted(names):
+            told = [Finding(**one.fields) for one in findings if (one.who or who) == name]
+            letter = _SentFindings(told, (received, received), timedelta())
+            taken += _take(season, change, Scout(name, None, ""), letter)
+        for one in kept:
+            new, problem = False, ""
+            try:
+                new = photos.keep_of(change.db, one.who or who, photos.Photo(**one.fields))
+            except (ObservationError, LimitError) as error:  # it may be why it is in the file
+                problem = str(error)
+            taken.append(Taken(one.fields["id"], new, problem))
+    return tuple(taken)
+
+
+def of_others(season: Season, saved: PhoneFile) -> tuple[str, ...]:
+    """Return a sentence for each other season of which a phone saved something."""
+    of = Counter(one.season for one in (*saved.findings, *saved.photos))
+    return tuple(
+        worded(
+            "{n} of season {name} {n:was|were} left out: record {n:it|them} there.", n=n, name=name
+        )
+        for name, n in sorted(of.items())
+        if name not in {"", season.path.stem}
+    )
+
+
+def _take(
+    season: Season, change: SeasonChange, scout: Scout, letter: _SentFindings
+) -> tuple[Taken, ...]:
+    """Keep what somebody tells, each finding once."""
+    findings = letter.findings
+    known = _known(change.db, [one.id for one in findings])
+    news = {one.id: one for one in findings if one.id not in known}
+    _limit(change.db, scout, letter.clocks[0], len(news))
+    for one in news.values():
+        known[one.id] = one.content(), ""
+    letter = replace(letter, findings=list(news.values()))
+    problems, batch, made = _write(season, change, scout, letter)
+    taken_back = _take_back(change) if news else set()
+    if made:
+        states = season_log.states(change.db, {batch, *taken_back})
+        columns = (np.concatenate([getattr(one, name) for one in made])
+                   for name in ("result", "date"))  # fmt: skip
+        said = {"batch": batch, "source": SOURCE, **inspection_table.in_words(*columns)}
+        season_log.append(change.db, "seen", scout.name, states=states, **said)
+    elif taken_back:
+        states = season_log.states(change.db, taken_back)
+        said = {"said": "What a phone told was taken back by it."}
+        season_log.append(change.db, "undone", scout.name, states=states, **said)
     return tuple(
         Taken(
             one.id, one.id in news, problems.get(one.id, known[one.id][1]) or _differs(one, known)

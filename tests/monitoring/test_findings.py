@@ -1,17 +1,20 @@
 """What phones tell is taken once each, in any order, however often it comes."""
 
 import random
+import uuid
 from datetime import date, timedelta
 
 import numpy as np
 import pyogrio
 import pytest
 
-from fieldmon.errors import AccessError, LimitError
+from fieldmon.errors import AccessError, LimitError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
-from fieldmon.monitoring import Season, findings, scouts
-from fieldmon.monitoring.findings import take
-from tests.monitoring.phone import NOW, a_days_findings, a_finding, told
+from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord
+from fieldmon.monitoring import Season, findings, photos, scouts
+from fieldmon.monitoring.findings import of_others, take, take_saved
+from fieldmon.monitoring.photos import Photo
+from tests.monitoring.phone import JPEG, NOW, a_days_findings, a_finding, told
 from tests.monitoring.seasons import BEGINS, state
 
 
@@ -279,3 +282,42 @@ def test_nobody_takes_back_what_another_told_and_that_is_said(season, key):
     assert "recorded by Ben" in take(season, key, [back], NOW)[0].problem
     assert "recorded by Ben" in take(season, key, [back], NOW)[0].problem, "as often as it comes"
     assert 37 in season.history.inspections.plant
+
+
+def _saved(findings, season="season", who="Ann", photos=()):
+    def each(some):
+        return tuple(SavedRecord(season, who, vars(one)) for one in some)
+
+    return PhoneFile(each(findings), each(photos))
+
+
+def test_what_a_phone_saved_is_recorded_once_whether_it_is_sent_or_not(season, key):
+    sent, unsent = a_finding(37), a_finding(38, FOUND, count=2.0)
+    photo = Photo(str(uuid.UUID(int=7)), unsent.id, JPEG, NOW)
+    take(season, key, [sent], NOW)
+    file = _saved([sent, unsent], photos=[photo])
+    assert [one.new for one in take_saved(season, file)] == [False, True, True]
+    before = state(season.path)
+    assert not any(one.new for one in take_saved(season, file))
+    assert not take(season, key, [unsent], NOW)[0].new, "the phone sees a network after all"
+    assert state(season.path) == before
+    assert [one.id for one in photos.photos_of(season)] == [photo.id]
+    (who,) = {
+        str(one) for one in season.history.inspections.who[season.history.inspections.plant == 38]
+    }
+    assert who == "Ann"
+
+
+def test_what_a_phone_saved_of_another_season_or_of_nobody_is_not_recorded(season):
+    before = state(season.path)
+    other = _saved([a_finding(37)], season="Other")
+    assert take_saved(season, other) == ()
+    assert of_others(season, other) == ("1 of season Other was left out: record it there.",)
+    with pytest.raises(SettingError, match="--who"):
+        take_saved(season, _saved([a_finding(37)], season="", who=""))
+    assert state(season.path) == before
+    broken = Photo(str(uuid.UUID(int=7)), str(uuid.UUID(int=8)), b"no picture", NOW)
+    told = _saved([a_finding(37)], season="", who="", photos=[broken])
+    one, photo = take_saved(season, told, "Dan")
+    assert (one.new, photo.new) == (True, False)
+    assert "JPEG" in photo.problem

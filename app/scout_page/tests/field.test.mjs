@@ -149,6 +149,16 @@ test("the same code again, as an iPhone's home screen says it, changes nothing",
   assert.deepEqual([field.day.day, field.access.on], ["2026-11-24", null]);
 });
 
+test("a file of what is not sent says whose it is and of which season, and holds no key", async () => {
+  const { store, field } = await aField();
+  await field.addPhoto(field.photoOf(), PICTURE());
+  await field.tell("found");
+  const file = await store.unsent(), [one] = file.findings, [photo] = file.photos;
+  assert.deepEqual([file.kind, one.season, one.who, one.id], ["fieldmon findings", "Gate", "Ann", photo.finding]);
+  assert.deepEqual([photo.season, photo.who, Buffer.from(photo.base64, "base64").length], ["Gate", "Ann", 5000]);
+  assert.ok(!("key" in one) && !("key" in photo));
+});
+
 test("two seasons on one phone: each goes on where it was left", async () => {
   const { season, field, again } = await aField();
   await field.tell("clean");

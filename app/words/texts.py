@@ -682,7 +682,8 @@ CORRECTED_UNSAID = (
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
     "The route file with its found column filled in, any table or GPS file with plants, rows "
-    "or positions, or a copy of this season that QGIS or QField changed"
+    "or positions, a copy of this season that QGIS or QField changed, or what a phone saved as not "
+    "sent"
 )
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
@@ -948,6 +949,8 @@ SCOUT_PAGE = {
     "scan": "Scan the code that the app shows: Today, Send to phone.",
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
+    "clock_wrong": "The clock of this phone is wrong: set it right.",
+    "other_day": "What is recorded now counts for {day}.",
     "loading": "Loading ...", "route_done": "The route is done.",
     "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
     "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
@@ -976,6 +979,9 @@ SCOUT_PAGE = {
     "state_offline": "No network: all is kept on this phone and goes in by itself later.",
     "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
     "scan it.",
+    "count_whole": "Pests of a find are a whole number from 1. Leave it empty if nobody counted.",
+    "stranded": "{n} of {who} wait here, whose key no longer holds. Save them to a file.",
+    "plots": "Seasons on this phone",
     "refused": "Not taken", "send_again": "Send again what was not taken",
     "save_file": "Save what is not sent to a file",
     "hand": "Hand", "left": "Left", "right": "Right", "theme": "Light", "auto": "As the phone",

@@ -67,7 +67,7 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
     route, n = plan.route, len(choices.plot.grid)
     taken = assumptions.of(choices)
     rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
-    for_finds = (*rows, "background_chance", "rate_per_day", "detects")
+    for_finds = (*rows, "background_chance", "rate_per_day", "detects", "treated")
     with st.container(horizontal=True):
         st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows),
                   f"{number(len(route), ',')} / {number(n, ',')}", width="content")  # fmt: skip

@@ -115,6 +115,7 @@ ASSUMED_WHAT = {
     "stop_s": "a stop takes {value} s more, as in simulated drives",
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
+    "treated": "plants found infested are treated at once",
 }
 ASSUMED_ROBOT_TOO = "how fast and how thoroughly plants are inspected"
 ASSUMED_OF_ROBOT = "Of who inspects: {what}."
@@ -123,6 +124,12 @@ ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your fil
 ASSUMED_ROBOT = "Who inspects, and how thoroughly, is chosen further down, under Who inspects."
 ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
 ASSUMED_CHANGED = "The season reckons with these from its first morning on."
+FINDS_ARE = "Plants found infested are"
+FINDS_TREATED = {True: "treated at once", False: "only flagged"}
+FINDS_ARE_HELP = (
+    "Plants that are only flagged stay infested: they infest others, and count when it is decided "
+    "whether to treat."
+)
 BACKGROUND = "Plants infested where nothing is known (%)"
 BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
 BOUND = "Another route of these hours could expect {share} % more finds at most."

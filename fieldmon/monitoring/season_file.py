@@ -187,10 +187,12 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         """
         settings = settings or self.settings
         made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
-        rate = settings.belief.spread.rate_per_day
-        if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
-            return made
-        return (*made, Assumed("rate_per_day", rate))
+        rate, usual = settings.belief.spread.rate_per_day, BeliefSettings()
+        if settings.pest is None and rate == usual.spread.rate_per_day:
+            made = (*made, Assumed("rate_per_day", rate))
+        if settings.belief.treated == usual.treated:
+            made = (*made, Assumed("treated", 1.0))
+        return made
 
     def change(self, settings: MonitoringSettings, seen: MonitoringSettings, who: str = "") -> None:
         """Choose otherwise.

@@ -162,8 +162,7 @@ def _of_belief(settings: WorkSettings, units: Units) -> Iterator[Row]:
     if (earlier := settings.belief.earlier) is not None:
         said = {"plot": words.isolated(earlier.plot), "until": earlier.until}
         yield words.EARLIER, worded(words.EARLIER_VALUE, **said), words.FROM_CHOSEN
-    treated, usual = settings.belief.treated, BeliefSettings()
-    yield words.TREATED, words.TREATED_VALUES[treated], _from(treated == usual.treated)
+    yield words.TREATED, words.TREATED_VALUES[settings.belief.treated], settings.origin("treated")
 
 
 def _of_nights(settings: WorkSettings, spread: Spread) -> Iterator[Row]:

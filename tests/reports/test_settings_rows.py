@@ -21,7 +21,7 @@ TOLD = WorkSettings(Robot(), "adaptive", PriorSettings(), (4.0, 2.5), (), Belief
 ALL = tuple(
     Assumed(name, 0.5)
     for name in ("row_spacing_m", "plant_spacing_m", "speed_m_s", "detects", "background_chance",
-                 "rate_per_day")
+                 "rate_per_day", "treated")
 )  # fmt: skip
 
 
@@ -36,6 +36,7 @@ def test_what_is_assumed_is_marked_and_nothing_else():
     marked = {
         "From row to row", "From plant to plant", "Speed", "Finds what is there",
         "Chance where nothing is known", "Spread to a neighbour, a night",
+        "Plants found are",
     }  # fmt: skip
     made = rows(replace(TOLD, assumed=ALL))
     assert {name for name, (_, origin) in made.items() if origin == "assumed"} == marked
@@ -64,7 +65,7 @@ def test_the_sentence_names_what_is_assumed_with_its_value():
             "Plants new from outside, a night",
             ("none", "chosen"),
         ),
-        ({"belief": BeliefSettings(treated=False)}, "Plants found are", ("flagged", "chosen")),
+        ({"belief": BeliefSettings(treated=False)}, "Plants found are", ("only flagged", "chosen")),
         ({}, "From row to row", ("4.0 m", "of the plot's file")),
     ],
 )

@@ -56,7 +56,7 @@ def _work_begins(choices: Choices, *, worked: bool = False) -> datetime:
     """Return the local time at which the day's work starts for the one whose day is shown."""
     if (season := choices.season) is None:
         return datetime.combine(choices.on, STARTS)
-    settings = season.settings_on(choices.on) if worked else season.settings
+    settings = (season.settings_on if worked else season.planned_by)(choices.on)
     late_s = settings.member(choices.who).starts_s if choices.who else 0.0
     return datetime.combine(choices.on, settings.starts) + timedelta(seconds=late_s)
 

@@ -316,6 +316,10 @@ STUDY_STOPPED = "Stopped. Nothing of it is kept; press Run to begin again."
 STUDY_ALT = "Found so far by day, a line a configuration: {title}."
 
 # -- who works, and how numbers are written
+EARLIER_SETTINGS = (
+    "This day goes by what counted then: {strategy}, from {starts}. Who works, and how long, is "
+    "changed on a later day."
+)
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
 UNDO_CHANGE = "Back to {strategy}, from {starts}"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"

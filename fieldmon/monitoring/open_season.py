@@ -23,6 +23,7 @@ from fieldmon.monitoring import (
     outside_changes,
     qgis_project,
     schema,
+    season_log,
     settings_log,
     tables,
     treatments,
@@ -148,6 +149,37 @@ class OpenSeason:
             outside_changes.refuse(db)
             return settings_of(db) if (known := self._known(db)) is None else known.settings
 
+    def settings_on(self, on: date) -> MonitoringSettings:
+        """Return what counts, with who worked on a day, from when, and who chose, as it was then.
+
+        As when the day was planned last or, if it never was, first recorded. What is believed is
+        of now, for all days; so is a team.
+        """
+        with self.store.reading() as db:
+            now, moment = settings_of(db), season_log.planned_last(db, str(on))
+            parts = {} if moment is None else settings_log.at(db, moment)
+        if not parts:
+            return now
+        then = from_json(parts)
+        if now.team or then.team:
+            return now
+        return replace(
+            now, robot=then.robot, starts=then.starts, sampler=then.sampler,
+            sampler_settings=then.sampler_settings,
+        )  # fmt: skip
+
+    def planned_by(self, on: date) -> MonitoringSettings:
+        """Return what a day is planned by: an earlier one by what counted then, see `settings_on`.
+
+        A day is an earlier one once something was recorded of a later one.
+        """
+        return self._planned_by(self._now(), on)
+
+    def _planned_by(self, contents: SeasonContents, on: date) -> MonitoringSettings:
+        recorded = contents.history.inspections.date
+        is_earlier = len(recorded) > 0 and np.datetime64(on, "D") < recorded[-1]
+        return self.settings_on(on) if is_earlier else contents.settings
+
     @property
     def history(self) -> History:
         """Return all that happened so far."""
@@ -191,7 +223,7 @@ class OpenSeason:
     def _scene(
         self, contents: SeasonContents, on: date, now: time | None = None, who: str = ""
     ) -> Scene:
-        settings, day = contents.settings, contents.settings.day(on)
+        settings, day = self._planned_by(contents, on), contents.settings.day(on)
         now_s = None if now is None else seconds(now)
         morning = contents.morning(day)
         if not settings.team:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -221,25 +220,6 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                 )
             self._log_change(db, settings_log.write(db, as_json(settings)), who)
             self._refresh(db)
-
-    def settings_on(self, on: date) -> MonitoringSettings:
-        """Return what counts, with who worked on a day, from when, and who chose, as it was then.
-
-        As when the day was planned last or, if it never was, first recorded. What is believed is
-        of now, for all days; so is a team.
-        """
-        with self.store.reading() as db:
-            now, moment = settings_of(db), season_log.planned_last(db, str(on))
-            parts = {} if moment is None else settings_log.at(db, moment)
-        if not parts:
-            return now
-        then = from_json(parts)
-        if now.team or then.team:
-            return now
-        return replace(
-            now, robot=then.robot, starts=then.starts, sampler=then.sampler,
-            sampler_settings=then.sampler_settings,
-        )  # fmt: skip
 
     def before_change(self) -> MonitoringSettings | None:
         """Return what counted before the last change of settings; None: nothing was changed."""

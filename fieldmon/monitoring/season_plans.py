@@ -37,7 +37,7 @@ class SeasonPlans(OpenSeason):
         self, on: date, now: time | None = None, *, keep: bool = True,
         wishes: Wishes | None = None, who: str | None = None,
     ) -> DayPlan:  # fmt: skip
-        """Plan what is left of a day from all that is known.
+        """Plan what is left of a day from all that is known; see `planned_by`.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class SeasonPlans(OpenSeason):
         """
         with self._lock:
             contents = self._now()
-            settings, day = contents.settings, contents.settings.day(on)
+            settings, day = self._planned_by(contents, on), contents.settings.day(on)
             scenes = [self._scene(contents, on, now, who) for who in _names(settings)]
             if settings.team:
                 days = self._team_days(settings, day, scenes, wishes)

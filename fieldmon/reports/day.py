@@ -94,7 +94,7 @@ class DayFacts:
             plan = season.plan(on, keep=False)
             route = plan.route
             worked = day_was_worked(season, on, route)
-            settings = season.settings_on(on) if worked else season.settings
+            settings = season.settings_on(on) if worked else season.planned_by(on)
             day = settings.day(on)
             gone = timedelta(seconds=settings.robot.day_s - plan.scene.seconds_left)
             begins = datetime.combine(on, settings.starts)

@@ -79,7 +79,7 @@ class WorkSettings:
         Of a day that was `worked` it is what counted then. `learnt` is what is known already of
         what the season learnt until then; None: nothing.
         """
-        settings, grid = season.settings_on(on) if worked else season.settings, season.plot.grid
+        settings, grid = (season.settings_on if worked else season.planned_by)(on), season.plot.grid
         if learnt is None:
             learnt = season.learnt(on)
         guessed = (one for one in season.messages() if one.severity == Severity.GUESSED)

@@ -1,5 +1,6 @@
 """A season's days are planned from all that is known, and their routes are kept."""
 
+from dataclasses import replace
 from datetime import date, time
 
 import numpy as np
@@ -10,6 +11,7 @@ from fieldmon.infestation.inspections import SKIPPED, Inspections
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
+    on,
     some_results,
 )
 
@@ -70,3 +72,22 @@ def test_a_date_of_no_season_is_a_sentence(season):
 def test_the_time_now_is_a_time_or_a_sentence(season):
     with pytest.raises(SettingError, match="must be a time, but it is '11:00'"):
         season.plan(BEGINS, "11:00")
+
+
+def test_an_earlier_day_is_planned_by_what_counted_then(season):
+    first = season.settings
+    season.plan(on(0))
+    season.record(some_results(season, n=3))
+    before = season.plan(on(0), keep=False)
+    longer = replace(first, robot=first.robot.with_hours(3.0), sampler="naive")
+    season.change(longer, first)
+    assert season.planned_by(on(0)) == longer  # the last day goes on by what counts now
+    later = some_results(season, day=1, n=3)
+    season.record(later)
+    assert season.planned_by(on(0)) == first
+    assert season.planned_by(on(1)) == longer
+    again = season.plan(on(0), keep=False)
+    assert again.scene.robot == first.robot
+    assert np.array_equal(again.route.plant, before.route.plant)
+    assert again.route.notes.sampler == first.sampler
+    assert season.plan(on(1), keep=False).scene.robot.hours == 3.0

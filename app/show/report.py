@@ -49,6 +49,7 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         0 if season is None else chosen_day.progress(choices).inspected_today,
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
+        None if season is None else season.planned_and_done(choices.on),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     return lambda: day_report(facts, units).said_in(of_paper)

@@ -417,6 +417,7 @@ STEP_FOUND = Plural(
     "{found:,} found on {inspected:,} plants",
     by="inspected",
 )
+STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"
 SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."

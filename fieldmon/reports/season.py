@@ -30,7 +30,7 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import NO_ROW, legend_block, map_alt, which
+from fieldmon.reports.day import NO_ROW, held_in_words, legend_block, map_alt, which
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
 from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
@@ -214,6 +214,11 @@ def _went(facts: _Facts) -> Iterator[Block]:
     }
     for title, chart in charts.items():
         yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
+    plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected]
+    if held := [one for one in plans if one is not None]:
+        days = counted(len(held), "day")
+        said = worded(words.PLANNED_DONE, **held_in_words(held))
+        yield Paragraph(joined(" ", (worded(words.PLANNED_DAYS, days=days), said)))
     yield _days(facts)
 
 

@@ -151,3 +151,12 @@ def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
     season.record(looked, "finds")
     lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
     assert "About 20 more plants, which were found and only flagged, are still infested." in lead
+
+
+def test_all_days_are_held_to_their_plans(of_season, worked):
+    planned = sum(len(worked.kept_route(one.on)) for one in worked.days() if one.inspected)
+    (said,) = on_sheet(of_season, 1, Paragraph)
+    assert said.text == (
+        f"On 5 days planned and worked: Stops planned: {planned:,}; inspected: {planned:,}; "
+        "left out: 0; added: 0."
+    )

@@ -675,7 +675,11 @@ NEEDS_SEASON = (
 )
 LEAST, MOST = "at least (90 %)", "at most (90 %)"
 EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
-CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
+CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Share found"
+DETECTED_HELP = (
+    "Plants found so far, in percent of these and of those still infested. Plants that a treatment "
+    "cleaned before anybody found them are in neither: the share rises with it."
+)
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
 FOUND_AGAIN = (

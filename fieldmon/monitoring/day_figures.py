@@ -88,7 +88,7 @@ class DayFigures:
         done = progress.inspected_today, progress.found_today
         return cls(on, *done, estimate.expected, estimate.low, estimate.high, estimate.chance_clean)
 
-    def found_of_all_pct(self, found: int) -> tuple[float, float, float]:
+    def share_found_pct(self, found: int) -> tuple[float, float, float]:
         """Return `found` plants in percent of those and of what is left: guess, low and high."""
         value, low, high = (found_pct(found, n) for n in (self.expected, self.high, self.low))
         return value, low, high

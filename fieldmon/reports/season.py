@@ -159,7 +159,7 @@ def _figures(facts: _Facts) -> KeyFigures:
             KeyFigure(words.STILL, estimate(ahead.expected),
                       worded(words.INTERVAL, low=figure(ahead.low), high=figure(ahead.high))),
             KeyFigure(words.FOUND_SO_FAR, figure(status.found), twice),
-            KeyFigure(words.FOUND_OF_ALL, figure(status.detection_pct, ".0f", " %"),
+            KeyFigure(words.SHARE_FOUND, figure(status.detection_pct, ".0f", " %"),
                       worded(words.INTERVAL, low=figure(low, ".0f"),
                              high=figure(high, ".0f", " %"))),
             KeyFigure(words.INSPECTED, figure(status.inspected),
@@ -208,7 +208,9 @@ def _went(facts: _Facts) -> Iterator[Block]:
     inspected = np.array([one.inspected for one in facts.days], np.float64)
     charts = {
         words.CHART_FOUND: DayChart(on, found, facts.units),
-        words.CHART_OF_ALL: DayChart(on, share, facts.units, least, most, top=100.0),
+        words.CHART_SHARE: DayChart(
+            on, share, facts.units, least, most, top=100.0, marks=_treated(facts)
+        ),
         words.CHART_STILL: DayChart(on, still, facts.units, low, high, marks=_treated(facts)),
         words.CHART_INSPECTED: DayChart(on, inspected, facts.units),
     }

@@ -69,19 +69,19 @@ STANDS_CLEAN = "The plot is clean with a chance of {chance:.0%}."
 STANDS_HOT = "Finds cluster in {n}."
 STILL, INTERVAL = "Still infested", "{low} to {high} (90 %)"
 FOUND_SO_FAR, FOUND_TWICE = "Plants found", "in {n:,} finds"
-FOUND_OF_ALL, INSPECTED = "Found of all expected", "Plants inspected"
+SHARE_FOUND, INSPECTED = "Share found", "Plants inspected"
 CLEAN, CLEAN_NOTE = "Chance it is clean", "as believed"
 HOT_SPOTS, HOT_NOTE = "Hot spots", "see page 3"
 ROWS_UNSEEN = "Never inspected: {rows}."
 ROWS_LATE = "Not inspected for a week or more: {rows}."
 ROWS_ALL = "Every row was inspected within the last week."
 CHART_INSPECTED, CHART_FOUND = "Plants inspected a day", "Plants found a day"
-CHART_OF_ALL = "Found of all infestations so far, % (line), and its 90 % interval"
+CHART_SHARE = "Share found, of found and still infested, % (line), and its 90 % interval"
 CHART_STILL = "Still infested and not found, as expected (line), and its 90 % interval"
 CHART_TREATED = "treated"
 CHART_ALT = "Chart by day: {title}."
 DAYS = "Day by day"
-DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "found of all")
+DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "share found")
 DAYS_REST = "... and {n} earlier days; the season's file holds all of them."
 HOT_LIST = "Hot spots"
 HOT_MEANS = (
@@ -145,6 +145,10 @@ MEANINGS = (
     (
         "An interval of 90 % is to hold the true number nine times in ten; in simulated seasons of "
         "some kinds it holds less often."
+    ),
+    (
+        "The share found is of plants found and those still infested: it rises, too, when a "
+        "treatment cleans plants that nobody found."
     ),
     "A hot spot is where finds cluster more than chance allows, three or more; false ones: 5 %.",
     "What is marked as assumed was neither measured nor chosen. Other values give other chances.",

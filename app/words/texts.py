@@ -563,7 +563,8 @@ MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop n
 DECIDE_NEEDS_SEASON = (
     "**To treat or not** is answered from what was inspected. Begin a season and record a day."
 )
-DECIDE_AREA, DECIDE_LIQUID, DECIDE_LITRES = "To be sprayed", "Liquid", "{value} l"
+DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
+DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
 DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."

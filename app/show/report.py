@@ -65,4 +65,5 @@ def _settings(choices: Choices, *, worked: bool) -> WorkSettings:
         choices.robot, choices.sampler, choices.prior, (grid.row_spacing_m, grid.plant_spacing_m),
         assumptions.of(choices),
         guessed=tuple(one.sentence for one in said if one.severity is Severity.GUESSED),
+        chosen=choices.plot.chosen,
     )  # fmt: skip

@@ -53,6 +53,8 @@ class WorkSettings:
         The pest in its weather, by which nights go; None: as `belief` has them.
     learnt_detection
         What inspections detect, as the season learnt; None: it learnt nothing.
+    chosen
+        Which spacings somebody said by hand, by name (`Plot.chosen`).
     """
 
     robot: Robot
@@ -64,6 +66,7 @@ class WorkSettings:
     guessed: tuple[str, ...] = ()
     pest_in_weather: PestInWeather | None = None
     learnt_detection: float | None = None
+    chosen: tuple[str, ...] = ()
 
     @classmethod
     def of_season(
@@ -88,6 +91,7 @@ class WorkSettings:
             (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(settings),
             settings.belief, tuple(one.sentence for one in guessed), settings.pest_in_weather(),
             next((one.value for one in learnt if one.name == "detection"), None),
+            season.plot.chosen,
         )  # fmt: skip
 
     def origin(self, setting: str) -> str:
@@ -133,7 +137,9 @@ def _of_plot(settings: WorkSettings, units: Units) -> Iterator[Row]:
 
 
 def _told(settings: WorkSettings, setting: str) -> str:
-    """Return where a spacing comes from: nobody chose it who did not have to."""
+    """Return where a spacing comes from."""
+    if setting in settings.chosen:
+        return words.FROM_CHOSEN
     return words.FROM_NOBODY if setting in settings.names else words.FROM_FILE
 
 

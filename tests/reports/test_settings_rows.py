@@ -67,6 +67,8 @@ def test_the_sentence_names_what_is_assumed_with_its_value():
         ),
         ({"belief": BeliefSettings(treated=False)}, "Plants found are", ("only flagged", "chosen")),
         ({}, "From row to row", ("4.0 m", "of the plot's file")),
+        ({"chosen": ("row_spacing_m",)}, "From row to row", ("4.0 m", "chosen")),
+        ({"assumed": ALL[:1]}, "From row to row", ("4.0 m", "assumed")),
     ],
 )
 def test_each_value_is_said_with_where_it_comes_from(changed, name, shown):
@@ -86,6 +88,7 @@ def test_without_a_season_nothing_is_said_of_nights():
 def test_a_season_s_own_are_taken(worked):
     made = WorkSettings.of_season(worked, worked.last_date())
     assert made.assumed == worked.assumed()
+    assert made.chosen == worked.plot.chosen
     assert made.robot == worked.settings.robot
     assert made.spacing_m == (worked.plot.grid.row_spacing_m, worked.plot.grid.plant_spacing_m)
 

@@ -168,6 +168,12 @@ class OpenSeason:
             sampler_settings=then.sampler_settings,
         )  # fmt: skip
 
+    @property
+    def was_changed(self) -> bool:
+        """Return whether anything else was ever chosen than what the season began with."""
+        with self.store.reading() as db:
+            return len(settings_log.all_moments(db)) > 1
+
     def planned_by(self, on: date) -> MonitoringSettings:
         """Return what a day is planned by: an earlier one by what counted then, see `settings_on`.
 

@@ -218,7 +218,9 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                         "window changed them. Look again and repeat your change."
                     )
                 )
-            self._log_change(db, settings_log.write(db, as_json(settings)), who)
+            before = settings_log.now(db)
+            settings_log.write(db, as_json(settings))
+            self._log_change(db, before, who)
             self._refresh(db)
 
     def before_change(self) -> MonitoringSettings | None:
@@ -235,17 +237,18 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with self._lock, self.store.writing() as db:
             before = settings_log.now(db)
             settings = settings_log.undo(db)
-            now = settings_log.now(db)
-            self._log_change(db, [name for name in now if now[name] != before.get(name)], who)
+            self._log_change(db, before, who)
             self._refresh(db)
         return settings
 
-    def _log_change(self, db: sqlite3.Connection, names: list[str], who: str) -> None:
+    def _log_change(self, db: sqlite3.Connection, before: settings_log.Parts, who: str) -> None:
         now = settings_log.now(db)
+        names = [name for name in now if now[name] != before.get(name)]
         season_log.append(
             db, "changed", who,
             states={"settings": season_log.settings_state(db)},
             names=", ".join(names), now={name: now[name] for name in names},
+            said="; ".join(settings_log.differences(before, now)),
         )  # fmt: skip
 
     @contextmanager

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,7 +35,12 @@ from fieldmon.reports.content import (
 from fieldmon.reports.day import NO_ROW, held_in_words, legend_block, map_alt, which
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
-from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
+from fieldmon.reports.settings_rows import (
+    WorkSettings,
+    assumed_sentence,
+    changed_rows,
+    settings_blocks,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,7 +53,7 @@ if TYPE_CHECKING:
 
 _LATE_DAYS = 7
 # as many as a page has room for beside its map
-_MOST_CAUTIONS, _MOST_EFFECTS = 6, 3
+_MOST_CAUTIONS, _MOST_EFFECTS, _MOST_CHANGES = 6, 3, 6
 # as many letters as a line of rows, and a column of plants, may have
 _ROWS_LONG, _FINDS_LONG = 70, 46
 
@@ -78,7 +85,23 @@ class _Facts:
 
     @property
     def goes_by(self) -> WorkSettings:
-        return WorkSettings.of_season(self.season, self.on, learnt=self.status.learnt)
+        return self.in_force[-1][1]
+
+    @cached_property
+    def in_force(self) -> list[tuple[date, WorkSettings]]:
+        """What counted on each day that was worked and, if it lies ahead, on the last one."""
+        season, learnt = self.season, self.status.learnt
+        worked = [one.on for one in self.days if one.inspected]
+        recorded = season.inspections.date
+        is_ahead = not len(recorded) or np.datetime64(self.on, "D") > recorded[-1]
+        if not season.was_changed:
+            worked = []  # the same on all of them
+        by = [
+            (day, WorkSettings.of_season(season, day, worked=True, learnt=learnt)) for day in worked
+        ]
+        if is_ahead or not by:
+            by.append((self.on, WorkSettings.of_season(season, self.on, learnt=learnt)))
+        return by
 
     @property
     def state(self) -> NDArray[np.int8]:
@@ -280,8 +303,17 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
     if told:
         yield Listing("", tuple(one.sentence() for one in told[-_MOST_EFFECTS:]))
     yield from settings_blocks(facts.goes_by, facts.units)
+    if changes := tuple(_changes(facts)):
+        yield Listing(words.CHANGES, changes[-_MOST_CHANGES:])
     yield Listing(words.MEANING, words.MEANINGS)
     yield NoteLines(words.NOTES)
+
+
+def _changes(facts: _Facts) -> Iterator[str]:
+    """Yield on which days who worked, or how, was another than before."""
+    for (_, before), (day, now) in pairwise(facts.in_force):
+        if rows := changed_rows(before, now):
+            yield worded(words.CHANGED_ON, day=facts.units.day(day), what=joined("; ", rows))
 
 
 def _batches(facts: _Facts) -> Block:

@@ -104,6 +104,16 @@ class WorkSettings:
         return {one.setting for one in self.assumed}
 
 
+def changed_rows(before: WorkSettings, now: WorkSettings) -> list[str]:
+    """Return who worked and how otherwise than before, each with both values."""
+    then = {name: value for name, value, _ in _of_work(before)}
+    return [
+        worded(words.CHANGED, name=name, before=then[name], now=value)
+        for name, value, _ in _of_work(now)
+        if then.get(name, value) != value
+    ]
+
+
 def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
     """Yield the settings with where each comes from, and what was guessed."""
     rows = (

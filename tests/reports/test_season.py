@@ -1,5 +1,6 @@
 """A season on four pages: its figures are the season's."""
 
+from dataclasses import replace
 from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
 
@@ -16,7 +17,7 @@ from fieldmon.plot.grid import row_label
 from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
 from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import hot_spot_meanings
-from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.seasons import BEGINS, a_season, some_results
 from tests.reports.reading import one, table
 
 
@@ -162,3 +163,32 @@ def test_all_days_are_held_to_their_plans(of_season, worked):
         f"On 5 days planned and worked: Stops planned: {planned:,}; inspected: {planned:,}; "
         "left out: 0; added: 0."
     )
+
+
+def test_a_period_goes_by_what_was_in_force_in_it_and_tells_of_a_change(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    first = season.settings
+    season.record(some_results(season, 3))
+    longer = replace(first, robot=first.robot.with_hours(3.0), sampler="naive")
+    season.change(longer, first)
+    season.record(some_results(season, 3, day=1))
+
+    def told(day):
+        report = season_report(season, BEGINS + timedelta(days=day), Units())
+        hours = {row[0]: row[1] for row in table(report, "Settings").rows}["Working hours"]
+        said = [one for one in on_sheet(report, 3, Listing) if one.title == "Changed meanwhile"]
+        return hours, [sentence for one in said for sentence in one.sentences]
+
+    assert told(0) == ("1.5", [])
+    said = "From 2026-04-07 on: Who chooses the plants: Adaptive, then Naive; Working hours: 1.5, "
+    assert told(1) == ("3", [f"{said}then 3."])
+    season.undo_change()
+    assert told(1) == ("3", [f"{said}then 3."])  # what counts now was not worked by yet
+    hours, changes = told(2)
+    assert hours == "1.5"
+    assert changes[1:] == [
+        (
+            "From 2026-04-08 on: Who chooses the plants: Naive, then Adaptive; Working hours: 3, "
+            "then 1.5."
+        )
+    ]

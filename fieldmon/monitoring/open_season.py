@@ -155,8 +155,14 @@ class OpenSeason:
         As when the day was planned last or, if it never was, first recorded. What is believed is
         of now, for all days; so is a team.
         """
+        return self._counted_on(on)
+
+    def _counted_on(self, *days: date) -> MonitoringSettings:
+        """Return what counted on the first of some days that was planned or recorded; else now."""
         with self.store.reading() as db:
-            now, moment = settings_of(db), season_log.planned_last(db, str(on))
+            now = settings_of(db)
+            moments = (season_log.planned_last(db, str(day)) for day in days)
+            moment = next((one for one in moments if one is not None), None)
             parts = {} if moment is None else settings_log.at(db, moment)
         if not parts:
             return now
@@ -177,14 +183,18 @@ class OpenSeason:
     def planned_by(self, on: date) -> MonitoringSettings:
         """Return what a day is planned by: an earlier one by what counted then, see `settings_on`.
 
-        A day is an earlier one once something was recorded of a later one.
+        A day is an earlier one once something was recorded of a later one. If it was neither
+        planned nor recorded itself, it goes by what counted on the day recorded before it.
         """
         return self._planned_by(self._now(), on)
 
     def _planned_by(self, contents: SeasonContents, on: date) -> MonitoringSettings:
         recorded = contents.history.inspections.date
-        is_earlier = len(recorded) > 0 and np.datetime64(on, "D") < recorded[-1]
-        return self.settings_on(on) if is_earlier else contents.settings
+        day = np.datetime64(on, "D")
+        if not len(recorded) or day >= recorded[-1]:
+            return contents.settings
+        before = recorded[recorded <= day][-1:].tolist()
+        return self._counted_on(on, *before)
 
     @property
     def history(self) -> History:

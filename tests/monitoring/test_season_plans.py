@@ -85,15 +85,15 @@ def test_an_earlier_day_is_planned_by_what_counted_then(season):
     longer = replace(first, robot=first.robot.with_hours(3.0), sampler="naive")
     season.change(longer, first)
     assert season.planned_by(on(0)) == longer  # the last day goes on by what counts now
-    later = some_results(season, day=1, n=3)
-    season.record(later)
+    season.record(some_results(season, day=2, n=3))
     assert season.planned_by(on(0)) == first
-    assert season.planned_by(on(1)) == longer
+    assert season.planned_by(on(1)) == first  # nothing was planned or recorded of it
+    assert season.planned_by(on(2)) == longer
     again = season.plan(on(0), keep=False)
     assert again.scene.robot == first.robot
     assert np.array_equal(again.route.plant, before.route.plant)
     assert again.route.notes.sampler == first.sampler
-    assert season.plan(on(1), keep=False).scene.robot.hours == 3.0
+    assert season.plan(on(2), keep=False).scene.robot.hours == 3.0
 
 
 def test_a_kept_plan_is_held_to_what_was_inspected(season):

@@ -97,7 +97,7 @@ class SeasonPlans(OpenSeason):
             return routes.plants(db, settings.day(on), who)
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
-        """Return the plan kept of a day, held to what was inspected; None: none was kept.
+        """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
 
         `who`: of one of a team alone; None: of all who work.
         """

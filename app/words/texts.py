@@ -115,6 +115,7 @@ ASSUMED_WHAT = {
     "stop_s": "a stop takes {value} s more, as in simulated drives",
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
+    "treated": "plants found infested are treated at once",
 }
 ASSUMED_ROBOT_TOO = "how fast and how thoroughly plants are inspected"
 ASSUMED_OF_ROBOT = "Of who inspects: {what}."
@@ -123,6 +124,12 @@ ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your fil
 ASSUMED_ROBOT = "Who inspects, and how thoroughly, is chosen further down, under Who inspects."
 ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
 ASSUMED_CHANGED = "The season reckons with these from its first morning on."
+FINDS_ARE = "Plants found infested are"
+FINDS_TREATED = {True: "treated at once", False: "only flagged"}
+FINDS_ARE_HELP = (
+    "Plants that are only flagged stay infested: they infest others, and count when it is decided "
+    "whether to treat."
+)
 BACKGROUND = "Plants infested where nothing is known (%)"
 BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
 BOUND = "Another route of these hours could expect {share} % more finds at most."
@@ -309,6 +316,10 @@ STUDY_STOPPED = "Stopped. Nothing of it is kept; press Run to begin again."
 STUDY_ALT = "Found so far by day, a line a configuration: {title}."
 
 # -- who works, and how numbers are written
+EARLIER_SETTINGS = (
+    "This day goes by what counted then: {strategy}, from {starts}. Who works, and how long, is "
+    "changed on a later day."
+)
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
 UNDO_CHANGE = "Back to {strategy}, from {starts}"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
@@ -406,6 +417,7 @@ STEP_FOUND = Plural(
     "{found:,} found on {inspected:,} plants",
     by="inspected",
 )
+STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"
 SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."
@@ -551,7 +563,8 @@ MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop n
 DECIDE_NEEDS_SEASON = (
     "**To treat or not** is answered from what was inspected. Begin a season and record a day."
 )
-DECIDE_AREA, DECIDE_LIQUID, DECIDE_LITRES = "To be sprayed", "Liquid", "{value} l"
+DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
+DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
 DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
@@ -663,7 +676,11 @@ NEEDS_SEASON = (
 )
 LEAST, MOST = "at least (90 %)", "at most (90 %)"
 EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
-CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
+CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Share found"
+DETECTED_HELP = (
+    "Plants found so far, in percent of these and of those still infested. Plants that a treatment "
+    "cleaned before anybody found them are in neither: the share rises with it."
+)
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
 FOUND_AGAIN = (

@@ -111,7 +111,8 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             scene = self._scene(contents, on)
             evening = contents.history.in_hindsight(morning, day)
-        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
+        done = tuple(one for one in contents.history.treatments if one.day == day)
+        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene, done)
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

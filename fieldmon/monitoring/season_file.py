@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -191,10 +190,12 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         """
         settings = settings or self.settings
         made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
-        rate = settings.belief.spread.rate_per_day
-        if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
-            return made
-        return (*made, Assumed("rate_per_day", rate))
+        rate, usual = settings.belief.spread.rate_per_day, BeliefSettings()
+        if settings.pest is None and rate == usual.spread.rate_per_day:
+            made = (*made, Assumed("rate_per_day", rate))
+        if settings.belief.treated == usual.treated:
+            made = (*made, Assumed("treated", 1.0))
+        return made
 
     def change(self, settings: MonitoringSettings, seen: MonitoringSettings, who: str = "") -> None:
         """Choose otherwise.
@@ -222,27 +223,10 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                         "window changed them. Look again and repeat your change."
                     )
                 )
-            self._log_change(db, settings_log.write(db, as_json(settings)), who)
+            before = settings_log.now(db)
+            settings_log.write(db, as_json(settings))
+            self._log_change(db, before, who)
             self._refresh(db)
-
-    def settings_on(self, on: date) -> MonitoringSettings:
-        """Return what counts, with who worked on a day, from when, and who chose, as it was then.
-
-        As when the day was planned last or, if it never was, first recorded. What is believed is
-        of now, for all days; so is a team.
-        """
-        with self.store.reading() as db:
-            now, moment = settings_of(db), season_log.planned_last(db, str(on))
-            parts = {} if moment is None else settings_log.at(db, moment)
-        if not parts:
-            return now
-        then = from_json(parts)
-        if now.team or then.team:
-            return now
-        return replace(
-            now, robot=then.robot, starts=then.starts, sampler=then.sampler,
-            sampler_settings=then.sampler_settings,
-        )  # fmt: skip
 
     def before_change(self) -> MonitoringSettings | None:
         """Return what counted before the last change of settings; None: nothing was changed."""
@@ -258,17 +242,18 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with self._lock, self.store.writing() as db:
             before = settings_log.now(db)
             settings = settings_log.undo(db)
-            now = settings_log.now(db)
-            self._log_change(db, [name for name in now if now[name] != before.get(name)], who)
+            self._log_change(db, before, who)
             self._refresh(db)
         return settings
 
-    def _log_change(self, db: sqlite3.Connection, names: list[str], who: str) -> None:
+    def _log_change(self, db: sqlite3.Connection, before: settings_log.Parts, who: str) -> None:
         now = settings_log.now(db)
+        names = [name for name in now if now[name] != before.get(name)]
         season_log.append(
             db, "changed", who,
             states={"settings": season_log.settings_state(db)},
             names=", ".join(names), now={name: now[name] for name in names},
+            said="; ".join(settings_log.differences(before, now)),
         )  # fmt: skip
 
     @contextmanager

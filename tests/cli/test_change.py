@@ -39,3 +39,10 @@ def test_finds_are_traced_or_not_as_is_chosen(run, season):
     said = "\n".join(lines(kept, kept.status(kept.last_date())))
     assert "to neighbours only" in said
     assert "detection" not in said
+
+
+def test_whether_finds_are_treated_or_only_flagged_is_chosen(run, season):
+    for option, treated in (("--flag-only", False), ("--treat-finds", True)):
+        code, _, err, _ = run("change", season, option)
+        assert code == 0, err
+        assert Season(season).settings.belief.treated is treated

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import streamlit as st
 
@@ -15,6 +15,7 @@ from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
 
 from ..state import notices, widget_memory
+from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
 from ..words.language import in_words, listed
 from . import acting
@@ -44,36 +45,41 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     advised
         What was advised, for the season's log; empty: nothing.
     """
+    # what was typed on one page is of its own place
+    boxes = FreshBoxes("treatment" if area is None else "treatment of zones", choices)
     # Enter after one box would record the treatment before the others are said
     with st.form("treatment_form", border=False, enter_to_submit=False):
-        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
-        st.text_input(texts.TREAT_PRODUCT, key="product")
+        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key=boxes.key("efficacy"))
+        st.text_input(texts.TREAT_PRODUCT, key=boxes.key("product"))
         with st.expander(texts.TREAT_RECORD):
-            _boxes(choices.units)
+            _boxes(boxes)
         pressed = st.form_submit_button(texts.TREAT_BUTTON)
-    acting.once(pressed, _treat, choices, area, advised)
+    acting.once(pressed, _treat, choices, boxes, area, advised)
     _harvest(choices)
     with st.expander(texts.LABELS):
         _labels(choices)
 
 
-def _boxes(units: UnitsInLanguage) -> None:
+def _boxes(boxes: FreshBoxes) -> None:
     """Show what a certifier asks of each treatment."""
+    units, key = boxes.choices.units, boxes.key
     area = texts.UNITS[units.area]
     left, right = st.columns(2)
     anew = widget_memory.anew
-    anew(left.number_input, texts.TREAT_DOSE, 0.0, None, None, key="treat dose")
-    right.text_input(texts.TREAT_UNIT, key="treat unit", placeholder="l/ha")
+    anew(left.number_input, texts.TREAT_DOSE, 0.0, None, None, key=key("treat dose"))
+    right.text_input(texts.TREAT_UNIT, key=key("treat unit"), placeholder="l/ha")
     water = texts.TREAT_WATER.format(area=area)
-    anew(left.number_input, water, 0.0, None, None, key=_water(units))
-    right.text_input(texts.TREAT_GROUP, key="treat group", help=texts.TREAT_GROUP_HELP)
-    left.number_input(texts.TREAT_WAIT, 0, None, None, key="treat days", help=texts.TREAT_BY_LABEL)
-    anew(right.number_input, texts.TREAT_ENTRY, 0.0, None, None, key="treat hours",
+    anew(left.number_input, water, 0.0, None, None, key=key(_water(units)))
+    right.text_input(texts.TREAT_GROUP, key=key("treat group"), help=texts.TREAT_GROUP_HELP)
+    left.number_input(
+        texts.TREAT_WAIT, 0, None, None, key=key("treat days"), help=texts.TREAT_BY_LABEL
+    )
+    anew(right.number_input, texts.TREAT_ENTRY, 0.0, None, None, key=key("treat hours"),
          help=texts.TREAT_BY_LABEL)  # fmt: skip
-    left.time_input(texts.TREAT_BEGAN, None, key="treat began")
-    right.time_input(texts.TREAT_ENDED, None, key="treat ended", help=texts.TREAT_ENDED_HELP)
+    left.time_input(texts.TREAT_BEGAN, None, key=key("treat began"))
+    right.time_input(texts.TREAT_ENDED, None, key=key("treat ended"), help=texts.TREAT_ENDED_HELP)
     for name in _TEXTS:
-        st.text_input(texts.TREAT_TEXTS[name], key=f"treat {name}")
+        st.text_input(texts.TREAT_TEXTS[name], key=key(f"treat {name}"))
 
 
 def _water(units: UnitsInLanguage) -> str:
@@ -81,32 +87,32 @@ def _water(units: UnitsInLanguage) -> str:
     return f"treat water {units.area}"
 
 
-def _said(units: UnitsInLanguage) -> Application:
+def _said(boxes: FreshBoxes) -> Application:
     """Return what the boxes say."""
-    state: Any = st.session_state
-    water = state[_water(units)]
-    dose, unit = state["treat dose"], state["treat unit"].strip()
+    units, said = boxes.choices.units, boxes.said
+    water = said(_water(units))
+    dose, unit = said("treat dose"), said("treat unit").strip()
     if bool(dose) != bool(unit):
         raise SettingError(texts.TREAT_DOSE_UNSAID)
-    days = state["treat days"]
+    days = said("treat days")
     return Application(
-        product=state["product"].strip(),
+        product=said("product").strip(),
         dose=Dose(float(dose), unit) if dose else None,
         water_l_ha=units.by_hectare(water) if water else None,
         waiting_days=None if days is None else int(days),
-        reentry_hours=state["treat hours"],
-        irac_groups=irac_groups(state["treat group"]),
-        began=state["treat began"],
-        ended=state["treat ended"],
-        **{name: state[f"treat {name}"].strip() for name in _TEXTS},
+        reentry_hours=said("treat hours"),
+        irac_groups=irac_groups(said("treat group")),
+        began=said("treat began"),
+        ended=said("treat ended"),
+        **{name: said(f"treat {name}").strip() for name in _TEXTS},
     )
 
 
 @notices.reporting
-def _treat(choices: Choices, area: MultiPolygon | None, advised: str) -> str:
+def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advised: str) -> str:
     """Note a treatment; say what to beware of because of it."""
-    efficacy, season = st.session_state["efficacy"], choices.season
-    said = _said(choices.units)
+    efficacy, season = boxes.said("efficacy"), choices.season
+    said = _said(boxes)
     said = replace(said, operator=said.operator or choices.who or "")
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)
@@ -114,6 +120,7 @@ def _treat(choices: Choices, area: MultiPolygon | None, advised: str) -> str:
     if advised:
         season.advise(choices.on, advised, choices.who or "")
     done = season.treat(choices.on, works, area, application=said)
+    boxes.empty()
     if not done.new:
         return texts.TREATED_BEFORE
     beware = [
@@ -155,15 +162,18 @@ def _labels(choices: Choices) -> None:
     known = choices.season.labels()
     if known:
         st.markdown(listed(dict.fromkeys(texts.isolated(one.product) for one in known)))
-    brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key="labels_file")
+    boxes = FreshBoxes("labels", choices)
+    brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key=boxes.key("labels_file"))
     if brought is not None:
         pressed = st.button(texts.LABELS_BUTTON, key="take_labels")
-        acting.once(pressed, _take_labels, choices, Upload(brought.name, brought.getvalue()))
+        table = Upload(brought.name, brought.getvalue())
+        acting.once(pressed, _take_labels, choices, boxes, table)
 
 
 @notices.reporting
-def _take_labels(choices: Choices, table: Upload) -> str:
+def _take_labels(choices: Choices, boxes: FreshBoxes, table: Upload) -> str:
     read = read_labels(table)
     n = choices.season.keep_labels(read.value, table.name, choices.who or "")
+    boxes.empty()
     said = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
     return texts.LABELS_KEPT.format(n=n) + said

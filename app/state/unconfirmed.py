@@ -15,11 +15,12 @@ _KEY = "unconfirmed results"
 
 @dataclass(frozen=True, eq=False)
 class Unconfirmed:
-    """Results that wait for a word: of which season, from where."""
+    """Results that wait for a word: of which season, from where, and in which form (or none)."""
 
     season: str
     results: Inspections
     source: str
+    form: str = ""
 
 
 def keep(waiting: Unconfirmed) -> None:

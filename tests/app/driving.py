@@ -82,6 +82,11 @@ def row_box(app, name):
     return next(one for one in app.number_input if one.key.startswith(name))
 
 
+def boxed(boxes, name):
+    """Return the box of this name, of those of a kind, in a form that is empty for each day."""
+    return next(one for one in boxes if one.key and one.key.startswith(f"{name} "))
+
+
 def layer(app, name):
     """Return a layer as the browser gets it, or None."""
     return next((one for one in map_of(app)["layers"] if one["id"] == name), None)

@@ -5,7 +5,7 @@ from datetime import date
 import pytest
 
 from app.words import texts
-from tests.app.driving import go, opened, press, tap, texts_of
+from tests.app.driving import boxed, go, opened, press, tap, texts_of
 
 
 def test_without_a_season_one_button_begins_it(app):
@@ -32,7 +32,7 @@ def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(begu
 
 def test_recording_is_one_button_away(season_app):
     tap(season_app, "do_record")
-    assert season_app.number_input(key="one_row")
+    assert boxed(season_app.number_input, "one_row")
     go(season_app, "today")
     assert opened("Gate 2026").get("download_button")
 

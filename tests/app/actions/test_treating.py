@@ -3,17 +3,17 @@
 from datetime import date
 
 from fieldmon.decisions.labels import ProductLabel
-from tests.app.driving import go, press, texts_of
+from tests.app.driving import boxed, go, press, texts_of
 
 
 def noted(app, **said):
     go(app, "record")
-    app.number_input(key="efficacy").set_value(80)
-    app.text_input(key="product").set_value("Acarol")
+    boxed(app.number_input, "efficacy").set_value(80)
+    boxed(app.text_input, "product").set_value("Acarol")
     for key, value in said.items():
         box = app.number_input if isinstance(value, (int, float)) else app.text_input
         # a number keeps the unit of area in which it was typed
-        box(key=f"treat {key} ha" if key == "water" else f"treat {key}").set_value(value)
+        boxed(box, f"treat {key} ha" if key == "water" else f"treat {key}").set_value(value)
     next(b for b in app.button if b.label == "Note the treatment").click()
     app.run()
 
@@ -22,7 +22,7 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     begins = season().settings.begins
     go(season_app, "record")
     table = b"product,waiting days,re-entry hours\nAcarol,7,12\n"
-    season_app.file_uploader(key="labels_file").upload("labels.csv", table, "text/csv")
+    boxed(season_app.file_uploader, "labels_file").upload("labels.csv", table, "text/csv")
     season_app.run()
     press(season_app, "Take these labels")
     assert "1 label is kept" in season_app.success[0].value
@@ -63,8 +63,8 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
 def test_water_is_noted_by_the_area_in_which_the_plot_is_said(season_app, season):
     go(season_app, "record")
     season_app.selectbox(key="area").set_value("dunam").run()
-    season_app.number_input(key="efficacy").set_value(80)
-    water = season_app.number_input(key="treat water dunam")
+    boxed(season_app.number_input, "efficacy").set_value(80)
+    water = boxed(season_app.number_input, "treat water dunam")
     assert water.label == "Water, l/dunam"
     water.set_value(80)
     press(season_app, "Note the treatment")

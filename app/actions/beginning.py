@@ -62,4 +62,5 @@ def begin(choices: Choices) -> str:
     plot_source.open_season(name)
     if choices.on != choices.clock.today():
         work_day.choose(name, choices.on)  # what is shown stays what it was
-    return texts.BEGUN.format(name=texts.isolated(name), path=path)
+    left_out = map(language.in_words, chosen_day.messages_on_records(choices))
+    return "\n- ".join([texts.BEGUN.format(name=texts.isolated(name), path=path), *left_out])

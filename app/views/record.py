@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import beginning, recording
+from ..actions import beginning, bringing_files, recording
 from ..show import map_layers, plant_history
 from ..words import texts
 
@@ -21,6 +21,7 @@ def show(choices: Choices) -> None:
     plant_history.want(choices, content, taken=partial(recording.take_plant, choices))
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
+        bringing_files.show_doubts(choices)
         beginning.show(choices)
         return
     recording.show_said_otherwise(choices)

@@ -135,6 +135,7 @@ BOUND_HELP = (
 NO_STOPS = "The working day is too short to reach a plant and come back. Give more working hours."
 MESSAGES = "What the import found"
 MESSAGES_NONE = "The files were read as they are."
+RECORDS_OF_BEGIN = "Of the records, as known on {day}, when the season began:"
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
@@ -269,6 +270,7 @@ DEVELOPMENT_NOTE = (
 )
 DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
+AS_BELIEVED = "*Infested at the start* and *Spread a night* begin as the season believes on {day}."
 NIGHTS_OF_PEST = "Spreads as the chosen pest, by its weather where that is known: {pest}."
 SEED_HELP = "The same seed gives the same season."
 DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"
@@ -406,6 +408,7 @@ STEP_FOUND = Plural(
     "{found:,} found on {inspected:,} plants",
     by="inspected",
 )
+STEP_TREATED = Plural("{n:,} plant treated", "{n:,} plants treated")
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"
 SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."
@@ -423,6 +426,7 @@ CHANGED_FINDS = Plural(
     "{found:,} found on {inspected:,} plants inspected on {day}.", by="inspected",
 )  # fmt: skip
 CHANGED_NONE = "Nothing was recorded on {day}."
+CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were treated on {day}.")
 CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
@@ -716,10 +720,17 @@ CONTRADICTING_ALL = Plural(
     "{n} result from {source} contradicts " + _CONTRADICTING_ALL,
     "{n} results from {source} contradict " + _CONTRADICTING_ALL,
 )
+CONTRADICTING_NO_MORE = Plural(
+    "{n} result from {source} is not recorded yet, and contradicts nothing any more.",
+    "{n} results from {source} are not recorded yet, and contradict nothing any more.",
+)
+RECORD_THESE = "Record these {n}"
 AND_MORE = "... and {n} more."
 LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
 RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
+UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
+RESULT_COUNTED = "{result}, count {n}"
 BATCHES_SAID = {
     "findings": Plural("{n:,} plant, {found:,} found", "{n:,} plants, {found:,} found"),
     "treatment": "treatment {source}",

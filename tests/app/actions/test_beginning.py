@@ -57,3 +57,17 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
     assert Season(kept.path.parent / "Next year.gpkg").settings.belief.earlier == kept.as_earlier()
     go(season_app, "season")
     assert "Begun with what was learnt on Gate" in texts_of(season_app)
+
+
+def test_records_left_out_are_said_before_a_season_begins_and_when_it_begins(app):
+    """The sample's records go up to its last day: begun earlier, the later ones are left out."""
+    app.date_input(key="day Sample estate").set_value(date(2026, 11, 9)).run()
+    assert "of a later day and are left out" in texts_of(go(app, "today"))
+    begun(app)
+    assert "of a later day and are left out" in app.success[0].value
+    # on another day it is still those of the day on which the season began
+    app.date_input(key="day Gate 2026").set_value(date(2026, 11, 16)).run()
+    assert "of a later day" not in texts_of(go(app, "today"))
+    said = texts_of(go(app, "plot"))
+    assert "as known on Mon 9 Nov, when the season began" in said
+    assert "of a later day and are left out" in said

@@ -6,6 +6,7 @@ import geopandas as gpd
 import numpy as np
 import pandas as pd
 import pytest
+from shapely import transform
 
 from app.actions import bringing_files
 from app.words import texts
@@ -26,6 +27,19 @@ def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
     assert plot_name(app) == "square"
     press(app, "Take back: crs = EPSG:2039")
     assert "coordinate system" in app.warning[0].value
+
+
+def test_a_doubt_about_the_plot_is_said_on_today_with_its_remedy_before_a_season_begins(app):
+    # longitude and latitude exchanged: it lies in the open sea
+    at_sea = square().set_geometry([transform(square().geometry[0], lambda xy: xy[:, ::-1])])
+    upload(app, plot=("plot.geojson", at_sea.to_json().encode()))
+    for page in ("today", "record"):
+        go(app, page)
+        assert not app.exception
+        assert texts.SEVERITIES["doubtful"] in texts_of(app)
+        (remedy,) = [one for one in app.button if one.key.startswith("remedy ")]
+    remedy.click().run()
+    assert texts.SEVERITIES["doubtful"] not in texts_of(go(app, "today"))
 
 
 @pytest.mark.parametrize(

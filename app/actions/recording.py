@@ -225,7 +225,7 @@ def recorded(
     try:
         done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
-        unconfirmed.keep(Unconfirmed(choices.key, results, source, form))
+        unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form))
         return None
     unconfirmed.drop()
     fresh_boxes.empty(form)
@@ -242,11 +242,14 @@ def said_of(done: Recorded | None) -> str:
 
 def ask_about_contradictions(choices: Choices) -> None:
     """Show what waits because it contradicts what is recorded, and what can be done with it."""
-    waiting = unconfirmed.of(choices.key)
+    waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return
     season = choices.season
     said = season.contradictions(waiting.results).sentences(season.label)
+    if not said:  # what they contradicted was taken back since
+        _ask_anew(choices, waiting)
+        return
     others = len(waiting.results) - len(said)
     asked = texts.CONTRADICTING if others else texts.CONTRADICTING_ALL
     st.warning(asked.format(n=len(said), others=others, source=waiting.source))
@@ -261,6 +264,25 @@ def ask_about_contradictions(choices: Choices) -> None:
         ):
             if key != "leave_out" or others:
                 st.button(label, key=key, on_click=action, args=(choices,))
+
+
+def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
+    """Ask whether to record what waited and contradicts nothing any more."""
+    n = len(waiting.results)
+    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=waiting.source))
+    with st.container(horizontal=True):
+        st.button(texts.RECORD_THESE.format(n=n), key="record_these", on_click=_record_these,
+                  args=(choices,))  # fmt: skip
+        st.button(texts.RECORD_NONE, key="record_none", on_click=_drop, args=(choices,))
+
+
+@notices.reporting
+def _record_these(choices: Choices) -> str:
+    """Record what waited, as if it were brought now."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    return said_of(recorded(choices, waiting.results, waiting.source, waiting.form))
 
 
 def show_said_otherwise(choices: Choices) -> None:
@@ -291,7 +313,7 @@ def _confirm(choices: Choices) -> str:
 @notices.reporting
 def _leave_out(choices: Choices) -> str:
     """Record what does not contradict."""
-    waiting = unconfirmed.of(choices.key)
+    waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
     against = choices.season.contradictions(waiting.results).which
@@ -299,7 +321,7 @@ def _leave_out(choices: Choices) -> str:
 
 
 def _settled(choices: Choices, which: np.ndarray | slice) -> str:
-    waiting = unconfirmed.of(choices.key)
+    waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
@@ -340,5 +362,7 @@ def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) 
 
 @notices.reporting
 def undo(choices: Choices, batch: int) -> str:
-    """Take a batch back."""
+    """Take a batch back, unless somebody did so in another window."""
+    if batch not in {one.number for one in choices.season.batches() if not one.undone}:
+        raise SettingError(texts.UNDONE_BEFORE)
     return in_words(choices.season.undo(batch, who=choices.who or ""))

@@ -10,6 +10,7 @@ import streamlit as st
 
 from app.actions import recording
 from app.state.fresh_boxes import FreshBoxes
+from app.words import texts
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
 from tests.app.chosen import in_season
@@ -307,6 +308,37 @@ def test_where_all_contradicts_there_are_no_others_to_record(season_app, season)
     keys = [button.key for button in season_app.button]
     assert "confirm" in keys
     assert "leave_out" not in keys
+
+
+def test_what_waits_is_not_asked_about_on_another_day(season_app, season):
+    contradicted(season_app, season)
+    for day, asked in ((17, 0), (16, 1)):
+        season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, day)).run()
+        said = [one.value for one in season_app.warning if "contradict" in one.value]
+        assert len(said) == asked
+
+
+def test_what_contradicts_nothing_any_more_can_be_recorded(season_app, season):
+    contradicted(season_app, season)
+    season().undo()
+    season_app.run()
+    assert "5 results from route table are not recorded yet" in season_app.warning[0].value
+    assert not [one for one in season_app.button if one.key in ("leave_out", "confirm")]
+    season_app.button(key="record_these").click().run()
+    assert not season_app.warning
+    assert season().history.inspections.result.tolist() == [0] * 5
+
+
+def test_what_was_taken_back_in_another_window_is_said_without_words_of_commands(
+    season_app, season
+):
+    plants = np.arange(3)
+    season().record(Inspections.of(plants, np.ones(3, int), np.datetime64("2026-11-16")), "file")
+    go(season_app, "record")
+    (undo,) = [one for one in season_app.button if one.label == "Undo"]
+    season().undo()
+    undo.click().run()
+    assert season_app.error[0].value == texts.UNDONE_BEFORE
 
 
 def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, season):

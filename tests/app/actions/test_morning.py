@@ -47,3 +47,14 @@ def test_to_look_at_the_ways_to_a_phone_is_not_yet_to_take_the_day_along(season_
     season_app.text_input(key="invite_name").set_value("Ann")
     press(season_app, texts.INVITE_BUTTON)
     assert sent() == [True]
+
+
+def test_a_treatment_the_day_before_is_said_and_not_that_nothing_was_recorded(season_app, season):
+    season().treat(date(2026, 11, 16), 0.8)
+    n = len(season().plot.grid)
+    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
+    said = texts_of(season_app)
+    assert f"{n:,} plants were treated on Mon 16 Nov." in said
+    (before,) = [one.value for one in season_app.markdown if texts.STEPS["look_back"] in one.value]
+    assert before.endswith(f" {n:,} plants treated")
+    assert texts.CHANGED_NONE.format(day="Mon 16 Nov") not in said

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import streamlit as st
 
 from fieldmon.decisions.doses import Dose
@@ -13,19 +14,23 @@ from fieldmon.decisions.labels import irac_groups
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
+from fieldmon.plot.named_rows import plants_in_rows
 
-from ..state import notices, widget_memory
+from ..state import notices, widget_memory, wishes
 from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
 from ..words.language import in_words, listed
 from . import acting
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from shapely import MultiPolygon
 
     from ..state.choices import Choices
     from ..words.units import UnitsInLanguage
 
+# boxes of the form for where it was
+_ROWS, _SELECTED = "treat rows", "treat selected"
 #: boxes of the form for what was said of an application, by what they are about
 _TEXTS = (
     *("active_ingredient", "operator", "reason", "machinery", "weather", "crop", "pest"),
@@ -41,7 +46,8 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     choices
         With a season.
     area
-        Where it was, lon/lat, as the zones of a decision; None: on the whole plot.
+        Where it was, lon/lat, as the zones of a decision; None: on the whole plot, unless a part
+        is named or selected.
     advised
         What was advised, for the season's log; empty: nothing.
     """
@@ -49,6 +55,8 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     boxes = FreshBoxes("treatment" if area is None else "treatment of zones", choices)
     # Enter after one box would record the treatment before the others are said
     with st.form("treatment_form", border=False, enter_to_submit=False):
+        if area is None:
+            _where(boxes)
         st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key=boxes.key("efficacy"))
         st.text_input(texts.TREAT_PRODUCT, key=boxes.key("product"))
         with st.expander(texts.TREAT_RECORD):
@@ -58,6 +66,27 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     _harvest(choices)
     with st.expander(texts.LABELS):
         _labels(choices)
+
+
+def _where(boxes: FreshBoxes) -> None:
+    """Ask for the part of the plot that was treated: rows, or what is selected on the map."""
+    if some := wishes.picked(boxes.choices.place):
+        plants = texts.PLANTS_COUNTED.format(n=len(some))
+        st.checkbox(texts.TREAT_SELECTED.format(plants=plants), value=True,
+                    key=boxes.key(_SELECTED))  # fmt: skip
+    if boxes.choices.plot.grid.in_rows:
+        st.text_input(texts.TREAT_ROWS, key=boxes.key(_ROWS), placeholder="3-5,8",
+                      help=texts.TREAT_ROWS_HELP)  # fmt: skip
+
+
+def _plants(boxes: FreshBoxes) -> NDArray[np.bool_] | None:
+    """Return the plants ``(n,)`` of the part that was treated; None: it was the whole plot."""
+    grid, rows = boxes.choices.plot.grid, (boxes.said(_ROWS) or "").strip()
+    if boxes.said(_SELECTED):
+        if rows:
+            raise SettingError(texts.TREAT_TWICE)
+        return np.isin(np.arange(len(grid)), wishes.picked(boxes.choices.place))
+    return plants_in_rows(grid, rows) if rows else None
 
 
 def _boxes(boxes: FreshBoxes) -> None:
@@ -119,8 +148,11 @@ def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advis
     works = None if efficacy is None else efficacy / 100
     if advised:
         season.advise(choices.on, advised, choices.who or "")
-    done = season.treat(choices.on, works, area, application=said)
+    plants = _plants(boxes) if area is None else None
+    done = season.treat(choices.on, works, area, application=said, plants=plants)
     boxes.empty()
+    if plants is not None:
+        wishes.pick(choices.place, ())
     if not done.new:
         return texts.TREATED_BEFORE
     beware = [
@@ -128,7 +160,11 @@ def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advis
         for one in season.cautions(choices.on, choices.units.in_sentences(choices.on))
         if one.batch == done.batch
     ]
-    return "\n- ".join([texts.TREATED, *beware])
+    noted = texts.TREATED
+    if plants is not None:
+        n = int(np.count_nonzero(plants))
+        noted = texts.TREATED_PART.format(plants=texts.PLANTS_COUNTED.format(n=n))
+    return "\n- ".join([noted, *beware])
 
 
 # -- the harvest

@@ -739,6 +739,13 @@ BATCHES_SAID = {
 BATCH_OF_DAY = "inspected {days}"
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
+TREAT_ROWS, TREAT_ROWS_HELP = "Rows (empty: the whole plot)", "Rows as people count, such as 3-5,8."
+TREAT_SELECTED = "Only the {plants} selected on the map"
+TREAT_TWICE = (
+    "A treatment is of rows or of what is selected on the map, but both are said. Empty the box of "
+    "rows, or treat not only what is selected."
+)
+TREATED_PART = "Treatment noted, of {plants}."
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."

@@ -3,6 +3,7 @@
 from datetime import date
 
 from fieldmon.decisions.labels import ProductLabel
+from tests.app.chosen import in_season
 from tests.app.driving import boxed, go, press, texts_of
 
 
@@ -77,3 +78,44 @@ def test_a_dose_without_a_unit_is_asked_for(season_app, season):
     noted(season_app, dose=0.5)
     assert "must have a number and a unit" in season_app.error[0].value
     assert season().treatments() == ()
+
+
+def part_noted(app, **boxes):
+    """Note a treatment of what the boxes say."""
+    boxed(app.number_input, "efficacy").set_value(80)
+    if "rows" in boxes:
+        boxed(app.text_input, "treat rows").set_value(boxes["rows"])
+    press(app, "Note the treatment")
+
+
+def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, season):
+    go(season_app, "record")
+    part_noted(season_app, rows="20-40")
+    assert not season_app.error
+    (one,) = season().treatments()
+    assert set(season().label.line[one.place.plants].tolist()) == set(range(20, 41))
+    assert season_app.success[0].value.startswith(f"Treatment noted, of {one.place.plants.sum():,}")
+    part_noted(season_app, rows="20-400")
+    assert "row 400 is named" in season_app.error[0].value
+    assert len(season().treatments()) == 1
+
+
+def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_app, season):
+    some = (3, 4, 700)
+    season_app.session_state["plants picked"] = in_season(season()).place, some
+    go(season_app, "record")
+    assert "3 plants" in boxed(season_app.checkbox, "treat selected").label
+    part_noted(season_app, rows="20")
+    assert "but both are said" in season_app.error[0].value
+    part_noted(season_app, rows="")
+    (one,) = season().treatments()
+    assert tuple(one.place.plants.nonzero()[0].tolist()) == some
+    # the next one is of the whole plot again, unless something is selected
+    assert not [box for box in season_app.checkbox if "treat selected" in (box.key or "")]
+
+
+def test_without_a_word_on_where_the_whole_plot_was_treated(season_app, season):
+    go(season_app, "record")
+    part_noted(season_app)
+    (one,) = season().treatments()
+    assert one.place.plants.all()

@@ -9,6 +9,7 @@ import streamlit as st
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import Severity
 
+from ..show import answers_map
 from ..state import brought_files, chosen_day, rasters
 from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
 from ..state.tried_answers import tried_of_records
@@ -141,18 +142,18 @@ def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> Non
 def with_buttons(offered: list[str], tried: dict[str, TriedAnswer]) -> list[tuple[int, str]]:
     """Return the answers that have buttons, each under the number that it has on the map.
 
-    What leads to a plot comes first, and what was seen to lead nowhere last.
+    What was seen to lead nowhere has none: it can be given as another answer.
     """
     numbered = enumerate(offered, start=1)
-    best = sorted(numbered, key=lambda one: one[1] in tried and not tried[one[1]].leads)
-    return best[:_MOST_BUTTONS]
+    some = [one for one in numbered if one[1] not in tried or tried[one[1]].leads]
+    return some[:_MOST_BUTTONS]
 
 
 def _label(number: int, answer: str, one: TriedAnswer | None) -> str:
     """Return what a button says: what is answered and, where it was tried, where that leads."""
     if one is None:
         return answer
-    where = one.zone.replace("_", " ") if one.leads else texts.CHOOSE_NOWHERE
+    where = answers_map.place_of(one)
     if one.records is not None:
         said = texts.ANSWER_RECORDS.format(near=one.near, n=len(one.records), found=one.finds)
         where = said if one.near else f"{where}, {said}"

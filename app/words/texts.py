@@ -139,7 +139,7 @@ RECORDS_OF_BEGIN = "Of the records, as known on {day}, when the season began:"
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
-CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
+CHOOSE_OTHER, AT_SEA = "Another answer", "in the sea"
 LEGEND_ZONE = "border of a time zone"
 ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
                      "Map of {n} places where the plot could lie.")  # fmt: skip

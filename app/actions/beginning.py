@@ -24,7 +24,7 @@ def show(choices: Choices) -> None:
     with st.form("begin", border=True):
         st.markdown(f"### {texts.BEGIN_TITLE}")
         st.caption(texts.BEGIN_NOTE)
-        st.text_input(texts.SEASON_NAME, _proposed(choices), key="season_name")
+        st.text_input(texts.SEASON_NAME, _proposed(choices), key=_name_box(choices))
         if kept := seasons_folder.names():
             st.selectbox(
                 texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
@@ -39,6 +39,11 @@ def _proposed(choices: Choices) -> str:
     return f"{choices.plot.field.name} {choices.on.year}"
 
 
+def _name_box(choices: Choices) -> str:
+    """Return the key of the box of the name: another plot, or year, is proposed its own."""
+    return f"season_name {_proposed(choices)}"
+
+
 def _earlier() -> EarlierSeason | None:
     """Return what the season chosen for it learnt; None: none was."""
     chosen = st.session_state.get("season_earlier")
@@ -48,7 +53,7 @@ def _earlier() -> EarlierSeason | None:
 @notices.reporting
 def begin(choices: Choices) -> str:
     """Keep what is chosen as a season from now on."""
-    name = st.session_state.get("season_name", _proposed(choices)).strip()
+    name = st.session_state.get(_name_box(choices), _proposed(choices)).strip()
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
         belief=BeliefSettings(earlier=_earlier()),

@@ -53,7 +53,7 @@ def go(app, page):
 def begun(app, name="Gate 2026"):
     """Begin a season on the plot that is open."""
     go(app, "today")
-    app.text_input(key="season_name").set_value(name)
+    boxed(app.text_input, "season_name").set_value(name)
     return press(app, "Begin the season")
 
 

@@ -8,7 +8,7 @@ def test_without_a_season_one_can_be_begun(app):
     go(app, "record")
     assert not app.exception
     assert texts.NEEDS_SEASON in texts_of(app)
-    assert app.text_input(key="season_name")
+    assert boxed(app.text_input, "season_name")
 
 
 def test_what_was_recorded_shows_at_once_with_its_undo(season_app, season):

@@ -21,12 +21,16 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
     from ..state.tried_answers import TriedAnswer
 
+# what asks where on earth a plot is
+_ON_EARTH = frozenset({"crs", "swap_axes"})
+
 
 def show(problem: FieldmonError) -> None:
     """Say a problem; where it is a question, try each answer and draw what it leads to."""
     answers = tried(problem)
     bringing_files.say(problem, tried=answers)
-    looked_at = answers_map.content(answers, browser.is_dark())
+    on_earth = isinstance(problem, ChoiceNeeded) and problem.option in _ON_EARTH
+    looked_at = answers_map.content(answers, dark=browser.is_dark(), on_earth=on_earth)
     if looked_at is not None:
         field_map.want(looked_at, MapAnswers(tapped=partial(take, problem, answers)))
 

@@ -43,7 +43,7 @@ def show(choices: Choices) -> None:
 
 def _form(choices: Choices) -> bool:
     with st.form("begin", border=False):
-        st.text_input(texts.SEASON_NAME, _proposed(choices), key="season_name")
+        st.text_input(texts.SEASON_NAME, _proposed(choices), key=_name_box(choices))
         if kept := seasons_folder.names():
             st.selectbox(
                 texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
@@ -57,6 +57,11 @@ def _proposed(choices: Choices) -> str:
     return f"{choices.plot.field.name} {choices.on.year}"
 
 
+def _name_box(choices: Choices) -> str:
+    """Return the key of the box of the name: another plot, or year, is proposed its own."""
+    return f"season_name {_proposed(choices)}"
+
+
 def _earlier() -> EarlierSeason | None:
     """Return what the season chosen for it learnt; None: none was."""
     chosen = st.session_state.get("season_earlier")
@@ -66,7 +71,7 @@ def _earlier() -> EarlierSeason | None:
 @notices.reporting
 def begin(choices: Choices) -> str:
     """Keep what is chosen as a season from now on."""
-    name = st.session_state.get("season_name", _proposed(choices)).strip()
+    name = st.session_state.get(_name_box(choices), _proposed(choices)).strip()
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
         belief=BeliefSettings(treated=widget_memory.value(_FINDS, True), earlier=_earlier()),
@@ -80,4 +85,5 @@ def begin(choices: Choices) -> str:
     plot_source.open_season(name)
     if choices.on != choices.clock.today():
         work_day.choose(name, choices.on)  # what is shown stays what it was
-    return texts.BEGUN.format(name=texts.isolated(name), path=path)
+    left_out = map(language.in_words, chosen_day.messages_on_records(choices))
+    return "\n- ".join([texts.BEGUN.format(name=texts.isolated(name), path=path), *left_out])

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded
+from fieldmon.io.import_report import Severity
 
-from ..state import brought_files, rasters
+from ..show import answers_map
+from ..state import brought_files, chosen_day, rasters
 from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
 from ..state.tried_answers import tried_of_records
 from ..words import texts
@@ -140,18 +142,18 @@ def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> Non
 def with_buttons(offered: list[str], tried: dict[str, TriedAnswer]) -> list[tuple[int, str]]:
     """Return the answers that have buttons, each under the number that it has on the map.
 
-    What leads to a plot comes first, and what was seen to lead nowhere last.
+    What was seen to lead nowhere has none: it can be given as another answer.
     """
     numbered = enumerate(offered, start=1)
-    best = sorted(numbered, key=lambda one: one[1] in tried and not tried[one[1]].leads)
-    return best[:_MOST_BUTTONS]
+    some = [one for one in numbered if one[1] not in tried or tried[one[1]].leads]
+    return some[:_MOST_BUTTONS]
 
 
 def _label(number: int, answer: str, one: TriedAnswer | None) -> str:
     """Return what a button says: what is answered and, where it was tried, where that leads."""
     if one is None:
         return answer
-    where = one.zone.replace("_", " ") if one.leads else texts.CHOOSE_NOWHERE
+    where = answers_map.place_of(one)
     if one.records is not None:
         said = texts.ANSWER_RECORDS.format(near=one.near, n=len(one.records), found=one.finds)
         where = said if one.near else f"{where}, {said}"
@@ -171,19 +173,47 @@ def _offer_undo(key: str) -> None:
                   args=(key,))  # fmt: skip
 
 
+def show_doubts(choices: Choices) -> None:
+    """Show, while no season is begun, what is doubtful, and which records are left out."""
+    if choices.season is not None:
+        return
+    doubts = [one for one in choices.messages if one.message.severity == Severity.DOUBTFUL]
+    if not doubts and not chosen_day.messages_on_records(choices):
+        return
+    with st.container(border=True, key="doubts"):
+        for number, one in enumerate(doubts):
+            _show_message(number, one)
+        show_of_records(choices)
+
+
+def show_of_records(choices: Choices) -> None:
+    """Show which records planning cannot use."""
+    said = [f"- {in_words(sentence)}" for sentence in chosen_day.messages_on_records(choices)]
+    if said and choices.season is not None:
+        begins = choices.units.said_day(choices.season.settings.begins, choices.on)
+        st.markdown(texts.RECORDS_OF_BEGIN.format(day=begins))
+    if said:
+        st.markdown("\n".join(said))
+
+
+def _show_message(number: int, one: FileMessage) -> None:
+    """Show a message, its remedy as a button."""
+    message = one.message
+    place = f"{texts.isolated(message.feature)}: " if message.feature else ""
+    mark = f"{_ICONS[message.severity]} **{texts.SEVERITIES[message.severity]}**"
+    st.markdown(f"{mark} · {place}{in_words(message.sentence)}")
+    remedy = message.remedy
+    if remedy is not None:
+        key = f"remedy {number} {one.asked} {remedy.option} {remedy.value}"
+        st.button(in_words(remedy.label), key=key, on_click=brought_files.answer,
+                  args=(one.asked, remedy.option, remedy.value))  # fmt: skip
+
+
 def show_messages(said: tuple[FileMessage, ...]) -> None:
     """Show what imports had to say, the gravest first, each remedy as a button."""
     if not said:
         st.markdown(texts.MESSAGES_NONE)
     for number, one in enumerate(sorted(said, key=lambda one: -one.message.severity.rank)):
-        message = one.message
-        place = f"{texts.isolated(message.feature)}: " if message.feature else ""
-        mark = f"{_ICONS[message.severity]} **{texts.SEVERITIES[message.severity]}**"
-        st.markdown(f"{mark} · {place}{in_words(message.sentence)}")
-        remedy = message.remedy
-        if remedy is not None:
-            key = f"remedy {number} {one.asked} {remedy.option} {remedy.value}"
-            st.button(in_words(remedy.label), key=key, on_click=brought_files.answer,
-                      args=(one.asked, remedy.option, remedy.value))  # fmt: skip
+        _show_message(number, one)
     for asked in dict.fromkeys(one.asked for one in said):
         _offer_undo(asked)

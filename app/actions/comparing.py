@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..show import pest_figures
-from ..state import widget_memory
+from ..state import chosen_day, widget_memory
 from ..state.comparison import ComparisonSettings, Strategy
 from ..words import texts
 from ..words.strategies import sampler_name
@@ -47,20 +47,38 @@ def settings(choices: Choices, pest: PestInWeather | None = None) -> ComparisonS
     )
     first, *others = st.columns(4, vertical_alignment="bottom")
     seeds = first.number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")
-    return ComparisonSettings(strategies, *season(others, pest), int(seeds))
+    return ComparisonSettings(strategies, *season(choices, others, pest), int(seeds))
 
 
-def season(columns: list, pest: PestInWeather | None = None) -> tuple[int, float, float]:
+def season(
+    choices: Choices, columns: list, pest: PestInWeather | None = None
+) -> tuple[int, float, float]:
     """Show what a simulated season is like: days, share infested at the start, spread a night.
 
-    Where a pest is known, its nights are told instead of asked for.
+    Both begin as an open season believes. Where a pest is known, its nights are told instead of
+    asked for.
     """
     show, (first, second, third) = widget_memory.show, columns
+    own_share, own_rate = _believed(choices)
+    if choices.season is not None:
+        st.caption(texts.AS_BELIEVED.format(day=choices.units.said_day(choices.day)))
     n_days = show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25)
-    share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5, key="share", default=2.0)
+    share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5,
+                 key=f"share {own_share:g}", default=own_share)  # fmt: skip
     if pest is not None:
         third.caption(texts.NIGHTS_OF_PEST.format(pest=pest_figures.title(pest.pest)))
         return int(n_days), share / 100, 0.0
-    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=0.5, key="rate", default=10.0,
-                help=texts.SPREAD_HELP)  # fmt: skip
+    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=0.5, key=f"rate {own_rate:g}",
+                default=own_rate, help=texts.SPREAD_HELP)  # fmt: skip
     return int(n_days), share / 100, rate / 100
+
+
+def _believed(choices: Choices) -> tuple[float, float]:
+    """Return the share infested and the spread a night that a season believes, both in percent."""
+    if choices.season is None:
+        return 2.0, 10.0
+    share = 100.0 * float(chosen_day.chance(choices).mean())
+    return (
+        min(max(round(share, 1), 0.1), 50.0),
+        100.0 * choices.season.settings.belief.spread.rate_per_day,
+    )

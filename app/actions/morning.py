@@ -23,6 +23,7 @@ from ..state import (
 from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
 from ..state.work_day import Calendar
 from ..words import texts
+from ..words.language import listed
 from . import acting, beginning, handing_out
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def _said(choices: Choices, plan: DayPlan, step: Step) -> str:
 
 def _day_before(choices: Choices, _: DayPlan) -> str:
     before = morning.day_before(choices)
-    return _recorded(before.found, before.inspected)
+    return _recorded(choices, str(before.on), before.found, before.inspected)
 
 
 def _planned(choices: Choices, plan: DayPlan) -> str:
@@ -81,13 +82,14 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
 
 def _today(choices: Choices, _: DayPlan) -> str:
     now = chosen_day.progress(choices)
-    return _recorded(now.found_today, now.inspected_today)
+    return _recorded(choices, choices.day, now.found_today, now.inspected_today)
 
 
-def _recorded(found: int, inspected: int) -> str:
-    if not inspected:
-        return texts.STEP_NOTHING
-    return texts.STEP_FOUND.format(found=found, inspected=inspected)
+def _recorded(choices: Choices, on: str, found: int, inspected: int) -> str:
+    said = [texts.STEP_FOUND.format(found=found, inspected=inspected)] if inspected else []
+    if treated := chosen_day.treated(choices, on):
+        said.append(texts.STEP_TREATED.format(n=treated))
+    return listed(said) if said else texts.STEP_NOTHING
 
 
 def _nothing(*_: object) -> str:

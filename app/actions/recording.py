@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +20,8 @@ from fieldmon.monitoring.transactions import is_season
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..show import plant_history, recorded_batches
-from ..state import chosen_day, notices, unconfirmed
+from ..state import chosen_day, fresh_boxes, notices, unconfirmed
+from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
 from ..words.language import in_words
@@ -35,6 +37,8 @@ if TYPE_CHECKING:
 # batches shown, the last ones
 _MOST = 20
 _GEOPACKAGE = b"SQLite format 3"
+# the forms
+_ONE, _ROUTE, _FILE = "one_plant", "route", "file"
 
 
 def show(choices: Choices) -> None:
@@ -62,40 +66,43 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
     """Take the plant that was tapped as the one to be recorded; nothing is recorded by it."""
     if layer.startswith("plants"):
         label = row_label(choices.plot.grid, np.array([min(index, len(choices.plot.grid) - 1)]))
-        st.session_state["one_row"] = int(label.line[0])
-        st.session_state["one_plant"] = int(label.number[0])
+        boxes = FreshBoxes(_ONE, choices)
+        boxes.empty()  # a result that was said of another plant is none of this one
+        boxes.put("one_row", int(label.line[0]))
+        boxes.put("one_plant", int(label.number[0]))
         plant_history.take_plant(choices, layer, index)
 
 
 def _show_one(choices: Choices) -> None:
     st.caption(texts.HISTORY_TAP)
+    key = FreshBoxes(_ONE, choices).key
     # Enter after the row would record it with the plant and the result of the plant before
     with st.form("one_plant_form", border=False, enter_to_submit=False):
         left, right = st.columns(2)
         # empty: what nobody said must not be recorded by one click
-        left.number_input(texts.HISTORY_ROW, 1, None, None, key="one_row")
-        right.number_input(texts.HISTORY_PLANT, 1, None, None, key="one_plant")
+        left.number_input(texts.HISTORY_ROW, 1, None, None, key=key("one_row"))
+        right.number_input(texts.HISTORY_PLANT, 1, None, None, key=key("one_plant"))
         st.segmented_control(
-            texts.RESULT, list(texts.RESULTS_OF), default=None, key="one_result",
+            texts.RESULT, list(texts.RESULTS_OF), default=None, key=key("one_result"),
             format_func=texts.RESULTS_OF.__getitem__,
         )  # fmt: skip
-        st.number_input(texts.COUNT, 0, None, None, key="one_count")
+        st.number_input(texts.COUNT, 0, None, None, key=key("one_count"))
         pressed = st.form_submit_button(texts.RECORD_BUTTON)
     acting.once(pressed, _record_one, choices)
 
 
 @notices.reporting
 def _record_one(choices: Choices) -> str:
-    state = st.session_state
-    if None in (state["one_row"], state["one_plant"], state["one_result"]):
+    said = FreshBoxes(_ONE, choices).said
+    row, number, result, count = map(said, ("one_row", "one_plant", "one_result", "one_count"))
+    if None in (row, number, result):
         raise SettingError(texts.ONE_UNSAID)
-    plant = plant_at(choices.plot.grid, int(state["one_row"]), int(state["one_plant"]))
-    result, count = state["one_result"], state["one_count"]
+    plant = plant_at(choices.plot.grid, int(row), int(number))
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
     )
-    return _recorded(choices, results, texts.TYPED_IN)
+    return said_of(recorded(choices, results, texts.TYPED_IN, _ONE))
 
 
 # -- the stops of the route
@@ -114,40 +121,47 @@ def _show_route(choices: Choices) -> None:
         },
         index=pd.RangeIndex(1, len(plants) + 1, name=texts.STOP_NUMBER),
     )
+    boxes = FreshBoxes(_ROUTE, choices)
+    # what was marked on another route is none of this one
+    of = zlib.crc32(np.ascontiguousarray(plants).tobytes())
     # Enter after typing a number must not record: the button under it would record as many again
     with st.form("route_form", border=False, enter_to_submit=False):
         st.caption(texts.RECORD_REST)
-        st.number_input(texts.RECORD_STOPS, 0, len(plants), None, key="stops_done")
+        done = st.number_input(texts.RECORD_STOPS, 0, len(plants), None,
+                               key=boxes.key(f"stops_done {of}"))  # fmt: skip
         with st.container(key="route_marks"):
             marked = st.data_editor(table, height=230, disabled=list(table.columns[:-1]),
-                                    key=f"marks {choices.day} {len(plants)}")  # fmt: skip
+                                    key=boxes.key(f"marks {of}"))  # fmt: skip
         pressed = st.form_submit_button(texts.RECORD_BUTTON, type="primary")
     found = marked.index[marked[texts.LEGEND_STATES["found"]]].tolist()
-    acting.once(pressed, _record_stops, choices, plants, found)
+    acting.once(pressed, _record_stops, choices, plants, (int(done or 0), found))
 
 
 @notices.reporting
-def _record_stops(choices: Choices, plants: np.ndarray, found: list[int]) -> str:
+def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, list[int]]) -> str:
     """Record the stops marked as found, and the others of the first so many as clean."""
+    done, found = told
     stops = np.arange(len(plants)) + 1
     is_found = np.isin(stops, found)
-    said = is_found | (stops <= (st.session_state["stops_done"] or 0))
+    said = is_found | (stops <= done)
     if not said.any():
         raise SettingError(texts.RECORD_UNSAID)
     result = np.where(is_found, FOUND, CLEAN)[said]
     results = Inspections.of(plants[said], result, np.datetime64(choices.day))
-    return _recorded(choices, results, texts.ROUTE_TABLE)
+    return said_of(recorded(choices, results, texts.ROUTE_TABLE, _ROUTE))
 
 
 # -- a file
 
 
 def _show_file(choices: Choices) -> None:
-    brought = st.file_uploader(texts.RECORD_FILE_IN, key="findings_file")
-    st.checkbox(texts.TAKE_DOUBTFUL, key="take_doubtful")
+    key = FreshBoxes(_FILE, choices).key
+    brought = st.file_uploader(texts.RECORD_FILE_IN, key=key("findings_file"))
+    st.checkbox(texts.TAKE_DOUBTFUL, key=key("take_doubtful"))
     if brought is not None:
         if brought.getvalue().startswith(_GEOPACKAGE):
-            st.text_input(texts.CORRECTED_BY, key="corrected_by", help=texts.CORRECTED_BY_HELP)
+            st.text_input(texts.CORRECTED_BY, key=key("corrected_by"),
+                          help=texts.CORRECTED_BY_HELP)  # fmt: skip
         pressed = st.button(texts.RECORD_BUTTON, key="record_file", type="primary")
         acting.once(pressed, _record_file, choices, brought.name, brought.getvalue())
 
@@ -162,13 +176,15 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
 
     if is_phone_file(Upload(name, data)):
         return _record_saved(choices, Upload(name, data))
-    options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
+    boxes = FreshBoxes(_FILE, choices)
+    options = InspectionOptions(take_doubtful=bool(boxes.said("take_doubtful")))
     options = options.choose("day", choices.day).on(choices.plot.field)
     with _source(choices, name, data) as (source, copy):
         read = read_inspections(source, choices.plot.grid, options)
-        corrected = "" if copy is None else _corrected(choices, copy, name)
+        corrected = "" if copy is None else _corrected(choices, copy, name, boxes)
     messages = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
-    said = _recorded(choices, read.value, name)
+    # what was said of a file may be answered: it stays to be read again
+    said = said_of(recorded(choices, read.value, name, "" if read.messages else _FILE))
     return "\n\n".join(part for part in (corrected, said + messages if said else "") if part)
 
 
@@ -182,8 +198,10 @@ def _record_saved(choices: Choices, source: Upload) -> str:
     problems = sorted({one.problem for one in taken} - {""})
     said = [message.sentence for message in saved.messages]
     said += [*findings.of_others(choices.season, saved.value), *problems]
-    recorded = texts.RECORDED.format(new=sum(good), known=len(good) - sum(good))
-    return recorded + "".join(f"\n- {in_words(sentence)}" for sentence in said)
+    told = texts.RECORDED.format(new=sum(good), known=len(good) - sum(good))
+    if not said:
+        fresh_boxes.empty(_FILE)
+    return told + "".join(f"\n- {in_words(sentence)}" for sentence in said)
 
 
 @contextmanager
@@ -206,30 +224,31 @@ def _source(
         yield counting_copy(copy, Path(folder) / "new", corrected), copy
 
 
-def _corrected(choices: Choices, copy: Path, name: str) -> str:
+def _corrected(choices: Choices, copy: Path, name: str, boxes: FreshBoxes) -> str:
     """Take what another program corrected or deleted in a copy; return how many were new."""
     if not choices.season.corrections_in(copy):
         return ""
-    who = str(st.session_state.get("corrected_by") or "").strip()
+    who = str(boxes.said("corrected_by") or "").strip()
     if not who:
         raise SettingError(texts.CORRECTED_UNSAID)
     return texts.CORRECTED.format(n=choices.season.take_corrections(copy, name, who))
 
 
-def recorded(choices: Choices, results: Inspections, source: str) -> Recorded | None:
-    """Record results; None where some contradict what is recorded: they wait for a word on it."""
+def recorded(
+    choices: Choices, results: Inspections, source: str, form: str = ""
+) -> Recorded | None:
+    """Record results, and empty the form that they are from.
+
+    None where some contradict what is recorded: they wait for a word on it.
+    """
     try:
         done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
-        unconfirmed.keep(Unconfirmed(choices.key, results, source))
+        unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form))
         return None
     unconfirmed.drop()
+    fresh_boxes.empty(form)
     return done
-
-
-def _recorded(choices: Choices, results: Inspections, source: str) -> str:
-    """Record results, and say what was done."""
-    return said_of(recorded(choices, results, source))
 
 
 def said_of(done: Recorded | None) -> str:
@@ -242,11 +261,14 @@ def said_of(done: Recorded | None) -> str:
 
 def ask_about_contradictions(choices: Choices) -> None:
     """Show what waits because it contradicts what is recorded, and what can be done with it."""
-    waiting = unconfirmed.of(choices.key)
+    waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return
     season = choices.season
     said = season.contradictions(waiting.results).sentences(season.label)
+    if not said:  # what they contradicted was taken back since
+        _ask_anew(choices, waiting)
+        return
     others = len(waiting.results) - len(said)
     asked = texts.CONTRADICTING if others else texts.CONTRADICTING_ALL
     st.warning(asked.format(n=len(said), others=others, source=waiting.source))
@@ -261,6 +283,25 @@ def ask_about_contradictions(choices: Choices) -> None:
         ):
             if key != "leave_out" or others:
                 st.button(label, key=key, on_click=action, args=(choices,))
+
+
+def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
+    """Ask whether to record what waited and contradicts nothing any more."""
+    n = len(waiting.results)
+    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=waiting.source))
+    with st.container(horizontal=True):
+        st.button(texts.RECORD_THESE.format(n=n), key="record_these", on_click=_record_these,
+                  args=(choices,))  # fmt: skip
+        st.button(texts.RECORD_NONE, key="record_none", on_click=_drop, args=(choices,))
+
+
+@notices.reporting
+def _record_these(choices: Choices) -> str:
+    """Record what waited, as if it were brought now."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    return said_of(recorded(choices, waiting.results, waiting.source, waiting.form))
 
 
 def show_said_otherwise(choices: Choices) -> None:
@@ -291,7 +332,7 @@ def _confirm(choices: Choices) -> str:
 @notices.reporting
 def _leave_out(choices: Choices) -> str:
     """Record what does not contradict."""
-    waiting = unconfirmed.of(choices.key)
+    waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
     against = choices.season.contradictions(waiting.results).which
@@ -299,12 +340,13 @@ def _leave_out(choices: Choices) -> str:
 
 
 def _settled(choices: Choices, which: np.ndarray | slice) -> str:
-    waiting = unconfirmed.of(choices.key)
+    waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
     done = choices.season.record(taken, waiting.source, who, confirmed=True)
     unconfirmed.drop()
+    fresh_boxes.empty(waiting.form)
     return texts.RECORDED.format(new=done.new, known=done.known)
 
 
@@ -339,5 +381,7 @@ def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) 
 
 @notices.reporting
 def undo(choices: Choices, batch: int) -> str:
-    """Take a batch back."""
+    """Take a batch back, unless somebody did so in another window."""
+    if batch not in {one.number for one in choices.season.batches() if not one.undone}:
+        raise SettingError(texts.UNDONE_BEFORE)
     return in_words(choices.season.undo(batch, who=choices.who or ""))

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+import numpy as np
 import streamlit as st
 
 from fieldmon.decisions.doses import Dose
@@ -13,18 +14,23 @@ from fieldmon.decisions.labels import irac_groups
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
+from fieldmon.plot.named_rows import plants_in_rows
 
-from ..state import notices, widget_memory
+from ..state import notices, widget_memory, wishes
+from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
 from ..words.language import in_words, listed
 from . import acting
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from shapely import MultiPolygon
 
     from ..state.choices import Choices
     from ..words.units import UnitsInLanguage
 
+# boxes of the form for where it was
+_ROWS, _SELECTED = "treat rows", "treat selected"
 #: boxes of the form for what was said of an application, by what they are about
 _TEXTS = (
     *("active_ingredient", "operator", "reason", "machinery", "weather", "crop", "pest"),
@@ -40,40 +46,69 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     choices
         With a season.
     area
-        Where it was, lon/lat, as the zones of a decision; None: on the whole plot.
+        Where it was, lon/lat, as the zones of a decision; None: on the whole plot, unless a part
+        is named or selected.
     advised
         What was advised, for the season's log; empty: nothing.
     """
+    # what was typed on one page is of its own place
+    boxes = FreshBoxes("treatment" if area is None else "treatment of zones", choices)
     # Enter after one box would record the treatment before the others are said
     with st.form("treatment_form", border=False, enter_to_submit=False):
-        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key="efficacy")
-        st.text_input(texts.TREAT_PRODUCT, key="product")
+        if area is None:
+            _where(boxes)
+        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key=boxes.key("efficacy"))
+        st.text_input(texts.TREAT_PRODUCT, key=boxes.key("product"))
         with st.expander(texts.TREAT_RECORD):
-            _boxes(choices.units)
+            _boxes(boxes)
         pressed = st.form_submit_button(texts.TREAT_BUTTON)
-    acting.once(pressed, _treat, choices, area, advised)
+    acting.once(pressed, _treat, choices, boxes, area, advised)
     _harvest(choices)
     with st.expander(texts.LABELS):
         _labels(choices)
 
 
-def _boxes(units: UnitsInLanguage) -> None:
+def _where(boxes: FreshBoxes) -> None:
+    """Ask for the part of the plot that was treated: rows, or what is selected on the map."""
+    if some := wishes.picked(boxes.choices.place):
+        plants = texts.PLANTS_COUNTED.format(n=len(some))
+        st.checkbox(texts.TREAT_SELECTED.format(plants=plants), value=True,
+                    key=boxes.key(_SELECTED))  # fmt: skip
+    if boxes.choices.plot.grid.in_rows:
+        st.text_input(texts.TREAT_ROWS, key=boxes.key(_ROWS), placeholder="3-5,8",
+                      help=texts.TREAT_ROWS_HELP)  # fmt: skip
+
+
+def _plants(boxes: FreshBoxes) -> NDArray[np.bool_] | None:
+    """Return the plants ``(n,)`` of the part that was treated; None: it was the whole plot."""
+    grid, rows = boxes.choices.plot.grid, (boxes.said(_ROWS) or "").strip()
+    if boxes.said(_SELECTED):
+        if rows:
+            raise SettingError(texts.TREAT_TWICE)
+        return np.isin(np.arange(len(grid)), wishes.picked(boxes.choices.place))
+    return plants_in_rows(grid, rows) if rows else None
+
+
+def _boxes(boxes: FreshBoxes) -> None:
     """Show what a certifier asks of each treatment."""
+    units, key = boxes.choices.units, boxes.key
     area = texts.UNITS[units.area]
     left, right = st.columns(2)
     anew = widget_memory.anew
-    anew(left.number_input, texts.TREAT_DOSE, 0.0, None, None, key="treat dose")
-    right.text_input(texts.TREAT_UNIT, key="treat unit", placeholder="l/ha")
+    anew(left.number_input, texts.TREAT_DOSE, 0.0, None, None, key=key("treat dose"))
+    right.text_input(texts.TREAT_UNIT, key=key("treat unit"), placeholder="l/ha")
     water = texts.TREAT_WATER.format(area=area)
-    anew(left.number_input, water, 0.0, None, None, key=_water(units))
-    right.text_input(texts.TREAT_GROUP, key="treat group", help=texts.TREAT_GROUP_HELP)
-    left.number_input(texts.TREAT_WAIT, 0, None, None, key="treat days", help=texts.TREAT_BY_LABEL)
-    anew(right.number_input, texts.TREAT_ENTRY, 0.0, None, None, key="treat hours",
+    anew(left.number_input, water, 0.0, None, None, key=key(_water(units)))
+    right.text_input(texts.TREAT_GROUP, key=key("treat group"), help=texts.TREAT_GROUP_HELP)
+    left.number_input(
+        texts.TREAT_WAIT, 0, None, None, key=key("treat days"), help=texts.TREAT_BY_LABEL
+    )
+    anew(right.number_input, texts.TREAT_ENTRY, 0.0, None, None, key=key("treat hours"),
          help=texts.TREAT_BY_LABEL)  # fmt: skip
-    left.time_input(texts.TREAT_BEGAN, None, key="treat began")
-    right.time_input(texts.TREAT_ENDED, None, key="treat ended", help=texts.TREAT_ENDED_HELP)
+    left.time_input(texts.TREAT_BEGAN, None, key=key("treat began"))
+    right.time_input(texts.TREAT_ENDED, None, key=key("treat ended"), help=texts.TREAT_ENDED_HELP)
     for name in _TEXTS:
-        st.text_input(texts.TREAT_TEXTS[name], key=f"treat {name}")
+        st.text_input(texts.TREAT_TEXTS[name], key=key(f"treat {name}"))
 
 
 def _water(units: UnitsInLanguage) -> str:
@@ -81,39 +116,43 @@ def _water(units: UnitsInLanguage) -> str:
     return f"treat water {units.area}"
 
 
-def _said(units: UnitsInLanguage) -> Application:
+def _said(boxes: FreshBoxes) -> Application:
     """Return what the boxes say."""
-    state: Any = st.session_state
-    water = state[_water(units)]
-    dose, unit = state["treat dose"], state["treat unit"].strip()
+    units, said = boxes.choices.units, boxes.said
+    water = said(_water(units))
+    dose, unit = said("treat dose"), said("treat unit").strip()
     if bool(dose) != bool(unit):
         raise SettingError(texts.TREAT_DOSE_UNSAID)
-    days = state["treat days"]
+    days = said("treat days")
     return Application(
-        product=state["product"].strip(),
+        product=said("product").strip(),
         dose=Dose(float(dose), unit) if dose else None,
         water_l_ha=units.by_hectare(water) if water else None,
         waiting_days=None if days is None else int(days),
-        reentry_hours=state["treat hours"],
-        irac_groups=irac_groups(state["treat group"]),
-        began=state["treat began"],
-        ended=state["treat ended"],
-        **{name: state[f"treat {name}"].strip() for name in _TEXTS},
+        reentry_hours=said("treat hours"),
+        irac_groups=irac_groups(said("treat group")),
+        began=said("treat began"),
+        ended=said("treat ended"),
+        **{name: said(f"treat {name}").strip() for name in _TEXTS},
     )
 
 
 @notices.reporting
-def _treat(choices: Choices, area: MultiPolygon | None, advised: str) -> str:
+def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advised: str) -> str:
     """Note a treatment; say what to beware of because of it."""
-    efficacy, season = st.session_state["efficacy"], choices.season
-    said = _said(choices.units)
+    efficacy, season = boxes.said("efficacy"), choices.season
+    said = _said(boxes)
     said = replace(said, operator=said.operator or choices.who or "")
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)
     works = None if efficacy is None else efficacy / 100
     if advised:
         season.advise(choices.on, advised, choices.who or "")
-    done = season.treat(choices.on, works, area, application=said)
+    plants = _plants(boxes) if area is None else None
+    done = season.treat(choices.on, works, area, application=said, plants=plants)
+    boxes.empty()
+    if plants is not None:
+        wishes.pick(choices.place, ())
     if not done.new:
         return texts.TREATED_BEFORE
     beware = [
@@ -121,7 +160,11 @@ def _treat(choices: Choices, area: MultiPolygon | None, advised: str) -> str:
         for one in season.cautions(choices.on, choices.units.in_sentences(choices.on))
         if one.batch == done.batch
     ]
-    return "\n- ".join([texts.TREATED, *beware])
+    noted = texts.TREATED
+    if plants is not None:
+        n = int(np.count_nonzero(plants))
+        noted = texts.TREATED_PART.format(plants=texts.PLANTS_COUNTED.format(n=n))
+    return "\n- ".join([noted, *beware])
 
 
 # -- the harvest
@@ -155,15 +198,18 @@ def _labels(choices: Choices) -> None:
     known = choices.season.labels()
     if known:
         st.markdown(listed(dict.fromkeys(texts.isolated(one.product) for one in known)))
-    brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key="labels_file")
+    boxes = FreshBoxes("labels", choices)
+    brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key=boxes.key("labels_file"))
     if brought is not None:
         pressed = st.button(texts.LABELS_BUTTON, key="take_labels")
-        acting.once(pressed, _take_labels, choices, Upload(brought.name, brought.getvalue()))
+        table = Upload(brought.name, brought.getvalue())
+        acting.once(pressed, _take_labels, choices, boxes, table)
 
 
 @notices.reporting
-def _take_labels(choices: Choices, table: Upload) -> str:
+def _take_labels(choices: Choices, boxes: FreshBoxes, table: Upload) -> str:
     read = read_labels(table)
     n = choices.season.keep_labels(read.value, table.name, choices.who or "")
+    boxes.empty()
     said = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
     return texts.LABELS_KEPT.format(n=n) + said

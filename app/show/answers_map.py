@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
@@ -11,6 +11,7 @@ from pydeck import Layer
 from fieldmon.plot.local_clock import zone_outline, zones_within
 
 from ..words import texts
+from ..words.language import country
 from .map_view import MapContent
 from .maps import legends
 
@@ -30,25 +31,35 @@ _COLOURS: tuple[Colour, ...] = (
 GROUND: Colour = (130, 140, 135)
 # as far as this, outlines are too small to be told from dots
 _FAR_DEG = 1.0
+# what is shown about a place to see where on earth it is: west, south, east, north
+_ABOUT_DEG = np.array([-6.0, -4.0, 6.0, 4.0])
 # outlines of countries, as exact as they are seen
 _ROUGH_DEG = 0.05
 
 
-def content(tried: tuple[TriedAnswer, ...], dark: bool) -> MapContent | None:  # noqa: FBT001 - a fact
-    """Return the map of the answers that lead somewhere; None if none does."""
+def content(
+    tried: tuple[TriedAnswer, ...], *, dark: bool, on_earth: bool = False
+) -> MapContent | None:
+    """Return the map of the answers that lead somewhere; None if none does.
+
+    `on_earth`: the question is where on earth it is; if one answer alone leads to a place, that is
+    shown from so far that one sees in which country.
+    """
     shapes = [_outline(one) for one in tried]
     seen = [k for k, shape in enumerate(shapes) if not shape.is_empty]
     if not seen:
         return None
     bounds = np.array(shapely.total_bounds([shapes[k] for k in seen]))
+    if on_earth and len(seen) == 1:
+        bounds = np.tile(_middle(shapes[seen[0]]), 2) + _ABOUT_DEG
     ground = ground_of(bounds, dark=dark)
     bounds = with_room(bounds)
-    labels = [{"p": _middle(shapes[k]), "t": f"{k + 1}", "k": "leg"} for k in seen]
+    labels = [label(k, _middle(shapes[k])) for k in seen]
     items = [("line", GROUND, texts.LEGEND_ZONE)] if ground else []
     return MapContent(
         f"answers {[one.answer for one in tried]}", bounds.tolist(),
         texts.ANSWERS_ALT.format(n=len(seen)), [*ground, *_answers(tried, shapes, seen)],
-        legend=[legends.part("", items)], labels=labels,
+        legend=[legends.part("", items)] if items else [], labels=labels,
     )  # fmt: skip
 
 
@@ -58,6 +69,23 @@ def tapped(tried: tuple[TriedAnswer, ...], layer: str, index: int) -> str | None
     parts = [one.answer for one in seen for _ in range(len(_outline(one).geoms))]
     found = {PLACES: [one.answer for one in seen], SHAPES: parts}.get(layer, [])
     return found[index] if 0 <= index < len(found) else None
+
+
+def label(number: int, place: list[float]) -> dict[str, Any]:
+    """Return the number of an answer, counted from 0, as it stands on the map."""
+    return {"p": place, "t": f"{number + 1}", "k": "leg", "tight": True}
+
+
+def said(tried: tuple[TriedAnswer, ...], number: int) -> str:
+    """Return what is said of an answer, by its number from 0, where one points at it."""
+    return " · ".join([f"{number + 1}", tried[number].answer, place_of(tried[number])])
+
+
+def place_of(one: TriedAnswer) -> str:
+    """Return the country to which an answer leads, or that it leads into the sea."""
+    if one.zone.startswith("Etc/"):
+        return texts.AT_SEA
+    return country(one.zone) or one.zone.replace("_", " ")
 
 
 def colour(number: int) -> Colour:
@@ -86,7 +114,7 @@ def _answers(
                 for ring in shapely.get_exterior_ring(shapely.get_parts(shapes[k]))
             ],
             "m": _middle(shapes[k]),
-            "t": f"{k + 1} · {tried[k].answer} · {tried[k].zone}",
+            "t": said(tried, k),
             "c": [*colour(k), 90],
             "l": list(colour(k)),
         }

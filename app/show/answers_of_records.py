@@ -47,7 +47,7 @@ def content(tried: tuple[TriedAnswer, ...], plot: Plot, *, dark: bool) -> MapCon
     items = [("line", answers_map.GROUND, texts.LEGEND_ZONE)] if ground else []
     rings = [("ring", answers_map.colour(k), f"{k + 1} · {tried[k].answer}") for k in seen]
     numbers = [] if same else [
-        {"p": place.round(7).tolist(), "t": f"{k + 1}", "k": "leg"}
+        answers_map.label(k, place.round(7).tolist())
         for k, place in zip(seen, at, strict=True)
     ]  # fmt: skip
     said = texts.ANSWERS_OF_RECORDS_ALT.format(name=plot.field.name, n=len(seen))
@@ -107,7 +107,7 @@ def _places(tried: tuple[TriedAnswer, ...], seen: list[int], at: list[np.ndarray
     """Return a dot in the middle of each answer's records, to be tapped."""
     rows = [
         {"p": place.round(7).tolist(), "c": list(answers_map.colour(k)),
-         "t": f"{k + 1} · {tried[k].answer} · {tried[k].zone}"}
+         "t": answers_map.said(tried, k)}
         for k, place in zip(seen, at, strict=True)
     ]  # fmt: skip
     return Layer("ScatterplotLayer", rows, id=PLACES, get_position="p", get_fill_color="c",

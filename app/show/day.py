@@ -133,9 +133,12 @@ def changes(choices: Choices) -> list[str]:
     yesterday = str(choices.on - timedelta(days=1))
     before, now = (chosen_day.figures(choices, day) for day in (yesterday, choices.day))
     on = choices.units.said_day(yesterday)
-    said = [texts.CHANGED_NONE.format(day=on)]
+    said = []
     if before.inspected:
         said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
+    if treated := chosen_day.treated(choices, yesterday):
+        said.append(texts.CHANGED_TREATED.format(n=treated, day=on))
+    said = said or [texts.CHANGED_NONE.format(day=on)]
     expected = {"now": about(now.expected), "before": about(before.expected)}
     said.append(texts.CHANGED_OUT.format(**expected))
     said += map(in_words, flagged_said(chosen_day.flagged(choices))[:1])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fieldmon.infestation.inspections import RESULT_NAMES
 
 from ..words import texts
+from ..words.language import number
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.batches import Batch, BatchContents
@@ -26,7 +27,7 @@ def in_short(result: str) -> str:
 def last(choices: Choices, said: BatchContents) -> str:
     """Return what was said last, of one plant: what an undo beside it takes back."""
     words = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
-    return words.format(row=said.row, plant=said.plant, result=in_short(said.result))
+    return words.format(row=said.row, plant=said.plant, result=_result(said))
 
 
 def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
@@ -51,9 +52,17 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     return " · ".join(part for part in parts if part)
 
 
+def _result(said: BatchContents) -> str:
+    """Return the result of the only inspection, and what was counted."""
+    result = in_short(said.result)
+    if said.count is None:
+        return result
+    return texts.RESULT_COUNTED.format(result=result, n=number(said.count, ",g"))
+
+
 def _what(choices: Choices, said: BatchContents) -> str:
     if said.n > 1:
         return texts.BATCHES_SAID["findings"].format(n=said.n, found=said.found)
     where = texts.TIP_PLANT if choices.plot.grid.in_rows else texts.TIP_ALONE
-    note = texts.TIP_STATE.format(state=in_short(said.result))
+    note = texts.TIP_STATE.format(state=_result(said))
     return where.format(row=said.row, plant=said.plant, note=note)

@@ -188,6 +188,12 @@ def figures_so_far(choices: Choices) -> list[DayFigures]:
     return [*(one for one in kept if one.on < choices.on), figures(choices, choices.day)]
 
 
+def treated(choices: Choices, day: str) -> int:
+    """Return how many plants of a season were treated on a day (ISO)."""
+    on = [one.place.plants for one in choices.season.treatments() if str(one.on) == day]
+    return int(np.count_nonzero(np.any(on, axis=0))) if on else 0
+
+
 def found(choices: Choices) -> cached.Array:
     """Return the plants found on the day, by number; none without a season."""
     if choices.season is None:
@@ -206,17 +212,20 @@ def season_days(choices: Choices) -> list[str]:
 
 def messages_on_records(choices: Choices) -> list[str]:
     """Return what planning says about records it cannot use."""
-    return list(
-        usable(choices.records, np.datetime64(choices.day), choices.prior.hardly_days).messages()
-    )
+    days = choices.prior.hardly_days
+    return list(usable(choices.records, np.datetime64(_known_on(choices)), days).messages())
+
+
+def _known_on(choices: Choices) -> str:
+    """Return the day (ISO) up to which records count.
+
+    The chosen day; in a season its first day, for that is what it began with.
+    """
+    return choices.day if choices.season is None else str(choices.season.settings.begins)
 
 
 def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:
-    """Return the records that are known, their plot, and a key for both.
-
-    On the chosen day; in a season on its first day, for that is what it began with.
-    """
-    season = choices.season
-    on = choices.day if season is None else str(season.settings.begins)
+    """Return the records that are known, their plot, and a key for both."""
+    on = _known_on(choices)
     known = usable(choices.records, np.datetime64(on)).observations
     return f"{choices.key} {on}", choices.plot, known

@@ -15,11 +15,16 @@ _KEY = "unconfirmed results"
 
 @dataclass(frozen=True, eq=False)
 class Unconfirmed:
-    """Results that wait for a word: of which season, from where."""
+    """Results that wait for a word: of which season, from where, and in which form (or none).
+
+    And the day (ISO) on which they were brought: nobody is asked on another.
+    """
 
     season: str
+    day: str
     results: Inspections
     source: str
+    form: str = ""
 
 
 def keep(waiting: Unconfirmed) -> None:
@@ -27,10 +32,11 @@ def keep(waiting: Unconfirmed) -> None:
     st.session_state[_KEY] = waiting
 
 
-def of(season: str) -> Unconfirmed | None:
-    """Return what waits for a word on a season, by its key."""
+def of(season: str, day: str) -> Unconfirmed | None:
+    """Return what waits for a word on a day (ISO) of a season, by its key."""
     waiting: Unconfirmed | None = st.session_state.get(_KEY)
-    return waiting if waiting is not None and waiting.season == season else None
+    asked = waiting is not None and (waiting.season, waiting.day) == (season, day)
+    return waiting if asked else None
 
 
 def drop() -> None:

@@ -18,9 +18,8 @@ from ..actions import (
 )
 from ..show import assumed, field_map, plot_figures
 from ..show import records as records_shown
-from ..state import chosen_day, plot_before, plot_source, rooms
+from ..state import plot_before, plot_source, rooms
 from ..words import texts
-from ..words.language import in_words
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
@@ -72,7 +71,6 @@ def show(choices: Choices) -> None:
     laying_ground.show(choices)
     with st.expander(texts.MESSAGES, expanded=True):
         bringing_files.show_messages(choices.messages)
-        for message in chosen_day.messages_on_records(choices):
-            st.markdown(f"- {in_words(message)}")
+        bringing_files.show_of_records(choices)
     records_shown.say(choices, said)
     field_map.want(*answering.of_records(choices) or drawing.content(choices, records, before))

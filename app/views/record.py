@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import beginning, recording
+from ..actions import beginning, bringing_files, picking, recording
 from ..show import map_layers, plant_history
+from ..state import wishes
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -17,10 +18,13 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Take in what was found."""
-    content = map_layers.day_map(choices, first="state")
-    plant_history.want(choices, content, taken=partial(recording.take_plant, choices))
+    content = map_layers.day_map(choices, first="state", above=picking.layers(choices))
+    tapped = partial(recording.take_plant, choices)
+    picked = wishes.picked(choices.place)
+    plant_history.want(choices, content, partial(picking.take, choices), tapped, picked=picked)
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)
+        bringing_files.show_doubts(choices)
         beginning.show(choices)
         return
     recording.show_said_otherwise(choices)

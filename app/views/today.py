@@ -11,6 +11,7 @@ from ..actions import (
     asking_photos,
     assuming,
     beginning,
+    bringing_files,
     choosing,
     morning,
     picking,
@@ -55,6 +56,7 @@ def show(choices: Choices) -> None:
 
 def _work(choices: Choices, plan: DayPlan) -> None:
     """Show the morning's steps, and what is asked and recorded on the map."""
+    bringing_files.show_doubts(choices)
     day.said_of_day(choices, plan)
     cautions.show_today(choices)
     morning.show(choices, plan)

@@ -453,6 +453,16 @@ def separators() -> tuple[str, str]:
     return number(0.5, ".1f")[1:2], number(1000, ",")[1:2]
 
 
+def country(zone: str) -> str:
+    """Return the name of the country of a time zone; empty where none is known."""
+    from babel import Locale  # noqa: PLC0415
+    from babel.core import get_global  # noqa: PLC0415
+
+    names = Locale.parse(current()).territories
+    code = get_global("zone_territories").get(zone, "ZZ")
+    return "" if code == "ZZ" else str(names.get(code, ""))
+
+
 def weekday(on: date, *, short: bool = False) -> str:
     """Return the name of a date's day of the week, in full or as short as it is written."""
     language = current()

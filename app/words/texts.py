@@ -142,10 +142,11 @@ BOUND_HELP = (
 NO_STOPS = "The working day is too short to reach a plant and come back. Give more working hours."
 MESSAGES = "What the import found"
 MESSAGES_NONE = "The files were read as they are."
+RECORDS_OF_BEGIN = "Of the records, as known on {day}, when the season began:"
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
-CHOOSE_OTHER, CHOOSE_NOWHERE = "Another answer", "leads nowhere"
+CHOOSE_OTHER, AT_SEA = "Another answer", "in the sea"
 LEGEND_ZONE = "border of a time zone"
 ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
                      "Map of {n} places where the plot could lie.")  # fmt: skip
@@ -276,6 +277,7 @@ DEVELOPMENT_NOTE = (
 )
 DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
+AS_BELIEVED = "*Infested at the start* and *Spread a night* begin as the season believes on {day}."
 NIGHTS_OF_PEST = "Spreads as the chosen pest, by its weather where that is known: {pest}."
 SEED_HELP = "The same seed gives the same season."
 DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"
@@ -418,6 +420,7 @@ STEP_FOUND = Plural(
     by="inspected",
 )
 STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
+STEP_TREATED = Plural("{n:,} plant treated", "{n:,} plants treated")
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"
 SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."
@@ -435,6 +438,7 @@ CHANGED_FINDS = Plural(
     "{found:,} found on {inspected:,} plants inspected on {day}.", by="inspected",
 )  # fmt: skip
 CHANGED_NONE = "Nothing was recorded on {day}."
+CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were treated on {day}.")
 CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
@@ -734,10 +738,17 @@ CONTRADICTING_ALL = Plural(
     "{n} result from {source} contradicts " + _CONTRADICTING_ALL,
     "{n} results from {source} contradict " + _CONTRADICTING_ALL,
 )
+CONTRADICTING_NO_MORE = Plural(
+    "{n} result from {source} is not recorded yet, and contradicts nothing any more.",
+    "{n} results from {source} are not recorded yet, and contradict nothing any more.",
+)
+RECORD_THESE = "Record these {n}"
 AND_MORE = "... and {n} more."
 LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
 RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
+UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
+RESULT_COUNTED = "{result}, count {n}"
 BATCHES_SAID = {
     "findings": Plural("{n:,} plant, {found:,} found", "{n:,} plants, {found:,} found"),
     "treatment": "treatment {source}",
@@ -746,6 +757,13 @@ BATCHES_SAID = {
 BATCH_OF_DAY = "inspected {days}"
 TYPED_IN, ROUTE_TABLE = "typed in", "route table"
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
+TREAT_ROWS, TREAT_ROWS_HELP = "Rows (empty: the whole plot)", "Rows as people count, such as 3-5,8."
+TREAT_SELECTED = "Only the {plants} selected on the map"
+TREAT_TWICE = (
+    "A treatment is of rows or of what is selected on the map, but both are said. Empty the box of "
+    "rows, or treat not only what is selected."
+)
+TREATED_PART = "Treatment noted, of {plants}."
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."

@@ -21,9 +21,6 @@ from fieldmon.decisions.labels import WAITS_DAYS, WAITS_HOURS
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from fieldmon.decisions.doses import Dose
     from fieldmon.monitoring import Application, Season
 
@@ -134,6 +131,7 @@ def treat(options: TreatOptions) -> None:
     from fieldmon.io.read import read_treated
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.day_figures import flagged_said
+    from fieldmon.plot.named_rows import plants_in_rows
 
     if options.area is not None and options.rows is not None:
         raise SettingError("Give --area or --rows, not both.")
@@ -145,7 +143,7 @@ def treat(options: TreatOptions) -> None:
         treated = read.value
         for message in read.messages:
             typer.echo(str(message), err=True)
-    plants = None if options.rows is None else _plants_of(kept, options.rows)
+    plants = None if options.rows is None else plants_in_rows(kept.plot.grid, options.rows)
     on_day = day_on(kept.plot.field, told)
     done = kept.treat(on_day, options.efficacy, treated, application=said, plants=plants)
     if not done.new:
@@ -198,24 +196,3 @@ def _dose(text: str) -> Dose:
             f"--dose must be a number with its unit, such as '0.5 l/ha', but it is {text!r}."
         ) from error
     return Dose(value, bare[letters:].strip())
-
-
-def _plants_of(kept: Season, rows: str) -> NDArray[np.bool_]:
-    """Return the plants ``(n,)`` of rows as people count them."""
-    import numpy as np
-
-    there, wanted = set((kept.plot.grid.row_line + 1).tolist()), set[int]()
-    for part in rows.split(","):
-        first, dash, last = part.strip().partition("-")
-        if not first.strip().isdecimal() or (dash and not last.strip().isdecimal()):
-            raise SettingError(f"--rows must be rows such as 3-5,8, but it is {rows!r}.")
-        ends = sorted({int(first), int(last if dash else first)})
-        # of a range that ends beyond the plot only what matters is counted out
-        within = range(max(ends[0], min(there)), min(ends[-1], max(there)) + 1)
-        if missing := [row for row in (*ends, *within) if row not in there]:
-            raise SettingError(
-                f"Rows of this plot are {min(there)} to {max(there)}, but --rows says {missing[0]}."
-            )
-        wanted.update(within)
-    plants: NDArray[np.bool_] = np.isin(kept.label.line, sorted(wanted))
-    return plants

@@ -62,9 +62,9 @@ class BatchContents:
         How many inspections there are, and how many found something; plants treated, and 0.
     first, last
         The days of the first and the last of them, as ``2026-11-18``.
-    row, plant, result
-        Of the only inspection: where it was, and ``"found"``, ``"clean"`` or ``"skipped"``. Of
-        several and of a treatment they say nothing.
+    row, plant, result, count
+        Of the only inspection: where it was, ``"found"``, ``"clean"`` or ``"skipped"``, and how
+        many were counted (None: nobody counted). Of several and of a treatment they say nothing.
     """
 
     n: int
@@ -74,6 +74,7 @@ class BatchContents:
     row: int
     plant: int
     result: str
+    count: float | None = None
 
 
 @dataclass(frozen=True)
@@ -160,7 +161,7 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     ).fetchall()
     rows = db.execute(
         "SELECT batch, count(*), sum(result = 'found'), min(date), max(date), min(line), "  # noqa: S608 - ours
-        f"min(number), min(result) FROM inspections WHERE batch IN ({asked}) "
+        f"min(number), min(result), min(count) FROM inspections WHERE batch IN ({asked}) "
         "AND date NOTNULL AND result NOTNULL GROUP BY batch",
         tuple(numbers),
     )

@@ -53,7 +53,7 @@ def go(app, page):
 def begun(app, name="Gate 2026"):
     """Begin a season on the plot that is open."""
     go(app, "today")
-    app.text_input(key="season_name").set_value(name)
+    boxed(app.text_input, "season_name").set_value(name)
     return press(app, "Begin the season")
 
 
@@ -80,6 +80,11 @@ def fetched(address):
 def row_box(app, name):
     """Return the box in which a plot's rows are set by hand."""
     return next(one for one in app.number_input if one.key.startswith(name))
+
+
+def boxed(boxes, name):
+    """Return the box of this name, of those of a kind, in a form that is empty for each day."""
+    return next(one for one in boxes if one.key and one.key.startswith(f"{name} "))
 
 
 def layer(app, name):

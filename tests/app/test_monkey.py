@@ -95,7 +95,7 @@ def poke(rng, kind, widget):
         return f"click {key}"
     if kind == "file_uploader":
         # a box takes only files of the kinds that it names, as in a browser
-        value = rng.choice(FILES[widget.key] if widget.key else DRIVES)
+        value = rng.choice(FILES[widget.key.split(" ")[0]] if widget.key else DRIVES)
         widget.upload(*value)
         return f"upload {key} {value[0]}"
     if kind == "selectbox" and key not in CHOICES:
@@ -116,10 +116,12 @@ def wanted(rng, kind, widget, key):
         return rng.choice(NASTY)
     if kind == "date_input":
         return rng.choice(DAYS)
-    if key not in CHOICES:
+    # what is empty for each day has the day in its key
+    some = CHOICES.get(key) or CHOICES.get(key.split(" ")[0])
+    if some is None:
         return widget.value
     several = kind in {"pills", "multiselect"}
-    return rng.sample(CHOICES[key], rng.randrange(4)) if several else rng.choice(CHOICES[key])
+    return rng.sample(some, rng.randrange(4)) if several else rng.choice(some)
 
 
 def number(rng, widget, key):

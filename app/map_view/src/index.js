@@ -67,7 +67,7 @@ class MapPage {
     this.groundOpacity = 1;
     this.signs = new Map();
     this.waiting = [];
-    this.shape = keepShape(() => this.data?.words);
+    this.shape = keepShape(() => this.data?.words, () => this.resized());
     this.listen();
   }
 
@@ -218,7 +218,7 @@ class MapPage {
     return this.data.drive ? view : { ...view, pitch: 0 };
   }
 
-  // a window that changes its size before anybody moved the map shows the whole plot again
+  // a window or a panel that changes its size before anybody moved the map shows the whole plot again
   resized() {
     this.boxes = null;
     if (this.deck && !this.moved) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });

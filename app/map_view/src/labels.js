@@ -6,6 +6,9 @@ const SWITCH = { hot: "hot", leg: "numbers", stop: "numbers", zone: "numbers", r
 // every so many rows have their numbers, where there is not room for each
 const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
+// how much of a number others must leave free where it had rather be crowded than missing
+const TIGHT = 0.6;
+
 const NUMBERS = new Set(["leg", "stop", "zone"]);
 const numbered = new WeakMap();
 
@@ -61,7 +64,7 @@ function inside(x, half, [left, right]) {
 
 // `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row, at, away, gap}, the most important
 // first; `at` are the places to be tried where it may stand at several. One with `away` [lon, lat] stands
-// beyond its place in that direction, `gap` pixels from it.
+// beyond its place in that direction, `gap` pixels from it; one that is `tight` may be crowded.
 export class Labels {
   constructor(place) {
     this.place = place;
@@ -85,9 +88,9 @@ export class Labels {
     this.placed = [];
     const step = this.step(labels, viewport);
     for (const label of labels) {
-      const { p, t, k, from, to, row, at } = label;
+      const { p, t, k, from, to, row, at, tight } = label;
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99) || row % step) continue;
-      const [half, tall] = sizeOf(t);
+      const [half, tall] = sizeOf(t).map((one) => (tight ? TIGHT * one : one));
       const places = (at ?? [p]).map((one) => pushed(viewport, one, label, [half, tall]));
       const place = places.map(([x, y]) => [k === "name" ? inside(x, half + 4, free) : x, y]).find(([x, y]) => {
         if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) return false;

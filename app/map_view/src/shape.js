@@ -10,7 +10,7 @@ const LATER_MS = 500;
 const KEY = "fieldmon panel";
 const page = document.documentElement;
 
-let now = null;
+let now = null, measured = null;
 
 function shapeOf() {
   try {
@@ -36,9 +36,12 @@ export function covered() {
   return panel.left > innerWidth / 2 ? { ...none, right: innerWidth - panel.left } : { ...none, left: panel.right };
 }
 
+// Return whether the panel covers more or less of the window's sides than when it was measured last.
 function measure() {
-  const { left, right } = covered();
+  const { left, right } = covered(), sides = `${left} ${right}`, changed = sides !== measured;
+  measured = sides;
   page.style.setProperty("--covers-start", `${left + right}px`);
+  return changed;
 }
 
 // Streamlit's list of pages, on a phone, has a group in it that is no item, and whose items are then in no list.
@@ -49,8 +52,9 @@ export function listed() {
   }
 }
 
-// Set the panel's handle up; return what fits it to the page again, and what takes it away.
-export function keepShape(words) {
+// Set the panel's handle up; return what fits it to the page again, and what takes it away. Who asks is told
+// when the panel covers more or less: another room's may be wider.
+export function keepShape(words, told = () => {}) {
   const shape = shapeOf();
   const host = document.body.appendChild(element("div", { class: "fieldmon-shape" }));
   const shadow = host.attachShadow({ mode: "open" });
@@ -59,13 +63,14 @@ export function keepShape(words) {
   shadow.adoptedStyleSheets = [sheet];
   const fold = shadow.appendChild(element("button", { type: "button", class: "fold", onclick: () => set({ folded: !shape.folded }) }));
   const grip = shadow.appendChild(element("button", { type: "button", class: "grip" }, [element("i")]));
+  const tell = () => { if (measure()) told(); };
   const set = (change) => {
     Object.assign(shape, change);
     keep(shape);
     page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
-    measure();
-    setTimeout(() => { listed(); measure(); }, LATER_MS); // the panel may only just be there
+    tell();
+    setTimeout(() => { listed(); tell(); }, LATER_MS); // the panel may only just be there
     const said = words() ?? {};
     fold.textContent = shape.folded ? "›" : "‹"; // mirrored by itself where one reads from the right
     fold.setAttribute("aria-label", (shape.folded ? said.unfold : said.fold) ?? "");

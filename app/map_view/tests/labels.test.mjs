@@ -41,6 +41,13 @@ test("the first of two that are too close is shown, where it is", () => {
   assert.deepEqual([one.t, one.x, one.y, more.length], ["1", 100, 100, 0]);
 });
 
+test("numbers that are tight are crowded rather than missing, unless one hides the other", () => {
+  const pair = (apart) => [{ p: [0.1, -0.1], t: "1", k: "leg", tight: true }, { p: [0.1 + apart, -0.1], t: "2", k: "leg", tight: true }];
+  const view = { project: ([x, y]) => [1000 * x, -1000 * y], zoom: 5, pitch: 0, width: 800, height: 600 };
+  assert.equal(shown(pair(0.016), view).length, 2);
+  assert.equal(shown(pair(0.005), view).length, 1);
+});
+
 test("legs give way to stops at their zoom, and neither shows where it is switched off", () => {
   const labels = [{ p: [0.1, -0.1], t: "1", k: "leg", to: 18 }, { p: [0.1, -0.1], t: "7", k: "stop", from: 18 },
                   { p: [0.4, -0.4], t: "3", k: "row" }];

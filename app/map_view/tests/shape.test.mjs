@@ -38,6 +38,20 @@ test("the handle folds the panel away and back, says which, and it is remembered
   assert.equal(grip.getAttribute("aria-label"), "Pull up");
 });
 
+test("who asks is told when the panel covers more or less of the sides, and not otherwise", () => {
+  made.panel = { left: 0, top: 60, width: 400, right: 400 };
+  let told = 0;
+  const shape = keepShape(() => WORDS, () => { told++; });
+  told = 0;
+  shape.again();
+  assert.equal(told, 0);
+  made.panel = { left: 0, top: 60, width: 560, right: 560 }; // another room's
+  shape.again();
+  assert.equal(told, 1);
+  shape.again();
+  assert.equal(told, 1);
+});
+
 test("a tap pulls the sheet up and lets it down; arrows move it, never off the screen", () => {
   keepShape(() => WORDS);
   const [, grip] = made.body.children.at(-1).shadow.children, top = () => Number.parseInt(made.documentElement.style["--sheet-top"]);

@@ -2,7 +2,7 @@
 
 from datetime import date
 
-from tests.app.driving import go
+from tests.app.driving import boxed, go
 
 
 def hours(app):
@@ -17,13 +17,14 @@ def test_a_season_begins_with_the_hours_chosen_just_before(app, season):
     assert season().settings.robot.hours == 4.0
 
 
-def test_a_find_goes_to_the_day_chosen_just_before(season_app, season):
+def test_a_find_said_of_a_day_is_none_of_the_day_chosen_just_before(season_app, season):
     go(season_app, "record")
-    season_app.number_input(key="one_row").set_value(1)
-    season_app.number_input(key="one_plant").set_value(1)
-    season_app.segmented_control(key="one_result").set_value(1)
+    boxed(season_app.number_input, "one_row").set_value(1)
+    boxed(season_app.number_input, "one_plant").set_value(1)
+    boxed(season_app.segmented_control, "one_result").set_value(1)
     day = next(box for box in season_app.date_input if box.key.startswith("day "))
     day.set_value(date(2026, 11, 17))
     next(one for one in season_app.button if one.label == "Record" and one.form_id).click().run()
     assert not season_app.exception
-    assert len(season().history.inspections.on(date(2026, 11, 17))) == 1
+    assert "must be said" in season_app.error[0].value
+    assert not len(season().history.inspections)

@@ -5,9 +5,21 @@ from datetime import date
 import numpy as np
 import pytest
 
+from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from tests.app.driving import begun, go, headline, layer, opened, plants, plot_name, press, texts_of
+from tests.app.driving import (
+    begun,
+    boxed,
+    go,
+    headline,
+    layer,
+    opened,
+    plants,
+    plot_name,
+    press,
+    texts_of,
+)
 
 
 def test_a_season_begins_and_is_found_again_by_a_new_session(season):
@@ -45,7 +57,7 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
         season_app.selectbox(key="season").set_value("Sample estate").run()
         go(season_app, "today")
         season_app.selectbox(key="season_earlier").set_value(kept.path.stem)
-        season_app.text_input(key="season_name").set_value("Next year")
+        boxed(season_app.text_input, "season_name").set_value("Next year")
         press(season_app, "Begin the season")
 
     begin_after_it()
@@ -66,3 +78,24 @@ def test_a_season_begins_with_finds_that_are_only_flagged(season, button):
     press(app, button)
     assert not app.exception
     assert not season().settings.belief.treated
+
+
+def test_records_left_out_are_said_before_a_season_begins_and_when_it_begins(app):
+    """The sample's records go up to its last day: begun earlier, the later ones are left out."""
+    app.date_input(key="day Sample estate").set_value(date(2026, 11, 9)).run()
+    assert "of a later day and are left out" in texts_of(go(app, "today"))
+    begun(app)
+    assert "of a later day and are left out" in app.success[0].value
+    # on another day it is still those of the day on which the season began
+    app.date_input(key="day Gate 2026").set_value(date(2026, 11, 16)).run()
+    assert "of a later day" not in texts_of(go(app, "today"))
+    said = texts_of(go(app, "plot"))
+    assert "as known on Mon 9 Nov, when the season began" in said
+    assert "of a later day and are left out" in said
+
+
+def test_another_plot_is_proposed_a_name_of_its_own(app):
+    boxed(app.text_input, "season_name").set_value("Mine").run()
+    which = next(box for box in app.selectbox if box.label == texts.WHICH_PLOT)
+    which.set_value(1).run()
+    assert boxed(app.text_input, "season_name").value == f"{plot_name(app)} 2026" != "Gate 2026"

@@ -6,6 +6,7 @@ import geopandas as gpd
 import numpy as np
 import pandas as pd
 import pytest
+from shapely import transform
 
 from app.actions import bringing_files
 from app.words import texts
@@ -26,6 +27,19 @@ def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
     assert plot_name(app) == "square"
     press(app, "Take back: crs = EPSG:2039")
     assert "coordinate system" in app.warning[0].value
+
+
+def test_a_doubt_about_the_plot_is_said_on_today_with_its_remedy_before_a_season_begins(app):
+    # longitude and latitude exchanged: it lies in the open sea
+    at_sea = square().set_geometry([transform(square().geometry[0], lambda xy: xy[:, ::-1])])
+    upload(app, plot=("plot.geojson", at_sea.to_json().encode()))
+    for page in ("today", "record"):
+        go(app, page)
+        assert not app.exception
+        assert texts.SEVERITIES["doubtful"] in texts_of(app)
+        (remedy,) = [one for one in app.button if one.key.startswith("remedy ")]
+    remedy.click().run()
+    assert texts.SEVERITIES["doubtful"] not in texts_of(go(app, "today"))
 
 
 @pytest.mark.parametrize(
@@ -88,11 +102,10 @@ def test_records_of_one_block_do_not_lock_the_others_out(app, tmp_path):
     assert "1 of 1 records shown" in texts_of(app)
 
 
-def test_answers_that_lead_somewhere_have_buttons_before_those_that_lead_nowhere():
+def test_answers_have_buttons_unless_they_were_seen_to_lead_nowhere():
     offered = [f"EPSG:{k}" for k in range(1, 15)]
     led = {one: SimpleNamespace(leads=one in {"EPSG:2", "EPSG:12"}) for one in offered[:12]}
     made = bringing_files.with_buttons(offered, led)
-    assert len(made) == 12
     # those that nobody tried may lead somewhere
-    assert made[:4] == [(2, "EPSG:2"), (12, "EPSG:12"), (13, "EPSG:13"), (14, "EPSG:14")]
+    assert made == [(2, "EPSG:2"), (12, "EPSG:12"), (13, "EPSG:13"), (14, "EPSG:14")]
     assert bringing_files.with_buttons(offered, {}) == [*enumerate(offered[:12], start=1)]

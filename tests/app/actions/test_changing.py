@@ -14,7 +14,7 @@ from tests.app.driving import PAGES, go, metric, opened, press, texts_of, until
 
 def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(season_app, season):
     project, settings = season(), season().settings
-    robot = replace(settings.robot, hours=17.0, look_s=12.5)
+    robot = replace(settings.robot, hours=17.0, look_s=22.5)
     project.change(replace(settings, robot=robot), settings)
     go(season_app, "today")
     assert not season_app.exception

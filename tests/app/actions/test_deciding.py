@@ -6,7 +6,7 @@ from app.actions import deciding as acting
 from app.words import texts
 from fieldmon.decisions.thresholds import published
 from fieldmon.io.writers.treatment_map import FORMATS
-from tests.app.driving import go, press, texts_of
+from tests.app.driving import boxed, go, press, texts_of
 
 
 def test_every_file_that_the_library_writes_is_offered_by_name():
@@ -46,7 +46,7 @@ def test_thresholds_of_ones_own_are_brought_and_the_answer_takes_them(season_app
 
 def test_zones_that_were_treated_are_noted_with_what_was_advised(season_app, season):
     go(season_app, "decide")
-    season_app.number_input(key="efficacy").set_value(80)
+    boxed(season_app.number_input, "efficacy").set_value(80)
     next(b for b in season_app.button if b.label == texts.TREAT_BUTTON).click()
     season_app.run()
     assert not season_app.exception

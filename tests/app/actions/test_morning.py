@@ -7,7 +7,7 @@ import pytest
 
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from tests.app.driving import go, opened, press, tap, texts_of
+from tests.app.driving import boxed, go, opened, press, tap, texts_of
 
 
 def test_without_a_season_one_button_begins_it(app):
@@ -34,7 +34,7 @@ def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(begu
 
 def test_recording_is_one_button_away(season_app):
     tap(season_app, "do_record")
-    assert season_app.number_input(key="one_row")
+    assert boxed(season_app.number_input, "one_row")
     go(season_app, "today")
     assert opened("Gate 2026").get("download_button")
 
@@ -65,3 +65,14 @@ def test_a_ticked_plan_is_the_one_kept_with_what_is_left_of_it(season_app, seaso
     season_app.run()
     assert f"{n:,} plants, " in plan()
     assert f"; {n - 5:,} left" in plan()
+
+
+def test_a_treatment_the_day_before_is_said_and_not_that_nothing_was_recorded(season_app, season):
+    season().treat(date(2026, 11, 16), 0.8)
+    n = len(season().plot.grid)
+    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
+    said = texts_of(season_app)
+    assert f"{n:,} plants were treated on Mon 16 Nov." in said
+    (before,) = [one.value for one in season_app.markdown if texts.STEPS["look_back"] in one.value]
+    assert before.endswith(f" {n:,} plants treated")
+    assert texts.CHANGED_NONE.format(day="Mon 16 Nov") not in said

@@ -10,17 +10,22 @@ import numpy as np
 import pytest
 import streamlit as st
 
+from app.actions import recording
+from app.state.fresh_boxes import FreshBoxes
+from app.words import texts
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
-from tests.app.driving import begun, go, metric, press, texts_of
+from tests.app.chosen import in_season
+from tests.app.driving import begun, boxed, go, metric, press, texts_of
+from tests.monitoring.seasons import a_season
 from tests.monitoring.test_outside_changes import outside
 
 
 def test_one_plant_is_recorded_and_undone(season_app, season):
     go(season_app, "record")
-    season_app.number_input(key="one_row").set_value(3)
-    season_app.number_input(key="one_plant").set_value(4)
-    season_app.segmented_control(key="one_result").set_value(1)
+    boxed(season_app.number_input, "one_row").set_value(3)
+    boxed(season_app.number_input, "one_plant").set_value(4)
+    boxed(season_app.segmented_control, "one_result").set_value(1)
     next(
         b for b in season_app.button if b.label == "Record" and "one_plant" in b.proto.form_id
     ).click()
@@ -43,7 +48,7 @@ def expected(app):
 
 def treated(app):
     go(app, "record")
-    app.number_input(key="efficacy").set_value(90)
+    boxed(app.number_input, "efficacy").set_value(90)
     next(b for b in app.button if b.label == "Note the treatment").click()
     app.run()
     assert not app.error
@@ -80,7 +85,7 @@ def test_a_file_of_findings_is_recorded_once(season_app, season):
     go(season_app, "record")
     table = b"row,number,found,count\n1,1,yes,3\n1,2,no,\n2,5,,\n"
     for says in ("2 recorded, 0 known", "0 recorded, 2 known"):
-        season_app.file_uploader(key="findings_file").upload("found.csv", table).run()
+        boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
         season_app.button(key="record_file").click().run()
         assert says in season_app.success[0].value
     assert season().history.inspections.result.tolist() == [1, 0]
@@ -96,12 +101,17 @@ def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
     first, second = season().history.inspections.plant[:2].tolist()
     go(season_app, "record")
     data = Path(copy).read_bytes()
-    season_app.file_uploader(key="findings_file").upload("copy.gpkg", data).run()
+
+    def brought():
+        boxed(season_app.file_uploader, "findings_file").upload("copy.gpkg", data).run()
+
+    brought()
     season_app.button(key="record_file").click().run()
     assert "must have an author" in season_app.error[0].value
     assert len(season().history.inspections) == 4
     for corrections in (2, 0):
-        season_app.text_input(key="corrected_by").set_value("Ann").run()
+        brought()
+        boxed(season_app.text_input, "corrected_by").set_value("Ann").run()
         season_app.button(key="record_file").click().run()
         assert f"{corrections} corrections taken" in season_app.success[0].value
         assert "0 recorded, 2 known" in season_app.success[0].value
@@ -115,7 +125,7 @@ def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
 @pytest.mark.parametrize("data", [b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"])
 def test_a_file_that_does_not_fit_is_a_sentence(season_app, season, data):
     go(season_app, "record")
-    season_app.file_uploader(key="findings_file").upload("found.csv", data).run()
+    boxed(season_app.file_uploader, "findings_file").upload("found.csv", data).run()
     season_app.button(key="record_file").click().run()
     assert not season_app.exception
     (said,) = [*season_app.error, *season_app.success]
@@ -132,7 +142,7 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
         on = date(2026, 11, day)
         season_app.date_input(key="day Gate 2026").set_value(on).run()
         go(season_app, "record")
-        season_app.number_input(key="stops_done").set_value(30)
+        boxed(season_app.number_input, "stops_done").set_value(30)
         next(
             b for b in season_app.button if b.label == "Record" and "route" in b.proto.form_id
         ).click()
@@ -154,6 +164,13 @@ def record_clean(project, on, n):
     project.record(Inspections.of(plants, np.zeros(n, np.int8), np.datetime64(on)), "twin")
 
 
+def key_of(app, name):
+    """Return the key of a box that the driver of tests does not know."""
+    return next(
+        key for key in app.session_state._state.filtered_state if key.startswith(f"{name} ")
+    )
+
+
 def send(app, form):
     """Press the button of a form."""
     next(b for b in app.button if form in b.proto.form_id).click()
@@ -173,7 +190,7 @@ def test_a_click_on_an_untouched_form_records_nothing(season_app, season, form):
 def test_only_marked_stops_are_recorded_where_no_number_is_said(season_app, season):
     go(season_app, "record")
     route = season().plan(date(2026, 11, 16), keep=False).route.plant
-    season_app.session_state[f"marks 2026-11-16 {len(route)}"] = {
+    season_app.session_state[key_of(season_app, "marks")] = {
         "edited_rows": {4: {"found": True}}, "added_rows": [], "deleted_rows": []
     }  # fmt: skip
     send(season_app, "route")
@@ -182,13 +199,88 @@ def test_only_marked_stops_are_recorded_where_no_number_is_said(season_app, seas
     assert done.result.tolist() == [1]
 
 
+def said(app):
+    """Return what the boxes for what was found hold, and the marks of the route."""
+    one = [boxed(app.number_input, name).value for name in ("one_row", "one_plant", "one_count")]
+    result = boxed(app.segmented_control, "one_result").value
+    marks = app.session_state[key_of(app, "marks")]["edited_rows"]
+    return [*one, result, boxed(app.number_input, "stops_done").value, marks]
+
+
+EMPTY = [None, None, None, None, None, {}]
+
+
+def fill(app):
+    """Say of the day what was found, and record nothing of it yet."""
+    marks = {"edited_rows": {4: {"found": True}}, "added_rows": [], "deleted_rows": []}
+    one = {"one_row": 3, "one_plant": 4, "one_count": 7, "one_result": FOUND}
+    for name, value in {**one, "stops_done": 5, "marks": marks}.items():
+        app.session_state[key_of(app, name)] = value
+    app.run()
+    assert None not in said(app)
+
+
+def test_what_was_recorded_does_not_stay_in_the_boxes(season_app, season):
+    go(season_app, "record")
+    for form, of in (("one_plant", slice(4)), ("route", slice(4, None))):
+        fill(season_app)
+        send(season_app, form)
+        assert season_app.success[0].value
+        assert said(season_app)[of] == EMPTY[of]
+        n = len(season().history.inspections)
+        send(season_app, form)
+        assert "must be said" in season_app.error[0].value
+        assert len(season().history.inspections) == n, "a second click records nothing"
+
+
+def test_what_was_not_recorded_yet_stays_in_the_boxes_of_the_other_form(season_app):
+    go(season_app, "record")
+    fill(season_app)
+    send(season_app, "route")
+    assert said(season_app)[:4] == [3, 4, 7, FOUND]
+
+
+def test_another_day_has_empty_boxes(season_app, season):
+    season().plan(date(2026, 11, 16))
+    go(season_app, "record")
+    fill(season_app)
+    boxed(season_app.file_uploader, "findings_file").upload("a.csv", b"row,plant,found\n1,1,1\n")
+    boxed(season_app.number_input, "efficacy").set_value(80)
+    boxed(season_app.text_input, "product").set_value("soap")
+    season_app.run()
+    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
+    assert said(season_app) == EMPTY
+    assert boxed(season_app.file_uploader, "findings_file").value is None
+    assert boxed(season_app.number_input, "efficacy").value is None
+    assert not boxed(season_app.text_input, "product").value
+
+
+def test_another_season_has_empty_boxes(season_app, seasons_folder):
+    shutil.copy(seasons_folder / "Gate 2026.gpkg", seasons_folder / "Other 2026.gpkg")
+    go(season_app, "record")
+    fill(season_app)
+    season_app.selectbox(key="season").set_value("Other 2026").run()
+    assert season_app.query_params["season"] in ("Other 2026", ["Other 2026"])
+    assert said(season_app) == EMPTY
+
+
+@pytest.mark.usefixtures("session")
+def test_a_plant_tapped_has_no_result_yet(tmp_path):
+    choices = in_season(a_season(tmp_path / "a.gpkg"))
+    boxes = FreshBoxes("one_plant", choices)
+    boxes.put("one_result", FOUND)
+    recording.take_plant(choices, "plants-state", 0)
+    assert (boxes.said("one_row"), boxes.said("one_plant")) == (1, 1)
+    assert boxes.said("one_result") is None
+
+
 def contradicted(app, season, n=4):
     """Record finds, then say of the same plants and one more that they are clean."""
     season().plan(date(2026, 11, 16))
     plants = season().kept_route(date(2026, 11, 16))[:n]
     season().record(Inspections.of(plants, np.ones(n, int), np.datetime64("2026-11-16")), "file")
     go(app, "record")
-    app.number_input(key="stops_done").set_value(n + 1)
+    boxed(app.number_input, "stops_done").set_value(n + 1)
     send(app, "route")
     assert f"{n} results from route table contradict" in app.warning[0].value
     assert "recorded as found, now clean" in texts_of(app)
@@ -212,12 +304,43 @@ def test_where_all_contradicts_there_are_no_others_to_record(season_app, season)
     plant, day = season().kept_route(date(2026, 11, 16))[:1], np.datetime64("2026-11-16")
     season().record(Inspections.of(plant, np.array([1]), day), "file")
     go(season_app, "record")
-    season_app.number_input(key="stops_done").set_value(1)
+    boxed(season_app.number_input, "stops_done").set_value(1)
     send(season_app, "route")
     assert season_app.warning[0].value.endswith("Nothing is recorded yet. Which holds?")
     keys = [button.key for button in season_app.button]
     assert "confirm" in keys
     assert "leave_out" not in keys
+
+
+def test_what_waits_is_not_asked_about_on_another_day(season_app, season):
+    contradicted(season_app, season)
+    for day, asked in ((17, 0), (16, 1)):
+        season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, day)).run()
+        said = [one.value for one in season_app.warning if "contradict" in one.value]
+        assert len(said) == asked
+
+
+def test_what_contradicts_nothing_any_more_can_be_recorded(season_app, season):
+    contradicted(season_app, season)
+    season().undo()
+    season_app.run()
+    assert "5 results from route table are not recorded yet" in season_app.warning[0].value
+    assert not [one for one in season_app.button if one.key in ("leave_out", "confirm")]
+    season_app.button(key="record_these").click().run()
+    assert not season_app.warning
+    assert season().history.inspections.result.tolist() == [0] * 5
+
+
+def test_what_was_taken_back_in_another_window_is_said_without_words_of_commands(
+    season_app, season
+):
+    plants = np.arange(3)
+    season().record(Inspections.of(plants, np.ones(3, int), np.datetime64("2026-11-16")), "file")
+    go(season_app, "record")
+    (undo,) = [one for one in season_app.button if one.label == "Undo"]
+    season().undo()
+    undo.click().run()
+    assert season_app.error[0].value == texts.UNDONE_BEFORE
 
 
 def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, season):
@@ -245,7 +368,7 @@ def test_what_a_phone_saved_as_not_sent_is_recorded_by_uploading_it(season_app, 
     name = {"season": season().path.stem, "who": "Ann"}
     data = json.dumps({"kind": "fieldmon findings", "findings": [one | name], "photos": []})
     go(season_app, "record")
-    season_app.file_uploader(key="findings_file").upload("rescue.json", data.encode()).run()
+    boxed(season_app.file_uploader, "findings_file").upload("rescue.json", data.encode()).run()
     season_app.button(key="record_file").click().run()
     assert "1 recorded" in season_app.success[0].value
     seen = season().history.inspections

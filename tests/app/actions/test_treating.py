@@ -3,17 +3,18 @@
 from datetime import date
 
 from fieldmon.decisions.labels import ProductLabel
-from tests.app.driving import go, press, texts_of
+from tests.app.chosen import in_season
+from tests.app.driving import boxed, go, press, texts_of
 
 
 def noted(app, **said):
     go(app, "record")
-    app.number_input(key="efficacy").set_value(80)
-    app.text_input(key="product").set_value("Acarol")
+    boxed(app.number_input, "efficacy").set_value(80)
+    boxed(app.text_input, "product").set_value("Acarol")
     for key, value in said.items():
         box = app.number_input if isinstance(value, (int, float)) else app.text_input
         # a number keeps the unit of area in which it was typed
-        box(key=f"treat {key} ha" if key == "water" else f"treat {key}").set_value(value)
+        boxed(box, f"treat {key} ha" if key == "water" else f"treat {key}").set_value(value)
     next(b for b in app.button if b.label == "Note the treatment").click()
     app.run()
 
@@ -22,7 +23,7 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     begins = season().settings.begins
     go(season_app, "record")
     table = b"product,waiting days,re-entry hours\nAcarol,7,12\n"
-    season_app.file_uploader(key="labels_file").upload("labels.csv", table, "text/csv")
+    boxed(season_app.file_uploader, "labels_file").upload("labels.csv", table, "text/csv")
     season_app.run()
     press(season_app, "Take these labels")
     assert "1 label is kept" in season_app.success[0].value
@@ -63,8 +64,8 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
 def test_water_is_noted_by_the_area_in_which_the_plot_is_said(season_app, season):
     go(season_app, "record")
     season_app.selectbox(key="area").set_value("dunam").run()
-    season_app.number_input(key="efficacy").set_value(80)
-    water = season_app.number_input(key="treat water dunam")
+    boxed(season_app.number_input, "efficacy").set_value(80)
+    water = boxed(season_app.number_input, "treat water dunam")
     assert water.label == "Water, l/dunam"
     water.set_value(80)
     press(season_app, "Note the treatment")
@@ -77,3 +78,44 @@ def test_a_dose_without_a_unit_is_asked_for(season_app, season):
     noted(season_app, dose=0.5)
     assert "must have a number and a unit" in season_app.error[0].value
     assert season().treatments() == ()
+
+
+def part_noted(app, **boxes):
+    """Note a treatment of what the boxes say."""
+    boxed(app.number_input, "efficacy").set_value(80)
+    if "rows" in boxes:
+        boxed(app.text_input, "treat rows").set_value(boxes["rows"])
+    press(app, "Note the treatment")
+
+
+def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, season):
+    go(season_app, "record")
+    part_noted(season_app, rows="20-40")
+    assert not season_app.error
+    (one,) = season().treatments()
+    assert set(season().label.line[one.place.plants].tolist()) == set(range(20, 41))
+    assert season_app.success[0].value.startswith(f"Treatment noted, of {one.place.plants.sum():,}")
+    part_noted(season_app, rows="20-400")
+    assert "row 400 is named" in season_app.error[0].value
+    assert len(season().treatments()) == 1
+
+
+def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_app, season):
+    some = (3, 4, 700)
+    season_app.session_state["plants picked"] = in_season(season()).place, some
+    go(season_app, "record")
+    assert "3 plants" in boxed(season_app.checkbox, "treat selected").label
+    part_noted(season_app, rows="20")
+    assert "but both are said" in season_app.error[0].value
+    part_noted(season_app, rows="")
+    (one,) = season().treatments()
+    assert tuple(one.place.plants.nonzero()[0].tolist()) == some
+    # the next one is of the whole plot again, unless something is selected
+    assert not [box for box in season_app.checkbox if "treat selected" in (box.key or "")]
+
+
+def test_without_a_word_on_where_the_whole_plot_was_treated(season_app, season):
+    go(season_app, "record")
+    part_noted(season_app)
+    (one,) = season().treatments()
+    assert one.place.plants.all()

@@ -1,8 +1,11 @@
 """Answers lie on one map under their numbers; a tap on any part of one is that answer."""
 
+import pytest
+
 from app.show import answers_map
 from app.show.answers_map import PLACES, SHAPES
 from app.state.tried_answers import TriedAnswer
+from app.words import texts
 from tests.app.chosen import a_plot
 
 NEAR = a_plot().field
@@ -35,3 +38,34 @@ def test_a_tap_on_an_outline_or_its_dot_is_the_answer():
     assert answers_map.tapped(tried, PLACES, 1) == "EPSG:28191"
     assert answers_map.tapped(tried, PLACES, 2) is None
     assert answers_map.tapped(tried, "zones", 0) is None
+
+
+def test_one_place_is_shown_from_so_far_that_its_country_is_seen():
+    made = answers_map.content((HERE, NOWHERE), dark=False, on_earth=True)
+    west, south, east, north = made.bounds
+    assert east - west > 10
+    assert north - south > 6
+    zones = next(layer for layer in made.layers if layer.id == "zones")
+    assert {"Asia/Jerusalem", "Asia/Amman"} <= {row["t"] for row in zones.data}
+    # which of the plots of a file is meant is seen by their shapes
+    near = answers_map.content((HERE, NOWHERE), dark=False)
+    assert near.bounds[2] - near.bounds[0] < 0.01
+    assert near.legend == [], "an empty legend"
+
+
+@pytest.mark.parametrize(
+    ("zone", "says"),
+    [
+        ("Africa/Juba", "South Sudan"),
+        ("Etc/GMT+1", texts.AT_SEA),
+        ("Moon/Sea_of_Rain",) * 2,
+        ("", ""),
+    ],
+)
+def test_an_answer_is_named_by_its_country(zone, says):
+    assert answers_map.place_of(TriedAnswer("EPSG:1", zone=zone)) == says.replace("_", " ")
+
+
+def test_countries_are_named_in_the_page_s_language(speaking):
+    speaking("he")
+    assert answers_map.place_of(HERE) == "ישראל"

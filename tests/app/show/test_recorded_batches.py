@@ -20,6 +20,8 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     first, second = (f"row {one.line[k]}, plant {one.number[k]}" for k in range(2))
     kept.record(Inspections.of(np.array([5]), np.array([FOUND]), DAY), "typed in")
     kept.record(Inspections.of(np.array([6]), np.array([SKIPPED]), DAY), "typed in", "Ann")
+    counted = Inspections.of(np.array([5]), np.array([FOUND]), DAY + 1, count=np.array([7.0]))
+    kept.record(counted, "typed in")
     many = Inspections.of(np.arange(10, 14), np.array([0, FOUND, FOUND, 0]), DAY)
     kept.record(many, "day.csv")
     kept.undo()
@@ -28,9 +30,10 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     said = [line.replace("\u2068", "").replace("\u2069", "").split(" · ", 1)[1] for line in lines]
     # recorded today, and of a day that is not
     assert said[0] == "day.csv · 4 plants, 2 found · inspected Mon 16 Nov · undone"
-    assert said[1] == f"typed in · {second}: could not inspect · inspected Mon 16 Nov · Ann"
-    assert said[2] == f"typed in · {first}: found · inspected Mon 16 Nov"
-    assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:3]}
+    assert said[1] == f"typed in · {first}: found, count 7 · inspected Tue 17 Nov"
+    assert said[2] == f"typed in · {second}: could not inspect · inspected Mon 16 Nov · Ann"
+    assert said[3] == f"typed in · {first}: found · inspected Mon 16 Nov"
+    assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:4]}
 
 
 def test_a_treatment_is_told_by_how_many_plants_were_treated_and_when(season_app, season):

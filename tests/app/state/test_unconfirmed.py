@@ -8,10 +8,11 @@ from fieldmon.infestation.inspections import Inspections
 
 
 @pytest.mark.usefixtures("session")
-def test_results_wait_for_their_own_season_until_dropped():
-    waiting = Unconfirmed("a.gpkg", Inspections.none(), "route.csv")
+def test_results_wait_for_their_own_season_and_day_until_dropped():
+    waiting = Unconfirmed("a.gpkg", "2026-11-16", Inspections.none(), "route.csv")
     unconfirmed.keep(waiting)
-    assert unconfirmed.of("a.gpkg") is waiting
-    assert unconfirmed.of("b.gpkg") is None
+    assert unconfirmed.of("a.gpkg", "2026-11-16") is waiting
+    assert unconfirmed.of("b.gpkg", "2026-11-16") is None
+    assert unconfirmed.of("a.gpkg", "2026-11-17") is None
     unconfirmed.drop()
-    assert unconfirmed.of("a.gpkg") is None
+    assert unconfirmed.of("a.gpkg", "2026-11-16") is None

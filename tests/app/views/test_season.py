@@ -7,14 +7,14 @@ import numpy as np
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from tests.app.driving import begun, go, metric, texts_of
+from tests.app.driving import begun, boxed, go, metric, texts_of
 
 
 def test_without_a_season_one_can_be_begun(app):
     go(app, "season")
     assert not app.exception
     assert texts.NEEDS_SEASON in texts_of(app)
-    assert app.text_input(key="season_name")
+    assert boxed(app.text_input, "season_name")
 
 
 def test_a_season_just_begun_has_found_nothing_and_says_what_is_expected(app):

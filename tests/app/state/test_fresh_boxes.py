@@ -1,0 +1,36 @@
+"""What was said of a day stays with its day, its season and its form, until it is kept."""
+
+from dataclasses import replace
+
+import pytest
+
+from app.state import fresh_boxes
+from app.state.fresh_boxes import FreshBoxes
+from tests.app.chosen import a_plot, chosen
+
+
+@pytest.fixture
+def choices():
+    return chosen(a_plot())
+
+
+@pytest.mark.usefixtures("session")
+def test_boxes_hold_what_was_said_until_they_are_emptied(choices):
+    boxes = FreshBoxes("one", choices)
+    assert boxes.said("row") is None
+    boxes.put("row", 3)
+    fresh_boxes.empty("other")
+    fresh_boxes.empty("")
+    assert boxes.said("row") == 3
+    boxes.empty()
+    assert boxes.said("row") is None
+
+
+@pytest.mark.usefixtures("session")
+@pytest.mark.parametrize("other", [{"day": "2026-11-17"}, {"key": "another season"}])
+def test_another_day_and_another_season_have_boxes_of_their_own(choices, other):
+    boxes = FreshBoxes("one", choices)
+    boxes.put("row", 3)
+    assert FreshBoxes("one", replace(choices, **other)).said("row") is None
+    assert FreshBoxes("two", choices).said("row") is None
+    assert FreshBoxes("one", choices).said("row") == 3

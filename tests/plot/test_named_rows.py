@@ -1,0 +1,31 @@
+"""Rows that a person names hold the plants that people count in them."""
+
+import pytest
+
+from fieldmon.errors import SettingError
+from fieldmon.plot.grid import row_label
+from fieldmon.plot.named_rows import plants_in_rows
+from tests.app.chosen import a_plot
+
+
+@pytest.fixture(scope="module")
+def grid():
+    return a_plot().grid
+
+
+@pytest.mark.parametrize(
+    ("said", "rows"), [("2", {2}), ("3-5,8", {3, 4, 5, 8}), (" 5 - 3 , 3", {3, 4, 5})]
+)
+def test_all_plants_of_the_rows_are_meant_and_no_others(grid, said, rows):
+    line = row_label(grid).line
+    assert plants_in_rows(grid, said).tolist() == [one in rows for one in line.tolist()]
+
+
+@pytest.mark.parametrize(
+    ("said", "says"),
+    [("a", "must be such as 3-5,8, but they are a"), ("3-", "such as"), ("", "such as"),
+     ("0", "row 0 is named"), ("2-9999999999", "row 9999999999 is named")],
+)  # fmt: skip
+def test_what_is_no_row_of_the_plot_is_said(grid, said, says):
+    with pytest.raises(SettingError, match=says):
+        plants_in_rows(grid, said)

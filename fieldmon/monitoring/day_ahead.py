@@ -60,7 +60,7 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     Somebody of the team has a route of their own, and so has whoever has rows, or shares them, see
     `crew_of`. It begins where that person inspected last, or at the gate.
     """
-    kept, scene = season.kept_route(on, _kept_as(season, part)), season.scene(on, who=part.name)
+    kept, scene = season.kept_route(on, kept_as(season, part)), season.scene(on, who=part.name)
     left = kept[(scene.last_inspected[kept] != scene.day) & _own(season, part)[kept]]
     return _through(scene, left) if len(left) else planned_again(season, on, part)
 
@@ -81,8 +81,8 @@ def planned_again(
     if part.name and member is None:
         crew = crew_of(season, part)
         told = None if seconds_left is None else {part.name: seconds_left}
-        kept_as = (_kept_as(season, part),) if len(crew) == 1 else None
-        days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=kept_as)
+        named = (kept_as(season, part),) if len(crew) == 1 else None
+        days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
         return days[crew.index(part.name)].route
     who = None if member is None else member.name
     now = None if seconds_left is None else _time(season, on, seconds_left, member)
@@ -103,7 +103,7 @@ def crew_of(season: Season, part: Part) -> tuple[str, ...]:
     return (*names, *({part.name} - {*names}))
 
 
-def _kept_as(season: Season, part: Part) -> str:
+def kept_as(season: Season, part: Part) -> str:
     """Return by which name a part's route is kept: the season's own is that of who works alone."""
     if (member := part.member(season)) is not None:
         return member.name

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.monitoring import scouts
+from fieldmon.monitoring.scouts_out import scouts_out
 
-from ..show import qr_code
+from ..show import qr_code, who_is_out
 from ..state import morning, notices, phone, scout_page
 from ..words import language, texts
 
@@ -30,34 +31,55 @@ def let_in(choices: Choices, name: str, rows: tuple[int, int] | None = None) -> 
     return scout_page.invitation(phone.base().url, season, key, day, language.current())
 
 
-def show_folded(choices: Choices) -> None:
-    """Show it where it is not the first thing wanted."""
+def show_below(choices: Choices) -> None:
+    """Show who is out; the codes folded, where they are not the first thing wanted."""
+    _show_out(choices)
     with st.expander(texts.INVITE):
-        show(choices)
+        _show_codes(choices)
 
 
 def show(choices: Choices) -> None:
     """Show who may record from a phone, and make codes."""
+    _show_codes(choices)
+    _show_out(choices)
+
+
+def _show_codes(choices: Choices) -> None:
     notices.show()  # in a window of its own nothing else would
     st.markdown(texts.INVITE_NOTE)
     if not phone.base().works_offline:
         st.info(texts.INVITE_LOCAL)
     with st.form("invite", border=False):
-        st.text_input(texts.INVITE_NAME, key="invite_name")
+        if choices.team:
+            st.selectbox(texts.INVITE_NAME, choices.team, None, key="invite_name",
+                         placeholder=texts.INVITE_NAME, accept_new_options=True)  # fmt: skip
+        else:
+            st.text_input(texts.INVITE_NAME, key="invite_name")
         left, right = st.columns(2)
         rows = int(choices.season.label.line.max())
         left.number_input(texts.INVITE_FIRST, 1, rows, None, key="invite_first")
         right.number_input(texts.INVITE_LAST, 1, rows, None, key="invite_last")
+        st.caption(texts.INVITE_RULES_TEAM if choices.team else texts.INVITE_RULES)
         st.form_submit_button(texts.INVITE_BUTTON, on_click=_invite, args=(choices,))
     _show_code()
-    for scout in scouts.scouts_of(choices.season):
-        name, ends = st.columns([3, 1], vertical_alignment="center")
-        said = texts.isolated(scout.name)
-        if scout.rows is not None:
-            said = texts.INVITED.format(name=said, low=scout.rows[0], high=scout.rows[1])
-        name.markdown(said)
-        ends.button(texts.TAKE_BACK, key=f"take back {scout.name}", on_click=_take_back,
-                    args=(choices, scout.name))  # fmt: skip
+
+
+def _show_out(choices: Choices) -> None:
+    """Show a line for each who is out, with its cautions, and what ends a code."""
+    lines = who_is_out.lines(choices)
+    if not lines:
+        return
+    st.markdown(f"### {texts.OUT}")
+    for line in lines:
+        with st.container(key=f"out_{line.name}", gap=None):
+            with st.container(horizontal=True, vertical_alignment="center"):
+                st.markdown(f"**{line.title}**", width="stretch")
+                if line.has_code:
+                    st.button(texts.TAKE_BACK, key=f"take back {line.name}", type="tertiary",
+                              on_click=_take_back, args=(choices, line.name))  # fmt: skip
+            st.caption(line.said)
+            for caution in line.cautions:
+                st.markdown(f":material/warning: {caution}")
 
 
 def _show_code() -> None:
@@ -73,12 +95,29 @@ def _show_code() -> None:
 def _invite(choices: Choices) -> str:
     state = st.session_state
     name, first, last = state["invite_name"], state["invite_first"], state["invite_last"]
+    name = (name or "").strip()
     whole = first is None and last is None
     lines = int(choices.season.label.line.max())
     rows = None if whole else (int(first or 1), int(last or lines))
-    state[_SHOWN] = name.strip(), let_in(choices, name, rows)
+    before = {one.name.casefold() for one in scouts.scouts_of(choices.season)}
+    state[_SHOWN] = name, let_in(choices, name, rows)
     morning.note(choices, morning.SEND)
-    return ""
+    return _what_follows(choices, name, had_code=name.casefold() in before)
+
+
+def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
+    """Return what a new code means for others and for the earlier one; empty: nothing."""
+    named = (one for one in scouts_out(choices.season, choices.on)
+             if one.name.casefold() == name.casefold())  # fmt: skip
+    made, said = next(named), texts.isolated(name)
+    others = ", ".join(texts.isolated(one) for one in made.shares)
+    beside = choices.season.settings.team and choices.season.settings.named(name) is None
+    sentences = [
+        texts.INVITE_ENDED.format(name=said) if had_code else "",
+        texts.INVITE_SHARED.format(name=said, others=others) if others else "",
+        texts.INVITE_BESIDE.format(name=said) if beside else "",
+    ]
+    return " ".join(one for one in sentences if one)
 
 
 @notices.reporting

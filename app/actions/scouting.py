@@ -89,8 +89,8 @@ def longer(choices: Choices) -> str:
     """Make the working day an hour longer than it is, and than the work has taken so far."""
     settings, history = choices.season.settings, choices.season.history
     second = history.inspections.on(choices.on).second
-    # a scout who came in the evening is hours beyond the end
-    gone_s = np.nanmax(np.append(second, 0.0)) - seconds(settings.starts)
+    # who worked on is hours beyond the end
+    gone_s = np.nanmax(np.append(second, 0.0)) - choices.season.begun_s(choices.on)
     hours = max(settings.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
     robot = replace(settings.robot, hours=float(min(hours, 24.0)))
     choices.season.change(replace(settings, robot=robot), settings)

@@ -22,6 +22,8 @@ from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
 from fieldmon.plot.local_clock import local_clock, utc_now
 
+from ..state import heard
+
 if TYPE_CHECKING:
     from datetime import date
 
@@ -70,6 +72,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
     """Return a day as it stands: the route left for this person, what is believed and known."""
     on = _day(season, on)
     number = season.settings.day(on)
+    heard.note(season.path, scout.name, on)
     part = Part(scout.rows, scout.name)
     route, history = route_ahead(season, on, part), season.history
     member = part.member(season)

@@ -22,7 +22,7 @@ from starlette.routing import Route
 from fieldmon.errors import AccessError, FieldmonError, FileProblem, LimitError, ObservationError
 from fieldmon.monitoring import findings, photos, photos_asked, scouts
 
-from ..state import opened_seasons, seasons_folder
+from ..state import heard, opened_seasons, seasons_folder
 from . import description, documents, reading
 
 if TYPE_CHECKING:
@@ -131,7 +131,9 @@ def _opened(name: str, key: str) -> tuple[Season, Scout]:
         except FieldmonError:
             key = ""
         else:
-            return season, scouts.who(season, key)
+            scout = scouts.who(season, key)
+            heard.note(season.path, scout.name)
+            return season, scout
     raise AccessError(
         "There must be a key that holds for this season, but there is none. Ask whoever leads the "
         "season for a new one."

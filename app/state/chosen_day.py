@@ -48,6 +48,9 @@ class DayRoute:
 
 def starts(choices: Choices, plan: DayPlan) -> datetime:
     """Return the local time at which the planned route, or what is left of it, starts."""
+    notes = plan.route.notes
+    if notes is not None and notes.start is not None:
+        return notes.start
     gone = timedelta(seconds=plan.scene.robot.day_s - plan.scene.seconds_left)
     return _work_begins(choices) + gone
 

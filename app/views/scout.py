@@ -44,7 +44,7 @@ def show(choices: Choices) -> None:
             st.button(texts.SCOUT_LONGER, key="scout_hour", on_click=scouting.longer,
                       args=(choices,))  # fmt: skip
         _undo(choices)
-        inviting.show_folded(choices)
+        inviting.show_below(choices)
         return
     stop = next_stop(plan, progress.inspected_today, choices.units)
     st.markdown(f"## {stop.arrow} {stop.place}")
@@ -64,7 +64,7 @@ def show(choices: Choices) -> None:
     _undo(choices)
     here = marks.places([stop.lonlat], "next", (255, 190, 0), texts.NEXT)
     field_map.want(map_layers.day_map(choices, above=[here], first="state"))
-    inviting.show_folded(choices)
+    inviting.show_below(choices)
 
 
 def _undo(choices: Choices) -> None:

@@ -854,7 +854,10 @@ SCOUT_DONE = Plural(
     "### Done for today\n{inspected:,} plant inspected, {found:,} found.",
     "### Done for today\n{inspected:,} plants inspected, {found:,} found.", by="inspected",
 )  # fmt: skip
-SCOUT_START = "Work starts at {start} by the settings of this season; it is {now}."
+SCOUT_START = (
+    "Work starts at {start} by the settings of this season; it is {now}. The hours run from the "
+    "first plant recorded."
+)
 SCOUT_NOW = "Begin now"
 SCOUT_LONGER, SCOUT_LONGER_NOTE = "One hour more", "The working day is over. Work on?"
 SCOUT_LAST = "Last: row {row}, plant {plant}: {result}"
@@ -1038,7 +1041,30 @@ INVITE_NAME, INVITE_FIRST, INVITE_LAST = "Name", "From row", "To row"
 INVITE_BUTTON, TAKE_BACK = "Make a code", "Take back"
 INVITE_CODE = "Code for {name}"
 INVITE_ALT = "Picture with a person's own address of the season, for a phone's camera."
+INVITE_RULES = (
+    "A new code for a name ends the earlier one at once. Without rows it is for the whole plot; "
+    "two codes for the same rows share them. Hours run from the first plant recorded."
+)
+INVITE_RULES_TEAM = (
+    "A new code for a name ends the earlier one at once. One of the team needs no rows: the team's "
+    "plan says who goes where. Any other name needs rows."
+)
+INVITE_ENDED = "The earlier code of {name} no longer holds."
+INVITE_SHARED = (
+    "{name} shares these plants with {others}: each gets aisles of their own. Whoever is out "
+    "already loads the day again."
+)
+INVITE_BESIDE = "{name} is not of the team, and has a day of their own in these rows."
 INVITED = "{name}, rows {low} to {high}"
+# who is out, a line each
+OUT, OUT_NO_CODE, OUT_MADE = "Who is out", "no code", "code made {at}"
+OUT_HEARD, OUT_SILENT, OUT_LOADED = "heard {at}", "not heard yet", "has the day since {time}"
+OUT_DONE = "{done:,} of {all:,} recorded"
+OUT_CLOCK = "The phone's clock is {minutes:,} min off: its times are put right."
+OUT_OLDER = "Works by an older plan of the day: load the day again on the phone."
+OUT_OTHER_DAY = "Has the plan of {day}: load the day again on the phone."
+OUT_SHARES = "shares these plants with {others}"
+OUT_NO_ROUTE = "Not of the team and without rows, so without a route: make a code with rows."
 TAKEN_BACK = "{name} can no longer read or record anything of this season."
 ASK_PHOTOS = "Photos asked for: {n}"
 ASK_PHOTO, ASK_PHOTO_BUTTON = "What is to be seen on it", "Ask for a photo of {plants}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.monitoring.photos_asked import photos_asked
-from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.scouts import scouts_of
 from fieldmon.planning.route import route_of
 from fieldmon.planning.wishes import Wishes
 from fieldmon.planning.workday import Workday
@@ -40,7 +40,7 @@ class Part:
     rows
         First and last row, from 1; None: the whole plot, or what the team's plan gives.
     name
-        Of one of the season's team; any other name is nobody's.
+        Of whoever works: one of the season's team or not; empty: nobody in particular.
     """
 
     rows: tuple[int, int] | None = None
@@ -48,8 +48,7 @@ class Part:
 
     def member(self, season: Season) -> TeamMember | None:
         """Return the one of the team who has this name, or None."""
-        named = (one for one in season.settings.team if one.name.casefold() == self.name.casefold())
-        return next(named, None)
+        return season.settings.named(self.name)
 
 
 WHOLE = Part()
@@ -58,19 +57,12 @@ WHOLE = Part()
 def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     """Return what is left of the route given out for a day; give one out if there is none.
 
-    Somebody of the team has a route of their own. Of a part it is the stops given out in its rows,
-    or where there are none, a route of its own.
+    Somebody of the team has a route of their own, and so has whoever has rows, or shares them, see
+    `crew_of`. It begins where that person inspected last, or at the gate.
     """
-    member = part.member(season)
-    who = "" if member is None else member.name
-    kept = season.kept_route(on, who)
-    if not len(kept) and part.rows is None:
-        return season.plan(on, wishes=Wishes(_wanted(season)), who=who or None).route
-    scene = season.scene(on, who=who)
-    left = kept[(scene.last_inspected[kept] != scene.day) & inside(season, part.rows)[kept]]
-    if len(left):
-        return _through(scene, left)
-    return planned_again(season, on, part, work_left_s(season, on, part))
+    kept, scene = season.kept_route(on, kept_as(season, part)), season.scene(on, who=part.name)
+    left = kept[(scene.last_inspected[kept] != scene.day) & _own(season, part)[kept]]
+    return _through(scene, left) if len(left) else planned_again(season, on, part)
 
 
 def planned_again(
@@ -78,29 +70,58 @@ def planned_again(
 ) -> Route:
     """Plan what is left of a day with all that is known now, by the plants to be photographed.
 
-    Where it is for the whole plot, it is kept as the route given out.
+    It is kept as the route given out, unless it is a part of the plot and nobody's own.
     """
-    others = np.flatnonzero(~inside(season, part.rows))
-    member = part.member(season)
-    now = None if seconds_left is None else _time(season, seconds_left, member)
-    wishes = Wishes(_wanted(season, part), tuple(others.tolist()))
+    own, member = _own(season, part), part.member(season)
+    if part.rows is not None and season.settings.team and member is None:
+        for one in season.settings.team:
+            own[season.kept_route(on, one.name)] = False
+    others = tuple(np.flatnonzero(~own).tolist())
+    wishes = Wishes(_wanted(season, part), others)
+    if part.name and member is None:
+        crew = crew_of(season, part)
+        told = None if seconds_left is None else {part.name: seconds_left}
+        named = (kept_as(season, part),) if len(crew) == 1 else None
+        days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
+        return days[crew.index(part.name)].route
     who = None if member is None else member.name
+    now = None if seconds_left is None else _time(season, on, seconds_left, member)
     return season.plan(on, now, keep=part.rows is None, wishes=wishes, who=who).route
 
 
-def work_left_s(season: Season, on: date, part: Part) -> float:
-    """Return the seconds left of somebody's working day, which begins with the first inspection.
+def crew_of(season: Season, part: Part) -> tuple[str, ...]:
+    """Return who shares a part's plants: all who have a code for these rows, beside the team.
 
-    Of nobody in particular, and where inspections have no times, it is what the season reckons.
+    They have aisles of their own, as a team has.
     """
-    member = part.member(season)
-    done = season.history.inspections.on(on)
-    own_s = done.second[done.who == part.name]
-    known_s = own_s[~np.isnan(own_s)]
-    if not part.name or (len(own_s) and not len(known_s)):
-        return float(season.scene(on, who="" if member is None else member.name).seconds_left)
-    robot = season.settings.robot if member is None else member.robot
-    return max(float(robot.day_s - (np.ptp(known_s) if len(known_s) else 0.0)), 0.0)
+    lines = 1, int(season.label.line.max())
+    names = [
+        one.name
+        for one in scouts_of(season)
+        if (one.rows or lines) == (part.rows or lines) and season.settings.named(one.name) is None
+    ]
+    return (*names, *({part.name} - {*names}))
+
+
+def kept_as(season: Season, part: Part) -> str:
+    """Return by which name a part's route is kept: the season's own is that of who works alone."""
+    if (member := part.member(season)) is not None:
+        return member.name
+    alone = part.rows is None and not season.settings.team and len(crew_of(season, part)) == 1
+    return "" if alone else part.name
+
+
+def _own(season: Season, part: Part) -> NDArray[np.bool_]:
+    """Return ``(n,)`` which plants are somebody's to inspect; beside a team none without rows."""
+    beside = bool(season.settings.team and part.name) and part.member(season) is None
+    if beside and part.rows is None:
+        return np.zeros(len(season.label.line), np.bool_)
+    return inside(season, part.rows)
+
+
+def work_left_s(season: Season, on: date, part: Part) -> float:
+    """Return the seconds left of somebody's working day, see `Season.begun_s`."""
+    return float(season.scene(on, who=part.name).seconds_left)
 
 
 def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
@@ -115,14 +136,17 @@ def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
 def asked_of(season: Season, on: date, part: Part = WHOLE) -> tuple[AskedPhoto, ...]:
     """Return the photos asked for that are somebody's to take: none is taken by two.
 
-    Those in a part's rows; of a team those on one's own route, and the first one's where they are
-    on nobody's.
+    Those in a part's rows; of several who share them those on one's own route, and the first one's
+    where they are on nobody's.
     """
-    mine, member = inside(season, part.rows), part.member(season)
-    if member is not None:
-        routes = {one.name: season.kept_route(on, one.name) for one in season.settings.team}
-        own = routes.pop(member.name)
-        if member.name != season.settings.team[0].name:
+    mine, member = _own(season, part), part.member(season)
+    team = [one.name for one in season.settings.team]
+    names = crew_of(season, part) if member is None else team
+    if part.name and len(names) > 1:
+        who = part.name if member is None else member.name
+        routes = {one: season.kept_route(on, one) for one in names}
+        own = routes.pop(who)
+        if who != names[0]:
             mine &= np.isin(np.arange(len(mine)), own)
         for others in routes.values():
             mine[others] = False
@@ -131,18 +155,16 @@ def asked_of(season: Season, on: date, part: Part = WHOLE) -> tuple[AskedPhoto, 
 
 def _wanted(season: Season, part: Part = WHOLE) -> tuple[int, ...]:
     """Return the plants of a part of which a photo is asked for."""
-    mine = inside(season, part.rows)
+    mine = _own(season, part)
     return tuple(sorted({one.plant for one in photos_asked(season) if mine[one.plant]}))
 
 
-def _time(season: Season, seconds_left: float, member: TeamMember | None) -> time:
+def _time(season: Season, on: date, seconds_left: float, member: TeamMember | None) -> time:
     """Return the local time at which so much of the working day is left."""
-    settings = season.settings
-    robot, later_s = (settings.robot, 0.0) if member is None else (member.robot, member.starts_s)
+    robot, who = (season.settings.robot, "") if member is None else (member.robot, member.name)
     left_s = min(max(seconds_left, 0.0), robot.day_s)
-    begins_s = seconds(settings.starts) + later_s
-    now_s = min(begins_s + robot.day_s - left_s, 86_399.0)
-    return (datetime.combine(settings.begins, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
+    now_s = min(season.begun_s(on, who) + robot.day_s - left_s, 86_399.0)
+    return (datetime.combine(on, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
 
 
 def _through(scene: Scene, plants: Plants) -> Route:

@@ -48,6 +48,8 @@ if TYPE_CHECKING:
 
 
 _T = TypeVar("_T")
+#: who begins later than this after the day's start, or sooner before it, has hours of their own
+LATE_S = 300.0
 
 
 class _Last(Generic[_T]):
@@ -443,6 +445,15 @@ class History:
             key=shift.streams.key("sampler", day),
         )
 
+    def begun_s(self, shift: Shift, day: int, who: str | None = None) -> float:
+        """Return the second of a day at which somebody's work began; `who` is that of `scene`.
+
+        It is the shift's, unless the first inspection shows that it was more than `LATE_S` off:
+        then it began with the way to that one.
+        """
+        resting = resting_place(shift.robot, self._trail(day, who))
+        return _begun_s(shift, made_by(self.on(day), who), resting)
+
     def _trail(self, day: int, who: str | None) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
         earlier = made_by(self.until(day - 1).inspected, who)
@@ -491,16 +502,27 @@ class Shift:
     streams: RandomStreams = RandomStreams(1)  # noqa: RUF009 - a seed, not a call with effects
 
 
+def _begun_s(shift: Shift, today: Inspections, resting: int) -> float:
+    """Return the second of the day at which inspections of one day, in their order, began."""
+    if not len(today) or not np.isfinite(today.second[0]):
+        return shift.starts_s
+    begun_s = max(0.0, float(today.second[0]) - _charged_s(shift, today.plant[:1], resting))
+    return begun_s if abs(begun_s - shift.starts_s) > LATE_S else shift.starts_s
+
+
 def _gone_s(shift: Shift, today: Inspections, resting: int, now_s: float | None) -> float:
     """Return the seconds of the working day that are gone."""
+    if now_s is None and len(today) and np.isfinite(today.second[-1]):
+        now_s = float(today.second[-1])
     if now_s is not None:
-        return max(0.0, now_s - shift.starts_s)
-    if not len(today):
-        return 0.0
-    if np.isfinite(today.second[-1]):
-        return max(0.0, float(today.second[-1]) - shift.starts_s)
+        return max(0.0, now_s - _begun_s(shift, today, resting))
+    return _charged_s(shift, today.plant, resting) if len(today) else 0.0
+
+
+def _charged_s(shift: Shift, plants: NDArray[np.int32], resting: int) -> float:
+    """Return what driving to plants in turn and inspecting them costs."""
     robot = shift.robot
     clock = robot_clock(robot, robot.day_s)
     travel = shift.aisles.for_robot(robot).travel
-    drive_s = driven_s(travel, clock, np.append(np.int64(resting), today.plant))
-    return drive_s + robot.visit_s * len(today)
+    drive_s = driven_s(travel, clock, np.append(np.int64(resting), plants))
+    return drive_s + robot.visit_s * len(plants)

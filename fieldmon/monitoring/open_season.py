@@ -48,9 +48,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.history import Treatment
-    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
-    from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Scene
 
@@ -231,10 +229,23 @@ class OpenSeason:
     def scene(self, on: date, now: time | None = None, who: str = "") -> Scene:
         """Return the day `on` as it stands after what was recorded of it; `now` as in `plan`.
 
-        Of a team it is that of `who` is named, or of the first.
+        Of a team it is that of `who` is named, or of the first. Whoever else is named has the
+        season's robot and stands where they inspected last, or at the gate.
         """
         with self._lock:
             return self._scene(self._now(), on, now, who)
+
+    def begun_s(self, on: date, who: str = "") -> float:
+        """Return the second of the day `on` at which work began, or will; `who` as in `scene`.
+
+        That is as the settings say, unless the first inspection was made minutes before or after.
+        """
+        with self._lock:
+            return self._begun_s(self._now(), on, who)
+
+    def _begun_s(self, contents: SeasonContents, on: date, who: str) -> float:
+        shift, name = self._shift(self._planned_by(contents, on), who)
+        return contents.history.begun_s(shift, contents.settings.day(on), name)
 
     def _scene(
         self, contents: SeasonContents, on: date, now: time | None = None, who: str = ""
@@ -242,12 +253,8 @@ class OpenSeason:
         settings, day = self._planned_by(contents, on), contents.settings.day(on)
         now_s = None if now is None else seconds(now)
         morning = contents.morning(day)
-        if not settings.team:
-            shift = self._shift(settings, settings.robot)
-            return contents.history.scene(shift, day, morning, now_s)
-        member = settings.member(who) if who else settings.team[0]
-        shift = self._shift(settings, member.robot, member)
-        return contents.history.scene(shift, day, morning, now_s, member.name)
+        shift, name = self._shift(settings, who)
+        return contents.history.scene(shift, day, morning, now_s, name)
 
     def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:
         """Return the ways on the plot with another gate; None: its own."""
@@ -258,13 +265,14 @@ class OpenSeason:
             self._aisles[gate] = self.plot.with_gate(gate).aisles
         return self._aisles[gate]
 
-    def _shift(
-        self, settings: MonitoringSettings, robot: Robot, member: TeamMember | None = None
-    ) -> Shift:
+    def _shift(self, settings: MonitoringSettings, who: str) -> tuple[Shift, str | None]:
+        """Return how somebody works, and whose inspections are theirs; None: everybody's."""
         starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
+        member = settings.named(who) if who else next(iter(settings.team), None)
         if member is None:
-            return Shift(self.plot.aisles, robot, starts_s, streams)
-        return Shift(self.aisles_from(member.gate), robot, starts_s + member.starts_s, streams)
+            return Shift(self.plot.aisles, settings.robot, starts_s, streams), who or None
+        aisles, starts_s = self.aisles_from(member.gate), starts_s + member.starts_s
+        return Shift(aisles, member.robot, starts_s, streams), member.name
 
     def _now(self) -> SeasonContents:
         with self._lock, self.store.reading() as db:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,13 +23,11 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import RowLabel
 
 
-def begins(settings: MonitoringSettings, today: DayPlan, who: str = "") -> datetime:
-    """Return the local time at which a route begins: the start of work, or half-way."""
+def begins(settings: MonitoringSettings, today: DayPlan, begun_s: float) -> datetime:
+    """Return the local time at which a route begins: `begun_s`, when work did, or half-way."""
     gone_s = today.scene.robot.day_s - today.scene.seconds_left
-    if who:
-        gone_s += settings.member(who).starts_s
-    start = datetime.combine(settings.date(today.scene.day), settings.starts)
-    return start + timedelta(seconds=round(gone_s))
+    midnight = datetime.combine(settings.date(today.scene.day), time())
+    return midnight + timedelta(seconds=round(begun_s + gone_s))
 
 
 def keep(
@@ -43,11 +41,14 @@ def keep(
 
     It has a stop or more.
     """
-    day, route = today.scene.day, today.route
+    day, route, notes = today.scene.day, today.route, today.route.notes
+    assert notes is not None  # noqa: S101 - whoever planned said
+    assert notes.start is not None  # noqa: S101 - when it begins
+    begin = notes.start
     mark, last = _digest(today), _last(db, today, who)
     if last is not None and last[1] == mark:
         return False
-    begin, line = begins(settings, today, who), route.line_lonlat()
+    line = route.line_lonlat()
     row = {
         "geom": blob(LineString(line)) if len(line) > 1 else None,
         "day": day,

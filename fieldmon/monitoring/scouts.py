@@ -49,7 +49,8 @@ class Scout:
 def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> str:
     """Make a key for somebody and return it; an earlier key of that name ends at once.
 
-    Raise `SettingError` if there is no name, or if the rows are not on the plot.
+    Raise `SettingError` if there is no name, if the rows are not on the plot, if they are others'
+    in part, or if somebody beside the season's team has none.
 
     Examples
     --------
@@ -78,6 +79,13 @@ def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> st
                 lines=lines, low=rows[0], high=rows[1],
             )
         )  # fmt: skip
+    if rows == (1, lines):
+        rows = None
+    member = season.settings.named(name)
+    if member is None:
+        _must_be_own(season, name, rows)
+    else:
+        name = member.name
     key = secrets.token_urlsafe(_KEY_BYTES)
     first, last = rows or (None, None)
     with season.store.writing() as db:
@@ -86,6 +94,38 @@ def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> st
         insert(db, phone_tables.SCOUTS, [row])
         touch(db, phone_tables.SCOUTS.name)
     return key
+
+
+def _must_be_own(season: Season, name: str, rows: tuple[int, int] | None) -> None:
+    """Refuse somebody beside the team without rows, and rows of which others have some."""
+    team = season.settings.team
+    if team and rows is None:
+        raise SettingError(
+            worded(
+                "{name} must be one of the team ({names}), or have rows of their own, but is "
+                "neither. Give a name of the team, or rows.",
+                name=name, names=", ".join(one.name for one in team),
+            )
+        )  # fmt: skip
+    lines = 1, int(season.label.line.max())
+    low, high = rows or lines
+    for other in scouts_of(season):
+        first, last = other.rows or lines
+        is_beside = _same(other.name, name) or season.settings.named(other.name) is not None
+        if not is_beside and (first, last) != (low, high) and first <= high and low <= last:
+            raise SettingError(
+                worded(
+                    "Rows must be one's own, or the same as another's to share them, but rows "
+                    "{low} to {high} overlap with {first} to {last}, which are {name}'s. Give "
+                    "other rows, or take that code back.",
+                    low=low, high=high, first=first, last=last, name=other.name,
+                )
+            )  # fmt: skip
+
+
+def _same(name: str, other: str) -> bool:
+    """Return whether two names are one person's, as a season's findings are read."""
+    return name.casefold() == other.casefold()
 
 
 def take_back(season: Season, name: str) -> None:
@@ -136,8 +176,10 @@ def _scout(row: tuple[str, int | None, int | None, str, str | None]) -> Scout:
 
 
 def _end(db: sqlite3.Connection, name: str) -> int:
+    holding = db.execute("SELECT DISTINCT name FROM scouts WHERE ended IS NULL").fetchall()
+    names = [(utc_now(), one) for (one,) in holding if _same(one, name)]
     ended = "UPDATE scouts SET ended = ? WHERE name = ? AND ended IS NULL"
-    return db.execute(ended, (utc_now(), name)).rowcount
+    return db.executemany(ended, names).rowcount if names else 0
 
 
 def _key_digest(season: Season, key: str) -> str:

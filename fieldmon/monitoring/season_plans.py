@@ -16,6 +16,7 @@ from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day, settings_of
+from fieldmon.monitoring.settings import seconds
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.monitoring.open_season import SeasonContents
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
@@ -71,29 +73,80 @@ class SeasonPlans(OpenSeason):
         """
         with self._lock:
             contents = self._now()
-            settings, day = self._planned_by(contents, on), contents.settings.day(on)
+            settings = self._planned_by(contents, on)
             scenes = [self._scene(contents, on, now, who) for who in _names(settings)]
             if settings.team:
-                days = self._team_days(settings, day, scenes, wishes)
+                day_s = seconds(settings.starts)
+                begun_s = [self._begun_s(contents, on, who) - day_s for who in _names(settings)]
+                gone_s = [scene.robot.day_s - scene.seconds_left for scene in scenes]
+                posts = zip(scenes, np.add(begun_s, gone_s).tolist(), strict=True)
+                days = self._team_days(settings, _names(settings), tuple(posts), wishes)
             else:
                 days = (plan_in(scenes[0], settings.decides(), wishes),)
-            noted = tuple(
-                self._noted(settings, today, who)
-                for today, who in zip(days, _names(settings), strict=True)
-            )
-            if keep:
-                self._keep(settings, noted)
+            return self._given(contents, on, days, _names(settings), keep=keep)
+
+    def plan_crew(
+        self, on: date, crew: tuple[str, ...], left_s: dict[str, float] | None = None, *,
+        wishes: Wishes | None = None, kept_as: tuple[str, ...] | None = None,
+    ) -> tuple[DayPlan, ...]:  # fmt: skip
+        """Plan what is left of a day for scouts who are no team's, and share the same plants.
+
+        Each has the season's robot and goes on from where they stand, in aisles of their own.
+
+        Parameters
+        ----------
+        on
+            The day.
+        crew
+            Their names.
+        left_s
+            The seconds left of their hours, of those who said so themselves.
+        wishes
+            What people want of the day besides.
+        kept_as
+            The names by which their routes are kept; None: their own.
+        """
+        with self._lock:
+            contents = self._now()
+            settings, told_s = self._planned_by(contents, on), left_s or {}
+            scenes = [self._scene(contents, on, None, who) for who in crew]
+            scenes = [
+                replace(scene, seconds_left=min(told_s.get(who, scene.seconds_left),
+                                                scene.robot.day_s))
+                for scene, who in zip(scenes, crew, strict=True)
+            ]  # fmt: skip
+            days: tuple[DayPlan, ...]
+            if len(crew) == 1:
+                days = (plan_in(scenes[0], settings.decides(), wishes),)
+            else:  # all go on now
+                posts = tuple((scene, 0.0) for scene in scenes)
+                days = self._team_days(settings, crew, posts, wishes)
+            return self._given(contents, on, days, crew, kept_as)
+
+    def _given(
+        self, contents: SeasonContents, on: date, days: tuple[DayPlan, ...],
+        who: tuple[str, ...], kept_as: tuple[str, ...] | None = None, *, keep: bool = True,
+    ) -> tuple[DayPlan, ...]:  # fmt: skip
+        """Return the days of those named, each route with its notes; keep the routes."""
+        names, settings = who if kept_as is None else kept_as, self._planned_by(contents, on)
+        noted = tuple(
+            self._noted(settings, today, (name, self._begun_s(contents, on, one)))
+            for today, name, one in zip(days, names, who, strict=True)
+        )
+        if keep:
+            self._keep(settings, noted, names)
         return noted
 
     def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the latest route kept for the day `on`; empty without one.
 
-        Of a team it is that of `who` is named, or of the first.
+        Of a team it is that of `who` is named, or of the first; a scout beside it has one, too.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             settings = self._read(db).settings
             if settings.team:
-                who = settings.member(who).name if who else settings.team[0].name
+                named = settings.named(who) if who else settings.team[0]
+                who = who if named is None else named.name
             return routes.plants(db, settings.day(on), who)
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
@@ -114,13 +167,11 @@ class SeasonPlans(OpenSeason):
             max(one.hours for one in kept),
         )
 
-    def _keep(self, settings: MonitoringSettings, noted: tuple[DayPlan, ...]) -> None:
+    def _keep(
+        self, settings: MonitoringSettings, noted: tuple[DayPlan, ...], names: tuple[str, ...]
+    ) -> None:
         """Keep routes; those that are kept already are not written: that would wait for readers."""
-        named = [
-            (today, who)
-            for today, who in zip(noted, _names(settings), strict=True)
-            if len(today.route)
-        ]
+        named = [(today, who) for today, who in zip(noted, names, strict=True) if len(today.route)]
         with self.store.reading() as db:
             is_kept = all(routes.is_kept(db, today, who) for today, who in named)
         if is_kept:
@@ -148,33 +199,38 @@ class SeasonPlans(OpenSeason):
             if FileRevision.of(db) == now.revision:
                 self._keep_mornings(db, now.mornings, newest)
 
-    def _noted(self, settings: MonitoringSettings, today: DayPlan, who: str) -> DayPlan:
-        begins = routes.begins(settings, today, who)
+    def _noted(
+        self, settings: MonitoringSettings, today: DayPlan, of: tuple[str, float]
+    ) -> DayPlan:
+        who, begun_s = of
+        begins = routes.begins(settings, today, begun_s)
         notes = RouteNotes(self.plot.field.name, settings.sampler, begins, who or None)
         return replace(today, route=replace(today.route, notes=notes))
 
     def _team_days(
-        self, settings: MonitoringSettings, day: int, scenes: list[Scene], wishes: Wishes | None
-    ) -> tuple[DayPlan, ...]:
-        posts = []
-        for member, scene in zip(settings.team, scenes, strict=True):
-            begun_s = member.starts_s + member.robot.day_s - scene.seconds_left
-            told = scene if wishes is None else wishes.applied_to(scene)
-            posts.append(Posted(told, begun_s, np.zeros(len(scene.chance), np.bool_)))
-        before = self._given_out(settings, day)
+        self, settings: MonitoringSettings, names: tuple[str, ...],
+        stand: tuple[tuple[Scene, float], ...], wishes: Wishes | None,
+    ) -> tuple[DayPlan, ...]:  # fmt: skip
+        """Return the days of several, who go on from a scene at a second of their common day."""
+        posts = [
+            Posted(scene if wishes is None else wishes.applied_to(scene), from_s,
+                   np.zeros(len(scene.chance), np.bool_))
+            for scene, from_s in stand
+        ]  # fmt: skip
+        before = self._given_out(names, stand[0][0].day)
         works = team_day(posts, settings.decides(), settings.teamwork, before=before)
         return tuple(
             DayPlan(scene, work, route_of(scene, work))
-            for scene, work in zip(scenes, works, strict=True)
+            for (scene, _), work in zip(stand, works, strict=True)
         )
 
-    def _given_out(self, settings: MonitoringSettings, day: int) -> NDArray[np.int64] | None:
+    def _given_out(self, names: tuple[str, ...], day: int) -> NDArray[np.int64] | None:
         """Return who has each aisle by the routes kept of a day, -1: nobody; None: none is kept."""
         aisle = self.plot.grid.corridor[self.plot.grid.row]
         given = np.full(int(aisle.max()) + 1, -1)
         with self.store.reading() as db:
-            for k, member in enumerate(settings.team):
-                given[aisle[routes.plants(db, day, member.name)]] = k
+            for k, who in enumerate(names):
+                given[aisle[routes.plants(db, day, who)]] = k
         return given if (given >= 0).any() else None
 
 

@@ -150,9 +150,8 @@ class MonitoringSettings:
 
     def member(self, who: str) -> TeamMember:
         """Return the one of the team whose name is `who`; raise `SettingError` if there is none."""
-        for one in self.team:
-            if one.name.casefold() == who.casefold():
-                return one
+        if (named := self.named(who)) is not None:
+            return named
         raise SettingError(
             worded(
                 "One of the team must be named ({names}), but it is {who!r}.",
@@ -160,6 +159,11 @@ class MonitoringSettings:
                 who=who,
             )
         )
+
+    def named(self, who: str) -> TeamMember | None:
+        """Return the one of the team whose name is `who`; None if there is none."""
+        names = (one for one in self.team if one.name.casefold() == who.casefold())
+        return next(names, None)
 
     def day(self, on: date) -> int:
         """Return the number of the day `on`, from 0; raise `SettingError` outside the season."""

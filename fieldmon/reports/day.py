@@ -100,11 +100,12 @@ class DayFacts:
             worked = day_was_worked(season, on, route)
             settings = season.settings_on(on) if worked else season.planned_by(on)
             day = settings.day(on)
-            gone = timedelta(seconds=settings.robot.day_s - plan.scene.seconds_left)
             begins = datetime.combine(on, settings.starts)
+            if not worked and route.notes is not None and route.notes.start is not None:
+                begins = route.notes.start
             state, done = season.history.known(day), season.history.on(day).inspected
             return cls(
-                season.plot.field.name, begins if worked else begins + gone,
+                season.plot.field.name, begins,
                 worked_route(season, on) if worked else route, season.evening(on), state,
                 hot_spots(season.plot.grid, state),
                 WorkSettings.of_season(season, on, worked=worked),

@@ -1,14 +1,25 @@
 """What is left of a day, for whoever leaves now."""
 
 from dataclasses import replace
+from datetime import time
 
 import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring import Season
-from fieldmon.monitoring.day_ahead import Part, inside, planned_again, route_ahead, work_left_s
+from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring.day_ahead import (
+    Part,
+    asked_of,
+    crew_of,
+    inside,
+    planned_again,
+    route_ahead,
+    work_left_s,
+)
+from fieldmon.monitoring.photos_asked import ask_photo
 from fieldmon.planning.members import team_of
+from fieldmon.plot.robot import Robot
 from tests.monitoring.seasons import BEGINS, a_season
 
 
@@ -65,12 +76,13 @@ def test_the_hours_of_each_run_from_the_first_inspection_of_that_person(tmp_path
     fresh = a_season(tmp_path / "fresh.gpkg")
     day_s, plants = fresh.settings.robot.day_s, fresh.plan(BEGINS).route.plant
     late = np.array([15.5, 16.5]) * 3600.0
+    first_s = fresh.plan(BEGINS).route.leave_s[0]
     fresh.record(Inspections.of(plants[:2], np.zeros(2, np.int8), BEGINS, second=late), "f", "Ann")
-    assert work_left_s(fresh, BEGINS, Part(name="Ann")) == day_s - 3600
+    assert work_left_s(fresh, BEGINS, Part(name="Ann")) == pytest.approx(day_s - 3600 - first_s)
     assert work_left_s(fresh, BEGINS, Part(name="Ben")) == day_s
-    assert work_left_s(fresh, BEGINS, Part()) == fresh.scene(BEGINS).seconds_left
+    assert work_left_s(fresh, BEGINS, Part()) == work_left_s(fresh, BEGINS, Part(name="Ann"))
     fresh.record(Inspections.of(plants[2:3], np.zeros(1, np.int8), BEGINS), "f", "Cem")
-    assert work_left_s(fresh, BEGINS, Part(name="Cem")) == fresh.scene(BEGINS).seconds_left
+    assert 0 < work_left_s(fresh, BEGINS, Part(name="Cem")) < day_s
     assert len(planned_again(fresh, BEGINS, Part((1, 3), "Ben"), day_s)), "though it is evening"
 
 
@@ -96,3 +108,93 @@ def test_each_of_a_team_has_the_route_that_the_teams_plan_gives(tmp_path):
     assert not set(ann.plant) & set(ben.plant)
     short = planned_again(fresh, BEGINS, Part(name="Ben"), seconds_left=1200)
     assert 0 < short.end_s <= 1200
+
+
+def told(season, who, plants, from_s):
+    """Record that somebody found plants clean, a minute each."""
+    second = from_s + 60.0 * np.arange(len(plants))
+    done = Inspections.of(plants, np.zeros(len(plants), np.int8), BEGINS, second=second)
+    season.record(done, "f", who)
+
+
+def begins_at(season, route):
+    """Return the plant whose place in its aisle is nearest to where a way begins."""
+    return int(np.hypot(*(season.plot.grid.xy_m - route.line_m[0]).T).argmin())
+
+
+def test_each_scout_has_a_whole_day_in_their_own_rows_and_goes_on_from_where_they_stand(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg", robot=Robot(hours=0.7))
+    ann, dan = Part((1, 8), "Ann"), Part((11, 19), "Dan")
+    for part in (ann, dan):
+        scouts.let_in(fresh, part.name, part.rows)
+    routes = {part: route_ahead(fresh, BEGINS, part) for part in (ann, dan)}
+    for part, route in routes.items():
+        assert inside(fresh, part.rows)[route.plant].all()
+        assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
+        assert route_ahead(fresh, BEGINS, part).plant.tolist() == route.plant.tolist()
+    told(fresh, "Ann", routes[ann].plant[:5], 21_700.0)
+    told(fresh, "Dan", routes[dan].plant[:5], 22_000.0)
+    line = fresh.label.line
+    for again in (route_ahead, lambda *of: planned_again(*of, seconds_left=1200.0)):
+        for part, route in routes.items():
+            rest = again(fresh, BEGINS, part)
+            stands = route.plant[4]
+            assert line[begins_at(fresh, rest)] == pytest.approx(line[stands], abs=1)
+            assert rest.plant[0] in route.plant[5:]
+            assert rest.arrive_s[0] < 60.0
+    assert work_left_s(fresh, BEGINS, ann) == fresh.scene(BEGINS, who="Ann").seconds_left
+
+
+def test_scouts_with_codes_for_the_same_plants_share_them(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    ann, ben = Part(name="Ann"), Part(name="Ben")
+    scouts.let_in(fresh, "Ann")
+    alone = route_ahead(fresh, BEGINS, ann)
+    assert fresh.kept_route(BEGINS).tolist() == alone.plant.tolist(), "the season's own"
+    scouts.let_in(fresh, "Ben")
+    routes = [route_ahead(fresh, BEGINS, part) for part in (ann, ben, ann)]
+    assert crew_of(fresh, ann) == ("Ann", "Ben")
+    assert len(routes[0])
+    assert len(routes[1])
+    assert not set(routes[0].plant) & set(routes[1].plant)
+    assert routes[2].plant.tolist() == routes[0].plant.tolist()
+    rest = planned_again(fresh, BEGINS, ben, seconds_left=900.0)
+    assert 0 < rest.end_s <= 900.0
+    ask_photo(fresh, int(routes[1].plant[3]), "", "Old")
+    assert [len(asked_of(fresh, BEGINS, part)) for part in (ann, ben)] == [0, 1]
+
+
+def test_a_name_beside_the_team_has_its_own_rows_or_nothing(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg", team=team_of(2, Robot(hours=0.5)))
+    team = {plant for one in (1, 2) for plant in route_ahead(fresh, BEGINS, robot(one)).plant}
+    assert len(route_ahead(fresh, BEGINS, Part(name="Anna"))) == 0
+    own = route_ahead(fresh, BEGINS, Part((1, 12), "Anna"))
+    assert len(own)
+    assert inside(fresh, (1, 12))[own.plant].all()
+    assert not {*own.plant} & team
+
+
+def robot(k):
+    return Part(name=f"robot-{k}")
+
+
+def test_who_begins_in_the_evening_has_the_whole_day_for_the_phone_and_for_the_season(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    day_s, plants = fresh.settings.robot.day_s, fresh.plan(BEGINS).route.plant
+    assert fresh.begun_s(BEGINS) == 6 * 3600.0
+    told(fresh, "Ann", plants[:3], 20.5 * 3600.0)
+    left_s = work_left_s(fresh, BEGINS, Part(name="Ann"))
+    assert day_s - 300.0 < left_s < day_s
+    today = fresh.plan(BEGINS)
+    assert today.scene.seconds_left == left_s
+    assert len(today.route)
+    assert today.route.notes.start.time() == time(20, 32)
+    later = fresh.plan(BEGINS, time(21, 2), keep=False).scene.seconds_left
+    assert later == pytest.approx(left_s - 1800.0, abs=1.0)
+
+
+def test_a_route_by_the_clock_runs_from_the_start_that_the_settings_say(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    route = fresh.plan(BEGINS).route
+    told(fresh, "", route.plant[:1], 6 * 3600.0 + route.leave_s[0] + 200.0)
+    assert fresh.begun_s(BEGINS) == 6 * 3600.0

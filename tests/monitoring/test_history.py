@@ -187,8 +187,9 @@ def test_a_day_and_all_before_it_are_what_going_through_the_looks_says(seed, who
         assert scene.trail.tolist() == trail
         assert scene.at == (own[-1][0] if own else trail[-1] if trail else GATE)
         gone_s = stays.robot.day_s - scene.seconds_left
+        begun_s = history.begun_s(stays, day, who)
         if own and np.isfinite(own[-1][3]):
-            assert gone_s == own[-1][3] - stays.starts_s
+            assert gone_s == min(own[-1][3] - begun_s, stays.robot.day_s)
         elif own:
             visits_s = stays.robot.visit_s * len(own)
             places = [trail[-1] if trail else GATE, *(one[0] for one in own)]

@@ -24,9 +24,9 @@ def rows(season, sql):
 
 def test_a_route_begins_with_the_work_or_half_way(season):
     fresh = season.plan(BEGINS + timedelta(days=1), keep=False)
-    assert routes.begins(season.settings, fresh) == datetime.fromisoformat("2026-04-07T06:00")
+    assert fresh.route.notes.start == datetime.fromisoformat("2026-04-07T06:00")
     rest = season.plan(BEGINS + timedelta(days=1), time(7, 20), keep=False)
-    assert routes.begins(season.settings, rest) == datetime.fromisoformat("2026-04-07T07:20")
+    assert rest.route.notes.start == datetime.fromisoformat("2026-04-07T07:20")
 
 
 def test_a_route_is_kept_once_and_any_other_as_the_next_revision(season):
@@ -49,7 +49,7 @@ def test_stops_are_kept_in_order_with_their_times(season):
     assert stop == tuple(range(1, len(today.route) + 1))
     assert list(plant) == today.route.plant.tolist()
     assert list(arrive_s) == today.route.arrive_s.tolist()
-    begin = routes.begins(season.settings, today)
+    begin = today.route.notes.start
     at = begin + timedelta(seconds=round(arrive_s[3]))
     assert datetime.fromisoformat(arrive[3]) == at
 
@@ -85,7 +85,7 @@ def test_each_field_of_a_kept_route_and_of_its_stops_is_what_the_route_says(seas
     kept = season.path.with_name("read.gpkg")
     season.store.back_up(kept)
     frame = pyogrio.read_dataframe(kept, layer="routes").set_index("revision").loc[2]
-    begin = routes.begins(season.settings, today)
+    begin = today.route.notes.start
     assert frame.drop("geometry").to_dict() == {
         "day": 0, "date": frame["date"], "sampler": season.settings.sampler,
         "starts": begin.isoformat(), "seconds": route.end_s, "drive_m": route.drive_m,

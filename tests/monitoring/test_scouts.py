@@ -1,11 +1,13 @@
 """Keys: who has one may tell findings of one season, until it is taken back."""
 
 import shutil
+from dataclasses import replace
 
 import pytest
 
 from fieldmon.errors import AccessError, SettingError
 from fieldmon.monitoring import Season, scouts
+from fieldmon.planning.members import team_of
 
 
 @pytest.fixture
@@ -63,3 +65,28 @@ def test_a_scout_has_a_name(season, name):
 def test_a_part_is_rows_of_the_plot(season, rows):
     with pytest.raises(SettingError, match="rows from 1 to"):
         scouts.let_in(season, "Ann", rows)
+
+
+def test_rows_are_ones_own_or_the_same_as_anothers(season):
+    scouts.let_in(season, "Ann", (1, 9))
+    with pytest.raises(SettingError, match=r"overlap with 1 to 9, which are Ann's"):
+        scouts.let_in(season, "Ben", (9, 12))
+    with pytest.raises(SettingError, match="overlap"):
+        scouts.let_in(season, "Ben")
+    scouts.let_in(season, "Ben", (10, 12))
+    scouts.let_in(season, "Cem", (1, 9))
+    scouts.let_in(season, "Ann", (13, 14))
+
+
+def test_a_name_of_the_team_is_written_as_there_and_any_other_needs_rows(season):
+    before = season.settings
+    season.change(replace(before, team=team_of(2)), before)
+    with pytest.raises(SettingError, match=r"must be one of the team \(robot-1, robot-2\)"):
+        scouts.let_in(season, "robot-3")
+    first = scouts.let_in(season, "Robot-1")
+    assert scouts.who(season, first).name == "robot-1"
+    scouts.let_in(season, "ROBOT-1")
+    with pytest.raises(AccessError):
+        scouts.who(season, first)
+    scouts.let_in(season, "Anna", (1, 2))
+    assert [one.name for one in scouts.scouts_of(season)] == ["robot-1", "Anna"]

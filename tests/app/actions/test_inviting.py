@@ -1,14 +1,17 @@
 """A person gets a code once; who has it may record until it is taken back."""
 
+from dataclasses import replace
+from datetime import timedelta
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
 
 from app.show import qr_code
-from app.state import scout_page
+from app.state import heard, scout_page
 from app.words import texts
 from fieldmon.errors import AccessError
 from fieldmon.monitoring import scouts
+from fieldmon.planning.members import team_of
 from tests.app.driving import go, press, tap
 
 
@@ -70,3 +73,45 @@ def test_the_morning_sends_a_link_with_a_key_of_that_person(season_app, season, 
     assert scouts.who(season(), said["key"][0]).name == "Ben"
     pictures = [one.value for one in season_app.get("html") if 'class="qr"' in str(one.value)]
     assert pictures == [qr_code.image(address, texts.INVITE_ALT)]
+
+
+def test_a_new_code_for_a_name_says_that_the_earlier_one_is_over(scout, season):
+    said = made(scout)
+    assert not scout.success
+    made(scout)
+    assert "earlier code of \u2068Ann\u2069 no longer holds" in scout.success[0].value
+    with pytest.raises(AccessError):
+        scouts.who(season(), said["key"][0])
+
+
+def test_a_second_code_for_the_same_plants_says_that_they_are_shared(scout):
+    made(scout)
+    made(scout, "Ben")
+    assert "shares these plants with \u2068Ann\u2069" in scout.success[0].value
+    ask_for(scout, "Cem", first=1, last=2)
+    assert "overlap" in scout.error[0].value
+
+
+def test_the_names_of_the_team_are_offered_and_any_other_needs_rows(season_app, season):
+    before = season().settings
+    season().change(replace(before, team=team_of(2)), before)
+    scout = go(season_app, "scout")
+    box = scout.selectbox(key="invite_name")
+    assert box.options == ["robot-1", "robot-2"]
+    box.set_value("robot-2")
+    press(scout, texts.INVITE_BUTTON)
+    assert scouts.who(season(), said_by(scout)["key"][0]).name == "robot-2"
+    assert not scout.error
+
+
+def test_who_is_out_stands_in_the_scout_room_with_what_each_did(scout, season):
+    made(scout, first=2, last=9)
+    (title,) = (one.value for one in scout.markdown if "rows 2 to 9" in one.value)
+    assert "Ann" in title
+    said = next(one.value for one in scout.caption if "code made" in one.value)
+    assert texts.OUT_SILENT in said
+    ann = scouts.scouts_of(season())[0]
+    heard.note(season().path, ann.name, season().settings.begins - timedelta(days=1))
+    said = next(one.value for one in scout.run().caption if "code made" in one.value)
+    assert texts.OUT_SILENT not in said
+    assert any("Has the plan of" in one.value for one in scout.markdown)

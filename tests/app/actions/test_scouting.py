@@ -80,9 +80,10 @@ def test_a_tap_of_another_day_is_not_taken_back_here(season_app, season):
 def test_one_hour_more_is_one_however_late_it_is(season_app, season):
     project, settings = season(), season().settings
     project.change(replace(settings, robot=settings.robot.with_hours(2.0)), settings)
-    evening = Inspections.of(np.array([7]), np.array([0]), np.datetime64("2026-11-16"),
-                         second=np.array([17 * 3600.0 + 1320.0]))  # fmt: skip
-    project.record(evening, "scout mode")
+    seconds = np.array([6 * 3600.0 + 120.0, 17 * 3600.0 + 1320.0])
+    worked_on = Inspections.of(np.array([6, 7]), np.array([0, 0]), np.datetime64("2026-11-16"),
+                               second=seconds)  # fmt: skip
+    project.record(worked_on, "scout mode")
     go(season_app, "scout")
     assert "Done for today" in texts_of(season_app)
     tap(season_app, "scout_hour")

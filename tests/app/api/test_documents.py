@@ -10,7 +10,7 @@ import pytest
 from app.api import description
 from app.api.documents import day_document, plot_document, rest_document
 from fieldmon.monitoring import scouts
-from fieldmon.monitoring.day_ahead import route_ahead
+from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.findings import take
 from tests.monitoring.phone import NOW, a_finding
 from tests.monitoring.seasons import BEGINS
@@ -51,7 +51,7 @@ def test_the_day_is_what_the_season_says(served, scout):
     season = served.season
     day = json.loads(day_document(season, scout, BEGINS))
     jsonschema.validate(day, description.DAY)
-    route = route_ahead(season, BEGINS)
+    route = route_ahead(season, BEGINS, Part(name="Ann"))
     assert day["route"]["plants"] == route.plant.tolist()
     seconds = np.cumsum(np.array(day["route"]["walk_s"]) + day["robot"]["visit_s"])
     assert seconds == pytest.approx(route.leave_s, abs=0.1 * len(route))
@@ -65,6 +65,7 @@ def test_the_day_is_what_the_season_says(served, scout):
 
 
 def test_who_has_a_part_is_sent_to_its_rows(served):
+    scouts.take_back(served.season, "Ann")
     key = scouts.let_in(served.season, "Ben", (1, 5))
     day = json.loads(day_document(served.season, scouts.who(served.season, key), BEGINS))
     label = served.season.label

@@ -1,0 +1,87 @@
+"""Who is out on a day, a line each: rows, code, phone, how far, and what to look after.
+
+No Streamlit in here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fieldmon.monitoring.scouts_out import scouts_out
+
+from ..state import heard
+from ..words import texts
+
+if TYPE_CHECKING:
+    from datetime import datetime
+
+    from fieldmon.monitoring.scouts_out import ScoutOut
+
+    from ..state.choices import Choices
+    from ..state.heard import LastHeard
+
+
+@dataclass(frozen=True)
+class OutLine:
+    """What is said of somebody: the name, a title with the rows, the rest, and cautions."""
+
+    name: str
+    title: str
+    said: str
+    cautions: tuple[str, ...]
+    has_code: bool
+
+
+def lines(choices: Choices) -> tuple[OutLine, ...]:
+    """Return a line for each who has a code or is of the team."""
+    path = choices.season.path
+    return tuple(
+        _line(choices, one, heard.last(path, one.name))
+        for one in scouts_out(choices.season, choices.on)
+    )
+
+
+def _line(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> OutLine:
+    title = texts.isolated(one.name)
+    if one.rows is not None:
+        title = texts.INVITED.format(name=title, low=one.rows[0], high=one.rows[1])
+    made = texts.OUT_NO_CODE
+    if one.made is not None:
+        made = texts.OUT_MADE.format(at=_clock(choices, one.made))
+    at = max((at for at in (one.heard, asked and asked.at) if at is not None), default=None)
+    parts = [made]
+    if at is not None:
+        parts.append(texts.OUT_HEARD.format(at=_clock(choices, at)))
+    elif one.made is not None:
+        parts.append(texts.OUT_SILENT)
+    if asked is not None and asked.day == choices.on and asked.since is not None:
+        parts.append(texts.OUT_LOADED.format(time=_clock(choices, asked.since)))
+    if one.done or one.ahead:
+        parts.append(texts.OUT_DONE.format(done=one.done, all=one.done + one.ahead))
+    if one.shares:
+        others = ", ".join(texts.isolated(name) for name in one.shares)
+        parts.append(texts.OUT_SHARES.format(others=others))
+    return OutLine(one.name, title, " · ".join(parts), _cautions(choices, one, asked),
+                   one.made is not None)  # fmt: skip
+
+
+def _cautions(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> tuple[str, ...]:
+    is_other = asked is not None and asked.day not in (None, choices.on) and choices.is_today
+    minutes = round(abs(one.fast.total_seconds()) / 60)
+    said = (
+        (not one.has_route, texts.OUT_NO_ROUTE),
+        (one.clock_is_wrong, texts.OUT_CLOCK.format(minutes=minutes)),
+        (is_other, "" if asked is None or asked.day is None else
+         texts.OUT_OTHER_DAY.format(day=choices.units.said_day(asked.day, choices.on))),
+        (one.is_older and not is_other, texts.OUT_OLDER),
+    )  # fmt: skip
+    return tuple(sentence for holds, sentence in said if holds)
+
+
+def _clock(choices: Choices, moment: datetime) -> str:
+    """Return the time on the plot, with its day where that is not the day shown."""
+    local = choices.clock.at(moment)
+    if local.date() == choices.on:
+        return f"{local:%H:%M}"
+    return f"{choices.units.said_day(local.date(), choices.on)} {local:%H:%M}"

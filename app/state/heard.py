@@ -1,0 +1,44 @@
+"""When phones and robots last asked something of a season, since the app was started.
+
+What they sent is in the season's file; that they only asked is not worth a place there.
+No Streamlit in here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from fieldmon.plot.local_clock import utc_now
+
+if TYPE_CHECKING:
+    from datetime import date, datetime
+    from pathlib import Path
+
+
+class LastHeard(NamedTuple):
+    """When somebody last asked anything, which day was asked for last, and since when."""
+
+    at: datetime
+    day: date | None = None
+    since: datetime | None = None
+
+
+# by file and name
+_HEARD: dict[tuple[Path, str], LastHeard] = {}
+
+
+def note(path: Path, name: str, day: date | None = None) -> None:
+    """Note that somebody asks something of a season now; `day`: for this day's route."""
+    now, before = utc_now(), _HEARD.get((path, name))
+    if day is None and before is not None:
+        noted = before._replace(at=now)
+    elif day is None or before is None or before.day != day:
+        noted = LastHeard(now, day, None if day is None else now)
+    else:
+        noted = before._replace(at=now)
+    _HEARD[path, name] = noted
+
+
+def last(path: Path, name: str) -> LastHeard | None:
+    """Return when somebody was heard last; None: not since the app was started."""
+    return _HEARD.get((path, name))

@@ -1,0 +1,52 @@
+"""A line for each who is out: what is known, and what to look after."""
+
+from datetime import datetime, timedelta
+from types import SimpleNamespace
+
+import pytest
+
+from app.show import who_is_out
+from app.state import heard
+from app.words import texts
+from app.words.units import UnitsInLanguage
+from fieldmon.monitoring import scouts
+from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.findings import take
+from fieldmon.plot.local_clock import local_clock, utc_now
+from tests.monitoring.phone import a_finding
+from tests.monitoring.seasons import BEGINS, a_season
+
+
+@pytest.fixture
+def choices(tmp_path):
+    season = a_season(tmp_path / "out.gpkg")
+    return SimpleNamespace(season=season, on=BEGINS, is_today=True, units=UnitsInLanguage(),
+                           clock=local_clock(season.plot.field))  # fmt: skip
+
+
+def test_nobody_is_out_where_there_are_no_codes(choices):
+    assert who_is_out.lines(choices) == ()
+
+
+def test_a_line_says_rows_code_phone_and_how_far(choices):
+    key = scouts.let_in(choices.season, "Ann", (1, 8))
+    (line,) = who_is_out.lines(choices)
+    assert (line.title, line.cautions) == ("\u2068Ann\u2069, rows 1 to 8", ())
+    assert texts.OUT_SILENT in line.said
+    route = route_ahead(choices.season, BEGINS, Part((1, 8), "Ann")).plant
+    take(choices.season, key, [a_finding(int(route[0]), on=BEGINS)],
+         utc_now() + timedelta(hours=1))  # fmt: skip
+    heard.note(choices.season.path, "Ann", BEGINS)
+    (line,) = who_is_out.lines(choices)
+    assert f"1 of {len(route)} recorded" in line.said
+    assert "has the day since " in line.said
+    assert line.cautions == (texts.OUT_CLOCK.format(minutes=60),)
+    heard.note(choices.season.path, "Ann", BEGINS + timedelta(days=1))
+    (line,) = who_is_out.lines(choices)
+    assert texts.OUT_OTHER_DAY.format(day="Tue 7 Apr") in line.cautions
+
+
+def test_a_time_of_another_day_names_it(choices):
+    at = choices.clock.moment(BEGINS, datetime(2026, 4, 6, 7, 30).time())
+    assert who_is_out._clock(choices, at) == "07:30"
+    assert who_is_out._clock(choices, at + timedelta(days=1)) == "Tue 7 Apr 07:30"

@@ -1,0 +1,76 @@
+"""Who is out: a line for each with a code or of the team, as the season's file knows it."""
+
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+
+from fieldmon.monitoring import scouts
+from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.findings import take
+from fieldmon.monitoring.scouts_out import scouts_out
+from fieldmon.planning.members import team_of
+from fieldmon.plot.local_clock import utc_now
+from tests.monitoring.phone import a_finding
+from tests.monitoring.seasons import BEGINS, a_season
+
+
+@pytest.fixture
+def fresh(tmp_path):
+    return a_season(tmp_path / "fresh.gpkg")
+
+
+def of(season, name):
+    (one,) = (one for one in scouts_out(season, BEGINS) if one.name == name)
+    return one
+
+
+def test_it_says_who_has_which_rows_and_how_far_they_are(fresh):
+    key = scouts.let_in(fresh, "Ann", (1, 8))
+    scouts.let_in(fresh, "Ben", (11, 19))
+    ann = of(fresh, "Ann")
+    assert (ann.rows, ann.heard, ann.done, ann.ahead) == ((1, 8), None, 0, 0)
+    assert abs(ann.made - utc_now()) < timedelta(minutes=1)
+    route = route_ahead(fresh, BEGINS, Part((1, 8), "Ann")).plant
+    take(fresh, key, [a_finding(int(route[0]), on=BEGINS)], utc_now())
+    ann = of(fresh, "Ann")
+    assert (ann.done, ann.ahead) == (1, len(route) - 1)
+    assert abs(ann.heard - utc_now()) < timedelta(minutes=1)
+    assert not ann.clock_is_wrong
+    assert ann.shares == ()
+    assert of(fresh, "Ben").done == 0
+
+
+def test_a_wrong_clock_and_shared_plants_are_said(fresh):
+    key = scouts.let_in(fresh, "Ann")
+    scouts.let_in(fresh, "Ben")
+    assert (of(fresh, "Ann").shares, of(fresh, "Ben").shares) == (("Ben",), ("Ann",))
+    take(fresh, key, [a_finding(5, on=BEGINS)], utc_now() + timedelta(minutes=30))
+    ann = of(fresh, "Ann")
+    assert ann.clock_is_wrong
+    assert ann.fast.total_seconds() == pytest.approx(1800, abs=30)
+
+
+def test_who_goes_by_an_older_plan_is_known_by_what_was_recorded_last(fresh):
+    key, part = scouts.let_in(fresh, "Ann", (1, 19)), Part(None, "Ann")
+    old = route_ahead(fresh, BEGINS, part).plant
+    assert not of(fresh, "Ann").is_older
+    take(fresh, key, [a_finding(int(old[0]), on=BEGINS)], utc_now())
+    assert not of(fresh, "Ann").is_older
+    new = planned_again(fresh, BEGINS, part, seconds_left=600.0).plant
+    gone = next(int(plant) for plant in old[::-1] if plant not in new)
+    take(fresh, key, [a_finding(gone, on=BEGINS)], utc_now())
+    assert of(fresh, "Ann").is_older
+    take(fresh, key, [a_finding(int(new[0]), on=BEGINS)], utc_now())
+    assert not of(fresh, "Ann").is_older
+
+
+def test_the_team_is_there_without_codes_and_who_is_beside_it_has_no_route(fresh):
+    scouts.let_in(fresh, "Anna")
+    before = fresh.settings
+    fresh.change(replace(before, team=team_of(2)), before)
+    scouts.let_in(fresh, "robot-2")
+    out = scouts_out(fresh, BEGINS)
+    assert [one.name for one in out] == ["Anna", "robot-2", "robot-1"]
+    assert [one.made is not None for one in out] == [True, True, False]
+    assert [one.has_route for one in out] == [False, True, True]

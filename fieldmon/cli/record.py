@@ -128,8 +128,8 @@ def _of(who: str, read: Inspections, file: Path) -> Inspections:
     if others:
         names = sorted({str(name) for name in read.who} - {"", who})
         typer.echo(
-            f"{file.name}: seen: By the file {', '.join(names)} made {counted(others, 'finding')}; "
-            f"taken as those of {who}, as --who says.",
+            f"{file.name}: seen: By the file {', '.join(names)} made "
+            f"{counted(others, 'inspection')}; taken as those of {who}, as --who says.",
             err=True,
         )
     return replace(read, who=np.full(len(read), who, object))

@@ -64,7 +64,7 @@ def test_who_is_told_by_the_option_and_rows_that_say_otherwise_are_counted(run, 
     filled_in(tmp_path / "r-robot-1.csv", finds={0}, n=3)
     code, _, err, _ = run("record", season, "r-robot-1.csv", "--date", BEGINS, "--who", "Dan")
     assert code == 0, err
-    assert "By the file robot-1 made 3 findings; taken as those of Dan" in err
+    assert "By the file robot-1 made 3 inspections; taken as those of Dan" in err
     kept = Season(season)
     assert {*kept.history.inspections.who.tolist()} == {"Dan"}
     assert [batch.who for batch in kept.batches()] == ["Dan"]

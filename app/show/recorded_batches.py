@@ -48,7 +48,8 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
             said_days = "–".join(choices.units.said_day(day, choices.on) for day in days)
             treated = batch.kind == "treatment"
             parts.append(said_days if treated else texts.BATCH_OF_DAY.format(days=said_days))
-    parts += [texts.isolated(batch.who) if batch.who else "", texts.UNDONE if batch.undone else ""]
+    who = batch.by(said)
+    parts += [texts.isolated(who) if who else "", texts.UNDONE if batch.undone else ""]
     return " · ".join(part for part in parts if part)
 
 

@@ -170,7 +170,7 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     In a season every result is in the file before the next plant is asked for. A day is one batch,
     and after a crash the same command continues from the last plant. A simulated robot makes up
     its finds, so a season accepts them only with --made-up. A team's robots drive at once by VDA
-    5050, each with its name as serial number.
+    5050, each with its name as serial number; its scouts are left out.
 
     Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o day.csv
     Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann
@@ -183,12 +183,9 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
         _write(driven, on, options, _name(options))
         return
     refuse_what_was_chosen(context, _OF_A_SEASON)
-    if (days := _team(options, options.plot)) is not None:
-        for on, each, own in days:
-            _write(each, on, own, own.serial)
+    if _team(options, options.plot):
         return
-    driven, on = _season(options, options.plot)
-    _write(driven, on, options, _name(options))
+    _season(options, options.plot)
 
 
 def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
@@ -218,7 +215,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
         return _driven(options, today, aisles, (worker, driver), begins), on
 
 
-def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
+def _season(options: DriveOptions, file: Path) -> None:
     """Drive what is left of a day of a season, each plant told recorded at once."""
     from fieldmon.drive.season_day import SeasonDay
     from fieldmon.monitoring import Season
@@ -238,43 +235,70 @@ def _season(options: DriveOptions, file: Path) -> tuple[DrivenDay, date]:
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
+    before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
     with _driver(options, season.plot, worker, (season.morning(on), on)) as driver:
-        return _driven(options, today, aisles, (worker, driver), _begins(season, on)), on
+        driven = _driven(options, today, aisles, (worker, driver), _begins(season, on))
+    _write(driven, on, options, _name(options), before)
 
 
-def _team(options: DriveOptions, file: Path) -> list[tuple[date, DrivenDay, DriveOptions]] | None:
-    """Let a season's team drive its day by VDA 5050, a robot each; None: it is no such day."""
+def _team(options: DriveOptions, file: Path) -> bool:
+    """Let a season's team drive its day by VDA 5050, a robot each; return whether it has one."""
     from fieldmon.monitoring import Season
 
     season = Season(file)
-    if options.robot is not Drives.VDA5050 or not season.settings.team:
-        return None
+    if not season.settings.team:
+        return False
+    if options.robot is not Drives.VDA5050:
+        raise SettingError(
+            f"A season's team drives by VDA 5050, but --robot is {options.robot.value}. Give "
+            "--robot vda5050; fieldmon stand-in simulates the robots."
+        )
     from fieldmon.cli.team_files import files_of_each
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.team_season import TeamSeason
     from fieldmon.drive.vda5050.team import drive_team
     from fieldmon.drive.vda5050.wire import Broker
+    from fieldmon.monitoring.history import made_by
 
-    on, team = day_on(season.plot.field, day(options.on)), season.settings.team
+    on = day_on(season.plot.field, day(options.on))
     asked = [path for path in (options.output, options.bag) if path is not None]
-    files = files_of_each(asked, team) if asked else [[] for _ in team]
     today = TeamSeason(season, on, options.manufacturer)
+    files = files_of_each(asked, today.robots) if asked else [[] for _ in today.robots]
     tell_assumed(season.assumed())
+    _tell_left_out([one.name for one in today.team if one not in today.robots])
+    done = season.history.inspections.on(on)
+    before = {one.name: len(made_by(done, one.name)) for one in today.robots}
     recordings = {
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
-        for one in team
+        for one in today.robots
     }
     broker = Broker.of(options.broker)
     driven = drive_team(today, broker, _robot_name(options), _say, recordings)
-    made = []
-    for one, paths in zip(team, files, strict=True):
+    missing: dict[str, None] = {}
+    for one, paths in zip(today.robots, files, strict=True):
+        each = driven[one.name]
+        if isinstance(each, SettingError):
+            missing[str(each)] = None
+            continue
         own = [*paths]
         output = own.pop(0) if options.output is not None else None
         bag = own.pop(0) if options.bag is not None else None
         mine = replace(options, output=output, bag=bag, serial=one.name)
         _write_bag(recordings[one.name], _begins(season, on), mine)
-        made.append((on, driven[one.name], mine))
-    return made
+        _write(each, on, mine, one.name, before[one.name])
+    if missing:
+        raise SettingError(" ".join(missing))
+    return True
+
+
+def _tell_left_out(scouts: list[str]) -> None:
+    """Print who of a team does not drive."""
+    if scouts:
+        typer.echo(
+            f"Left out, as scouts go on foot: {', '.join(scouts)}. fieldmon plan writes their "
+            "routes.",
+            err=True,
+        )
 
 
 def _begins(season: Season, on: date) -> datetime:
@@ -362,16 +386,23 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
     return Physics(body, options.gnss, options.seed, ground)
 
 
-def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str) -> None:
+def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before: int = 0) -> None:
+    """Say what a day came to, and write its tables; `before` were inspected in an earlier run."""
+    from fieldmon.compute.wording import counted
     from fieldmon.drive.account import day_table, in_words, stop_table, stops_path
 
     who = f"{name}, {on}" if options.serial == name else f"{on}"
     typer.echo(f"{who}: {in_words(driven)}")
+    if before:
+        typer.echo(
+            f"This is since it went on: {counted(before, 'inspection')} of the day before that "
+            "are in the season only."
+        )
     if options.output is None:
         return
     from fieldmon.io.atomic_write import write_whole
 
-    write_whole(options.output, day_table(driven, on, name))
+    write_whole(options.output, day_table(driven, on, name, before))
     write_whole(stops_path(options.output), stop_table(driven))
     typer.echo(f"Written to {options.output} and {stops_path(options.output)}")
 

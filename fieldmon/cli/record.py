@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -61,7 +61,9 @@ class RecordFlags:
         str | None,
         typer.Option("--date", help="Day of findings whose file names no day, YYYY-MM-DD."),
     ] = None
-    who: Annotated[str, typer.Option(help="Who inspected.")] = ""
+    who: Annotated[
+        str, typer.Option(help="Who inspected, whatever the files say; in a copy, who corrected.")
+    ] = ""
     take_doubtful: TakeDoubtful = False
     finding_option: FindingChoices = None
     contradicting: Contradicting = False
@@ -101,6 +103,10 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
         if not flags.contradicting:
             _refuse_contradictions(kept, read)
         _take_corrections(kept, copies, flags.who)
+    read = [
+        one if file in copies else _of(flags.who, one, file)
+        for one, file in zip(read, files, strict=True)
+    ]
     named = [(one, file.name) for one, file in zip(read, files, strict=True)]
     with _naming_confirmation():  # somebody may have recorded since
         every = kept.record_all(named, flags.who, confirmed=flags.contradicting)
@@ -138,6 +144,26 @@ def _take_saved(season: Season, file: Path, saved: PhoneFile, who: str) -> None:
     typer.echo(f"{file.name}: {new} new, {known} known already")
     for said in (*of_others(season, saved), *sorted({one.problem for one in taken} - {""})):
         typer.echo(f"{file.name}: {said}", err=True)
+
+
+def _of(who: str, read: Inspections, file: Path) -> Inspections:
+    """Return the inspections of a file as those of somebody, and say whose they were by it."""
+    import numpy as np
+
+    from fieldmon.compute.wording import counted
+    from fieldmon.monitoring.history import made_by
+
+    if not (who := who.strip()):
+        return read
+    others = len(read) - len(made_by(read, who)) - len(made_by(read, ""))
+    if others:
+        names = sorted({str(name) for name in read.who} - {"", who})
+        typer.echo(
+            f"{file.name}: seen: By the file {', '.join(names)} made "
+            f"{counted(others, 'inspection')}; taken as those of {who}, as --who says.",
+            err=True,
+        )
+    return replace(read, who=np.full(len(read), who, object))
 
 
 def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:

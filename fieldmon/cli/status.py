@@ -13,11 +13,15 @@ from fieldmon.cli.times import day, day_on
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from datetime import date
 
     from fieldmon.monitoring import Season, Status
+    from fieldmon.monitoring.batches import BatchContents
 
 #: batches of which it is listed what they say
 _DETAILED = 100
+#: plants of which it is listed how results contradict
+_CONTRADICTING = 5
 
 ListBatches = Annotated[
     bool,
@@ -50,7 +54,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
     _tell_last_day(kept)
     typer.echo(f"  forecast               {kept.forecast(now.on).sentence()}")
-    for line in of_treatments(kept, now):
+    for line in (*_contradicting(kept, now.on), *of_treatments(kept, now)):
         typer.echo(line)
     if rows:
         _show_rows(kept, now)
@@ -83,6 +87,26 @@ def _tell_last_day(kept: Season) -> None:
         )
 
 
+def _contradicting(season: Season, on: date) -> Iterator[str]:
+    """Yield of which plants two people said otherwise on a day, line by line."""
+    from fieldmon.infestation.inspections import RESULT_NAMES
+
+    said = season.contradicting(on)
+    plants = list(dict.fromkeys(said.plant.tolist()))
+    for plant in plants[:_CONTRADICTING]:
+        of = said.take(said.plant == plant)
+        each = ", ".join(
+            f"{RESULT_NAMES[result]} ({who})" if who else RESULT_NAMES[result]
+            for result, who in zip(of.result.tolist(), of.who, strict=True)
+        )
+        place = f"row {season.label.line[plant]}, plant {season.label.number[plant]}"
+        yield f"  contradiction          {place}: {each}"
+    if (more := len(plants) - _CONTRADICTING) > 0:
+        yield f"  {'':22} and {more} more"
+    if plants:
+        yield f"  {'':22} Look again, and take back what is wrong with: fieldmon undo"
+
+
 def _show_batches(kept: Season) -> None:
     from fieldmon.compute.wording import counted
     from fieldmon.plot.local_clock import local_clock
@@ -91,19 +115,28 @@ def _show_batches(kept: Season) -> None:
     contents = kept.contents([batch.number for batch in told[:_DETAILED]])
     for batch in told:
         at = clock.at(datetime.fromisoformat(batch.at))
-        who = f" by {batch.who}" if batch.who else ""
         said, what = contents.get(batch.number), ""
+        who = f" by {batch.by(said)}" if batch.by(said) else ""
         if said is not None and batch.kind == "treatment":
             what = f"  {counted(said.n, 'plant')}, {said.first}"
         elif said is not None and said.n == 1:
             what = f"  row {said.row}, plant {said.plant}: {said.result}"
         elif said is not None:
             what = f"  {said.found} found"
+        if said is not None and batch.kind == "findings":
+            what += _other_days(said, at.date())
+        kind = batch.kind.removesuffix("s") + "s" * (batch.rows != 1)
         undone = "  (undone)" if batch.undone else ""
         typer.echo(
-            f"{batch.number:5d}  {at:%Y-%m-%d %H:%M}  {batch.rows:5d} {batch.kind}{who}  "
+            f"{batch.number:5d}  {at:%Y-%m-%d %H:%M}  {batch.rows:5d} {kind}{who}  "
             f"{batch.source}{what}{undone}"
         )
+
+
+def _other_days(said: BatchContents, recorded: date) -> str:
+    """Return when a batch was inspected, if not on the day on which it was recorded."""
+    days = list(dict.fromkeys((said.first, said.last)))
+    return "" if days == [str(recorded)] else f", inspected {' to '.join(days)}"
 
 
 def lines(season: Season, now: Status) -> Iterator[str]:

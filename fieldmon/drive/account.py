@@ -4,21 +4,30 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import counted
+
 if TYPE_CHECKING:
     from datetime import date
     from pathlib import Path
 
     from fieldmon.drive.day import DrivenDay
 
-DAY_COLUMNS = "date,robot,stops,found,touched,stuck,charged_s,driven_s,worst_cross_track_m"
+DAY_COLUMNS = (
+    "date,robot,stops,found,touched,stuck,charged_s,driven_s,worst_cross_track_m,"
+    "skipped,stops_before"
+)
 STOP_COLUMNS = "stop,plant,row,number,found,done_s,charged_s,driven_s,cross_track_m,touched,stuck"
 
 
-def day_table(driven: DrivenDay, on: date, robot: str) -> bytes:
-    """Return a driven day as a table of one line (CSV)."""
+def day_table(driven: DrivenDay, on: date, robot: str, before: int = 0) -> bytes:
+    """Return a driven day as a table of one line (CSV).
+
+    `before` are its inspections before it was begun again: no other figure knows of them.
+    """
     figures = (
         f"{on},{robot},{len(driven.stops)},{driven.found},{len(driven.touched)},"
-        f"{len(driven.stuck)},{driven.charged_s:.1f},{driven.driven_s:.1f},{driven.strayed_m:.3f}"
+        f"{len(driven.stuck)},{driven.charged_s:.1f},{driven.driven_s:.1f},{driven.strayed_m:.3f},"
+        f"{driven.skipped},{before}"
     )
     return f"{DAY_COLUMNS}\n{figures}\n".encode()
 
@@ -45,14 +54,16 @@ def stops_path(path: Path) -> Path:
 
 def in_words(driven: DrivenDay) -> str:
     """Return what a driven day comes to, in a sentence or two."""
+    inspected = counted(len(driven.stops) - driven.skipped, "plant")
+    skipped = f", {driven.skipped} could not be inspected" if driven.skipped else ""
     said = (
-        f"{len(driven.stops)} plants inspected, {driven.found} found infested; charged "
+        f"{inspected} inspected, {driven.found} found infested{skipped}; charged "
         f"{driven.charged_s / 3600:.2f} h, driven {driven.driven_s / 3600:.2f} h "
         f"({100 * (driven.driven_s / driven.charged_s - 1) if driven.charged_s else 0:+.1f} %)."
     )
     if driven.strayed_m:
         said += (
-            f" {len(driven.touched)} plants touched; at worst {100 * driven.strayed_m:.0f} cm off "
-            "the way."
+            f" {counted(len(driven.touched), 'plant')} touched; at worst "
+            f"{100 * driven.strayed_m:.0f} cm off the way."
         )
     return "\n".join([said, *driven.stuck])

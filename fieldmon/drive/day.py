@@ -76,6 +76,11 @@ class DrivenDay:
         return sum(one.visit.found is True for one in self.stops)
 
     @property
+    def skipped(self) -> int:
+        """Plants that could not be inspected."""
+        return sum(one.visit.found is None for one in self.stops)
+
+    @property
     def touched(self) -> frozenset[int]:
         """Plants that were touched."""
         return frozenset().union(*(one.touched for one in self.visits))
@@ -120,7 +125,7 @@ def drive_day(
     watch
         Told of every stop once it is told to the day.
 
-    A robot that is stuck ends the day: its plant counts as not inspected.
+    A robot that is stuck ends the day; of a plant that it did not get to nothing is told.
 
     Examples
     --------
@@ -145,7 +150,8 @@ def drive_day(
         visit = driver.visit(errand)
         charged_s = travel_s(aisles.travel, clock, at, stop.plant) + stop.inspect_s
         driven_s = charged_s if visit.done_s is None else visit.done_s - since_s
-        day.tell(visit.found, visit.done_s)
+        if visit.there:
+            day.tell(visit.found, visit.done_s)
         driven.stops.append(DrivenStop(stop, visit, charged_s, driven_s))
         if watch is not None:
             watch(driven.stops[-1], errand)

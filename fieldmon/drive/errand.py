@@ -52,7 +52,9 @@ class Visit(NamedTuple):
     touched
         Plants that it touched on the way.
     stuck
-        Why it did not get there, in a sentence; "" where it did.
+        Why the robot moves no more today, in a sentence; "" where it does.
+    there
+        Whether it got there: what nobody stood before is no inspection.
     """
 
     found: bool | None
@@ -60,6 +62,7 @@ class Visit(NamedTuple):
     strayed_m: float = 0.0
     touched: frozenset[int] = frozenset()
     stuck: str = ""
+    there: bool = True
 
 
 class DrivingRobot(Protocol):

@@ -134,7 +134,7 @@ class MujocoRobot:
         """Drive to a plant and look at it."""
         driven = self._drive(errand.line_m)
         if driven.stuck:
-            return driven
+            return driven._replace(there=False)
         self._note()
         # it stands still: no physics needed
         self._data.time += max(errand.stop.inspect_s - self._robot.stop_s, 0.0)

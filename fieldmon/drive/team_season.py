@@ -52,6 +52,11 @@ class TeamSeason:
         self.team = season.settings.team
         if not self.team:
             raise SettingError("A day of several robots needs a season with a team (--robots).")
+        #: who of the team drives: people walk their own routes
+        self.robots = tuple(one for one in self.team if not one.robot.on_foot)
+        if not self.robots:
+            names = ", ".join(one.name for one in self.team)
+            raise SettingError(f"A day is driven by robots, but the team has none: {names}.")
         self.season, self.on = season, on
         self.keeper = AisleKeeper()
         self.lock = threading.RLock()
@@ -137,6 +142,11 @@ class MemberDay:
             team.done.add(stop.plant)
             if found or found is None or abs(now_s - done_s) > LATE_S:
                 team.plan()
+
+    def leave(self) -> None:
+        """Go to no plant any more: what it set out for is free for others."""
+        with self._team.lock:
+            self._team.errands.pop(self._member.name, None)
 
     @property
     def _errand(self) -> int:

@@ -11,8 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.wording import worded
 from fieldmon.compute.working_folder import working_folder
-from fieldmon.errors import ChoiceNeeded, ObservationError
+from fieldmon.errors import ChoiceNeeded, ObservationError, PlotError
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
 from fieldmon.io.readers.nearby import of_plot
 from fieldmon.io.sandbox import process
@@ -142,8 +143,24 @@ def read_lines(
 
 
 def read_rows(source: Source, options: ReadOptions | None = None) -> Imported[MultiLineString]:
-    """Return rows of plants in degrees WGS84, from lines or from end posts, two a row."""
+    """Return rows of plants in degrees WGS84, from lines or from end posts, two a row.
+
+    Raise `PlotError` where a line is no row, but a track along several.
+    """
+    from fieldmon.plot.row_drawing import turns_back  # noqa: PLC0415 - only for rows
+
     rows: Imported[MultiLineString] = _read("drawn_rows", source, options or ReadOptions())
+    for number, line in enumerate(rows.value.geoms, 1):
+        if turns_back(line):
+            raise PlotError(
+                worded(
+                    "A row must lead one way, but line {number} of {n} turns back beside itself, "
+                    "as a track along several rows does. Cut it at its turns: a line, or a track "
+                    "segment of a GPX, for each row.",
+                    number=number,
+                    n=len(rows.value.geoms),
+                )
+            )
     return rows
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import counted, worded
@@ -51,6 +51,11 @@ class Batch:
     rows: int
     undone: bool
 
+    def by(self, said: BatchContents | None) -> str:
+        """Return who inspected, as its inspections say, or else who recorded it."""
+        named = "" if said is None or self.kind != "findings" else said.who
+        return named or self.who
+
 
 @dataclass(frozen=True)
 class BatchContents:
@@ -65,6 +70,8 @@ class BatchContents:
     row, plant, result, count
         Of the only inspection: where it was, ``"found"``, ``"clean"`` or ``"skipped"``, and how
         many were counted (None: nobody counted). Of several and of a treatment they say nothing.
+    who
+        Everybody who inspected, by name.
     """
 
     n: int
@@ -75,6 +82,7 @@ class BatchContents:
     plant: int
     result: str
     count: float | None = None
+    who: str = ""
 
 
 @dataclass(frozen=True)
@@ -165,7 +173,18 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
         "AND date NOTNULL AND result NOTNULL GROUP BY batch",
         tuple(numbers),
     )
-    return {number: BatchContents(*said) for number, *said in [*rows, *treated]}
+    named = db.execute(
+        f"SELECT DISTINCT batch, who FROM inspections WHERE batch IN ({asked}) "  # noqa: S608 - ours
+        "AND coalesce(who, '') <> '' ORDER BY who",
+        tuple(numbers),
+    )
+    who: dict[int, list[str]] = {}
+    for number, name in named:
+        who.setdefault(number, []).append(name)
+    return {
+        number: replace(BatchContents(*said), who=", ".join(who.get(number, ())))
+        for number, *said in [*rows, *treated]
+    }
 
 
 def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:

@@ -9,7 +9,8 @@ import numpy as np
 
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
-from fieldmon.infestation.inspections import CLEAN, RESULT_NAMES, SKIPPED
+from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
+from fieldmon.monitoring.inspection_table import clock
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -131,20 +132,24 @@ def contradicting(held: Inspections) -> Inspections:
 
 
 def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
-    """Return ``(k,)`` whether each adds nothing: the same is held, and it has no time or count.
+    """Return ``(k,)`` whether each adds nothing to those held.
 
-    A route file filled in after its stops were tapped in the field says what is known. That 0 were
-    counted says no more than clean.
+    The same is held, and it has no count, and no time or the same. A route file filled in after its
+    stops were tapped in the field says what is known. That 0 were counted says no more than clean;
+    of a find it says that nobody counted.
     """
-    results = _held(held, brought)
-    uncounted = np.isnan(brought.count) | ((brought.result == CLEAN) & (brought.count == 0))
-    bare: NDArray[np.bool_] = np.isnan(brought.second) & uncounted
-    same = [
-        result in results.get(key, ())
-        for key, result in zip(_keys(brought), brought.result.tolist(), strict=True)
-    ]
-    bare &= np.array(same, bool)
-    return bare
+    known = set(_told(held.take(np.isin(held.plant, brought.plant))))
+    at_all = {told[:2] for told in known}
+    same = [told[:2] in at_all if told[2] is None else told in known for told in _told(brought)]
+    uncounted = np.isnan(brought.count) | (brought.count == 0)
+    added_nothing: NDArray[np.bool_] = uncounted & np.array(same, bool)
+    return added_nothing
+
+
+def _told(inspections: Inspections) -> Iterator[tuple[Key, int, str | None]]:
+    """Yield plant and day, result and time of each, as files have them."""
+    times = map(clock, inspections.second.tolist())
+    yield from zip(_keys(inspections), inspections.result.tolist(), times, strict=True)
 
 
 def _held(held: Inspections, brought: Inspections) -> dict[Key, set[int]]:

@@ -154,7 +154,8 @@ class SeasonRecords(OpenSeason):
         """Write inspections of one source, besides what is held; return batch and the new ones."""
         source, who, into = said
         news = inspections.take(~said_before(inspections, held))
-        by = who or ", ".join(sorted({str(name) for name in news.who} - {""}))
+        # as the rows say it, which are `who`'s where they name nobody
+        by = ", ".join(sorted({str(name) or who for name in news.who} - {""}))
         batch = batches.begin(db, "findings", source, by) if into is None else into
         if into is not None:
             batches.must_count(db, into)

@@ -29,6 +29,8 @@ _IN_LINE = 0.35
 _MOST_STEPS = 20_000
 # a row through places is looked at as finely; places nearer than that are one
 _SMOOTH_M, _SAME_M = 1.0, 0.01
+# a walked line strays so far; other rows are beside it up to so far; it is looked at so often
+_STRAYS_M, _BESIDE_M, _MOST_LOOKED_AT = 2.0, 12.0, 2000
 # rows are level or fall over so much of their length
 _FALL_M = 10.0
 
@@ -138,6 +140,26 @@ def smooth_row(lonlat: Float) -> LineString:
     curve = CubicSpline(at_m, xy_m, bc_type="natural")(np.linspace(0.0, at_m[-1], n + 1))
     thin = shapely.simplify(shapely.linestrings(curve), 0.02)
     return LineString(frame.lonlat(shapely.get_coordinates(thin)))
+
+
+def turns_back(row: LineString) -> bool:
+    """Return whether a line runs back beside itself, as a track walked up and down several rows.
+
+    Half of it is nearer to another part of it than a row spacing of 12 m, and four times as far
+    along the line. Rings and hairpins, wide enough to drive, are rows.
+    """
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
+    lonlat = shapely.get_coordinates(row)
+    walked = LineString(frame_around(lonlat).xy_m(lonlat))
+    line = LineString(shapely.get_coordinates(walked.simplify(_STRAYS_M)))
+    n = int(np.clip(line.length / _STRAYS_M, 1, _MOST_LOOKED_AT))
+    at_m = np.linspace(0.0, line.length, n + 1)
+    tree = cKDTree(shapely.get_coordinates(shapely.line_interpolate_point(line, at_m)))
+    near = tree.query_pairs(_BESIDE_M, output_type="ndarray")
+    away_m = np.hypot(*(tree.data[near[:, 0]] - tree.data[near[:, 1]]).T)
+    back = near[at_m[near[:, 1]] - at_m[near[:, 0]] > 4.0 * np.maximum(away_m, _STRAYS_M)]
+    return len(np.unique(back)) > (n + 1) / 2
 
 
 def contour_row(field: Field, height_m: Callable[[Float], Float], step_m: float) -> MultiLineString:

@@ -11,7 +11,9 @@ import numpy as np
 
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.io.writers.csv import safe_cell
+from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.monitoring.inspection_table import clock
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -74,14 +76,15 @@ def _treatments(season: Season) -> Iterator[dict[str, object]]:
 
 
 def inspections_table(season: Season) -> Table:
-    """Return a line for each inspection that counts."""
+    """Return a line for each inspection that counts: recorded again, they change nothing."""
     done, label, plot = season.history.inspections, season.label, season.plot.field.name
+    grid = season.plot.grid
     plants, of = np.unique(done.plant, return_inverse=True)
-    lon, lat = np.round(season.plot.grid.lonlat(plants), 7).T
+    lon, lat = np.round(grid.lonlat(plants), 7).T
     return {
         "plot": [plot] * len(done),
         "date": np.datetime_as_string(done.date).tolist(),
-        "time": _each(done.second, _minute),
+        "time": _each(done.second, clock),
         "row": label.line[done.plant].tolist(),
         "plant": label.number[done.plant].tolist(),
         "lon": lon[of].tolist(),
@@ -90,6 +93,7 @@ def inspections_table(season: Season) -> Table:
         "count": _each(done.count, float),
         "who": done.who.tolist(),
         "notes": done.notes.tolist(),
+        "face": [face or None for face in faces(grid, done.plant).tolist()],
     }
 
 
@@ -98,11 +102,6 @@ def _each(values: NDArray[np.float64], said: Callable[[float], object]) -> list[
     known, of = np.unique(values, return_inverse=True)
     each = [None if math.isnan(value) else said(value) for value in known.tolist()]
     return [each[k] for k in of.tolist()]
-
-
-def _minute(second: float) -> str:
-    hour, rest = divmod(int(second // 60), 60)
-    return f"{hour:02d}:{rest:02d}"
 
 
 def log_table(season: Season) -> Table:

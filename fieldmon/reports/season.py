@@ -54,6 +54,8 @@ if TYPE_CHECKING:
 _LATE_DAYS = 7
 # as many as a page has room for beside its map
 _MOST_CAUTIONS, _MOST_EFFECTS, _MOST_CHANGES = 6, 3, 6
+# of so many batches it is said who inspected: more than fit on a page
+_BATCHES_NAMED = 100
 # as many letters as a line of rows, and a column of plants, may have
 _ROWS_LONG, _FINDS_LONG = 70, 46
 
@@ -318,6 +320,7 @@ def _changes(facts: _Facts) -> Iterator[str]:
 
 def _batches(facts: _Facts) -> Block:
     batches = facts.season.batches()
+    contents = facts.season.contents([one.number for one in batches[:_BATCHES_NAMED]])
     if facts.on < facts.season.last_date():
         # what is of later days only came later
         contents = facts.season.contents([one.number for one in batches])
@@ -331,7 +334,8 @@ def _batches(facts: _Facts) -> Block:
         said = worded(words.BATCH_UNDONE, kind=kind) if one.undone else kind
         at = clock.at(datetime.fromisoformat(one.at))
         when = f"{facts.units.day(at.date())} {at:%H:%M}"
-        rows.append((when, said, one.source, one.who, figure(one.rows)))
+        who = one.by(contents.get(one.number))
+        rows.append((when, said, one.source, who, figure(one.rows)))
     return Table(
         words.BATCHES, words.BATCH_COLUMNS, tuple(rows), (0.2, 0.24, 0.32, 0.14, 0.1),
         rest=words.BATCHES_REST, left=(0, 1, 2, 3),

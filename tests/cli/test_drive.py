@@ -44,6 +44,7 @@ def test_a_day_of_a_season_is_one_batch_and_is_not_driven_twice(run, season):
     code, out, _, _ = run("drive", season, "--date", BEGINS, "--made-up")
     assert code == 0
     assert "goes on after plant" in out
+    assert f"{batch.rows} inspections of the day before that are in the season only" in out
     assert Season(season).batches() == (batch,)
 
 
@@ -51,6 +52,23 @@ def test_where_no_broker_answers_it_is_a_sentence(run):
     code, _, err, _ = run(*PLOT, "--robot", "vda5050", "--broker", "127.0.0.1:1")
     assert code == 2
     assert "MQTT broker must answer" in err
+
+
+def test_a_team_is_driven_by_its_robots_and_not_by_one_that_is_made_up(run, season):
+    run("change", season, "--robots", "2")
+    kept = season.read_bytes()
+    code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    assert code == 2
+    assert "Give --robot vda5050" in err
+    assert season.read_bytes() == kept
+
+
+def test_a_team_of_scouts_has_nobody_who_drives(run, season, tmp_path):
+    (tmp_path / "team.csv").write_text("name,who\nAnn,scout\nDan,scout\n")
+    run("change", season, "--robots", "team.csv")
+    code, _, err, _ = run("drive", season, "--date", BEGINS, "--robot", "vda5050")
+    assert code == 2
+    assert "driven by robots, but the team has none: Ann, Dan." in err
 
 
 @pytest.mark.parametrize("words", [["--hours", "0.1"], ["--sampler", "naive"], ["--scout"]])

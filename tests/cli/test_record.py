@@ -59,6 +59,20 @@ def test_a_file_that_contradicts_what_is_recorded_is_listed_and_taken_only_when_
     assert "2 new, 3 known" in out
 
 
+def test_who_is_told_by_the_option_and_rows_that_say_otherwise_are_counted(run, season, tmp_path):
+    """Ann's sheet, walked by Dan: files given out say who was to go."""
+    run("change", season, "--robots", "2")
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    filled_in(tmp_path / "r-robot-1.csv", finds={0}, n=3)
+    code, _, err, _ = run("record", season, "r-robot-1.csv", "--date", BEGINS, "--who", "Dan")
+    assert code == 0, err
+    assert "By the file robot-1 made 3 inspections; taken as those of Dan" in err
+    kept = Season(season)
+    assert {*kept.history.inspections.who.tolist()} == {"Dan"}
+    assert [batch.who for batch in kept.batches()] == ["Dan"]
+    assert [one.who for one in kept.log() if one.kind == "seen"] == ["Dan"]
+
+
 def test_two_files_that_contradict_each_other_are_refused_before_either_is_recorded(
     run, season, tmp_path
 ):

@@ -55,6 +55,23 @@ def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
     assert "About 10 more plants, which were found and only flagged, are still" in treated
 
 
+def test_contradictions_and_days_and_people_of_batches_are_told(run, season):
+    """The day before's work is recorded late, by two people, and a third says otherwise."""
+    kept, day = Season(season), np.datetime64(BEGINS)
+    who = np.array(["Ann", "Dan"], object)
+    results = Inspections.of(np.array([1, 2]), np.array([0, 1]), day, who=who)
+    kept.record(results.take(slice(0, 1)), "robots")
+    kept.record(results.take(slice(1, 2)), "robots", into=1)
+    kept.record(Inspections.of(np.array([1]), np.array([1]), day), "x", "Noa", confirmed=True)
+    _, out, _, _ = run("status", season, "--date", BEGINS, "--batches")
+    row, plant = kept.label.line[1], kept.label.number[1]
+    assert f"  contradiction          row {row}, plant {plant}: clean (Ann), found (Noa)" in out
+    assert "take back what is wrong with: fieldmon undo" in out
+    assert f"    2 findings by Ann, Dan  robots  1 found, inspected {BEGINS}" in out
+    assert f"    1 finding by Noa  x  row {row}, plant {plant}: found, inspected {BEGINS}" in out
+    assert "contradiction" not in run("status", season, "--date", "2026-11-30")[1]
+
+
 def test_rows_that_nobody_was_in_are_told(run, season):
     _, out, _, _ = run("status", season, "--date", BEGINS, "--rows")
     n_rows = Season(season).plot.grid.row_line.max() + 1

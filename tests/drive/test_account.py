@@ -35,7 +35,11 @@ def test_the_day_is_one_line():
         "charged_s": "100.0",
         "driven_s": "120.0",
         "worst_cross_track_m": "0.120",
+        "skipped": "1",
+        "stops_before": "0",
     }
+    (line,) = read(day_table(DAY, date(2026, 4, 6), "mujoco", before=235))
+    assert line["stops_before"] == "235"
 
 
 def test_each_stop_is_a_line_beside_it():
@@ -48,7 +52,7 @@ def test_each_stop_is_a_line_beside_it():
 
 def test_the_day_in_words_says_what_went_wrong():
     said = in_words(DAY)
-    assert "2 plants inspected, 1 found infested" in said
+    assert "1 plant inspected, 1 found infested, 1 could not be inspected; charged" in said
     assert "+20.0 %" in said
     assert "2 plants touched; at worst 12 cm" in said
     assert said.endswith("Stuck.")

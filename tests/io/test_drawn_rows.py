@@ -157,6 +157,15 @@ def test_rows_alone_are_a_plot_and_that_is_said(tmp_path):
         prepare(PlotRequest(PlotSources(rows=rows, contours=rows)))
 
 
+def test_a_track_along_several_rows_is_no_row_with_a_boundary_or_without(tmp_path):
+    ends = [(x, 4.0 * k) for k in range(6) for x in ((0.0, 80.0) if k % 2 else (80.0, 0.0))]
+    track = write(tmp_path / "track.geojson", [LineString(ends)])
+    plot = write(tmp_path / "plot.geojson", [shapely.box(-5, -5, 85, 25)])
+    for sources in (PlotSources(plot=plot, rows=track), PlotSources(rows=track)):
+        with pytest.raises(PlotError, match="line 1 of 1 turns back beside itself"):
+            prepare(PlotRequest(sources))
+
+
 def test_plants_name_their_blocks_in_a_column(tmp_path):
     k, j = np.divmod(np.arange(300), 30)
     xy_m = np.concatenate([np.stack([1.5 * j + east, 2.5 * k], 1) for east in (0.0, 60.0)])

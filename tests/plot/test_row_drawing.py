@@ -5,14 +5,14 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from shapely import MultiPolygon
+from shapely import LineString, MultiPolygon
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.row_drawing import contour_row, rows_from_posts, smooth_row
+from fieldmon.plot.row_drawing import contour_row, rows_from_posts, smooth_row, turns_back
 
 FRAME = Frame(8.0, 47.0)
 
@@ -120,3 +120,36 @@ def test_a_row_through_places_is_smooth_and_passes_through_each():
     assert len(once.coords) == 2
     with pytest.raises(PlotError, match="must lead somewhere"):
         smooth_row(frame.lonlat(places[[1, 1, 1]]))
+
+
+def walked(xy_m, noise_m=0.0, seed=1):
+    """Return a line as somebody walked it, a place a metre, each off by the noise."""
+    line = LineString(xy_m)
+    at = shapely.line_interpolate_point(line, np.arange(0.0, line.length, 1.0))
+    noise = np.random.default_rng(seed).normal(0.0, noise_m, (len(at), 2))
+    return LineString(FRAME.lonlat(shapely.get_coordinates(at) + noise))
+
+
+def up_and_down(n_rows, length_m, spacing_m):
+    ends = [(0.0, length_m) if k % 2 == 0 else (length_m, 0.0) for k in range(n_rows)]
+    return [(x, spacing_m * k) for k, pair in enumerate(ends) for x in pair]
+
+
+@pytest.mark.parametrize("noise_m", [0.0, 0.5])
+@pytest.mark.parametrize(
+    ("n_rows", "length_m", "spacing_m"),
+    [(2, 100.0, 4.0), (6, 84.0, 4.0), (3, 40.0, 2.5), (40, 150.0, 8.0), (2, 80.0, 0.0)],
+)
+def test_a_track_up_and_down_several_rows_turns_back(n_rows, length_m, spacing_m, noise_m):
+    assert turns_back(walked(up_and_down(n_rows, length_m, spacing_m), noise_m))
+
+
+@pytest.mark.parametrize("noise_m", [0.0, 0.5, 1.0])
+def test_rows_that_bend_around_a_hill_or_lead_around_it_do_not(noise_m):
+    angle = np.linspace(0.0, 2 * np.pi, 400)
+    ring = np.stack([np.cos(angle), np.sin(angle)], 1)
+    half = ring[:200]
+    legs = np.vstack([[40.0, -80.0], 20.0 * half, [-20.0, -80.0]])
+    for row in ([(0, 0), (300, 0)], 15.0 * ring, 60.0 * ring, 10.0 * half, legs):
+        assert not turns_back(walked(row, noise_m))
+    assert not turns_back(LineString(FRAME.lonlat(np.array([(0.0, 0.0), (5.0, 0.0)]))))

@@ -9,7 +9,8 @@ import pytest
 
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Application
 from fieldmon.reports.record_tables import (
     csv_bytes,
@@ -17,7 +18,7 @@ from fieldmon.reports.record_tables import (
     log_table,
     treatments_table,
 )
-from tests.monitoring.seasons import BEGINS, a_season, some_results
+from tests.monitoring.seasons import BEGINS, a_plot, a_season, some_results
 
 FULL = Application("Acarol", Dose(0.4, "l/ha"), 800.0, "Ann", '=1+1 "mites"\nseen', ended=time(9))
 
@@ -66,6 +67,30 @@ def test_inspections_and_log_are_there_line_by_line(season):
     assert [line["what"] for line in log] == ["begins", "seen", "labels", "treated"]
     assert log[-1]["digest"] == season.log()[-1].digest
     assert read(log_table(season), log_table(season)) == [*log, *log]
+
+
+@pytest.mark.parametrize("faces", [1, 2])
+def test_inspections_read_back_are_those_that_the_season_holds(tmp_path, faces):
+    made = a_season(tmp_path / "season.gpkg", a_plot(faces=faces))
+    grid = made.plot.grid
+    plants = np.flatnonzero(grid.twin >= 0)[-3:] if faces == 2 else np.arange(3)
+    seen = {
+        "second": np.array([73_831.0, 73_800.0, np.nan]),
+        "count": np.array([0.0, np.nan, 2.5]),
+        "notes": np.array(["=1", "two\nlines", ""], object),
+    }
+    results = np.array([FOUND, SKIPPED, FOUND])
+    made.record(Inspections.of(plants, results, np.datetime64(BEGINS), **seen), "taps", "Ann")
+    made.undo(made.record(some_results(made, n=2), "by mistake").batch)
+    done = made.history.inspections
+    file = tmp_path / "e.csv"
+    file.write_bytes(csv_bytes([inspections_table(made)]))
+    assert [line["time"] for line in read(inspections_table(made))] == ["20:30:00", "20:30:31", ""]
+    back = read_inspections(file, grid)
+    assert sorted(back.value.plant.tolist()) == sorted(done.plant.tolist())
+    assert "its count is 0: taken as found" in " ".join(str(one) for one in back.messages)
+    told = made.record(back.value, file.name, "Dan")
+    assert (told.new, told.known) == (0, 3)
 
 
 def test_of_nothing_no_table_is_made():

@@ -19,7 +19,7 @@ from fieldmon.drive.vda5050.messages import (
     sent_at,
 )
 from fieldmon.drive.vda5050.wire import Wire
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class Vda5050Robot:
         """Send the robot to a plant, and wait for what it found."""
         line_m, why = self._cleared(errand.line_m, errand.stop.plant)
         if why is not None:
-            return Visit(None, self._now_s(), stuck=self._ended(why))
+            return self._not_there(why)
         self._known["orderUpdateId"] += 1
         update = self._known["orderUpdateId"]
         action = f"{self._known['orderId']}-{update}-{errand.stop.plant}"
@@ -103,7 +103,7 @@ class Vda5050Robot:
         # the next update begins at the node where it stands; what was done there is not done again
         self._known["node"] = {**node, "actions": []}
         if isinstance(said, str):
-            return Visit(None, self._now_s(), stuck=self._ended(said))
+            return self._not_there(said)
         if self._traffic is not None:
             self._crossing.arrived(errand.stop.plant)
         result = result_of(said)
@@ -114,10 +114,10 @@ class Vda5050Robot:
         """Send the robot back to the gate."""
         line_m, why = self._cleared(line_m, GATE)
         if why is not None:
-            return Visit(None, self._now_s(), stuck=self._ended(why))
+            return self._not_there(why)
         said = self._driven(line_m)
         if isinstance(said, str):
-            return Visit(None, self._now_s(), stuck=self._ended(said))
+            return self._not_there(said)
         if self._traffic is not None:
             self._crossing.arrived(GATE)
         told = [one for one in said.get("information", []) if one.get("infoType") == "day_s"]
@@ -155,6 +155,10 @@ class Vda5050Robot:
         self._known["node"] = node
         return said
 
+    def _not_there(self, why: str) -> Visit:
+        """Return what came of an errand on which the robot did not get to its end."""
+        return Visit(None, self._now_s(), stuck=self._ended(why), there=False)
+
     def _ended(self, why: str) -> str:
         """Say that the robot moves no more today, if there is a reason."""
         if why and self._traffic is not None:
@@ -181,6 +185,7 @@ class Vda5050Robot:
         """Return the robot's next state, or why the day ends; None: nothing for a moment."""
         state = self._hear()
         if state is None:
+            self._must_come()
             if time.monotonic() - self._heard_at > self._patience_s:
                 return f"The robot has not been heard for {self._patience_s:.0f} s."
             return None
@@ -189,6 +194,20 @@ class Vda5050Robot:
             told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
             return f"The robot reports an error that it cannot mend: {told}."
         return state
+
+    def _must_come(self) -> None:
+        """Say that a robot was never heard yet; raise `SettingError` once it takes too long."""
+        if self._state is not None:
+            return
+        name, waited_s = "/".join(self._wire.robot[:2]), time.monotonic() - self._begun
+        if waited_s > self._patience_s:
+            raise SettingError(
+                f"A robot called {name} must be at the broker, but none was heard for "
+                f"{self._patience_s:.0f} s. Start it, or give its names as they stand in its "
+                "topics: --manufacturer, and --serial or its name in the team."
+            )
+        if waited_s > _AGAIN_S:
+            self._tell(f"Waiting for the robot {name}, which has not been heard yet.")
 
     def _taken(self, order: dict[str, Any]) -> bool:
         """Tell whether the robot has said that it has this order."""

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.vda5050.fleet import live_robot
 from fieldmon.drive.vda5050.wire import RobotName
+from fieldmon.errors import SettingError
+from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -19,17 +21,22 @@ if TYPE_CHECKING:
     from fieldmon.planning.members import TeamMember
 
 
+#: a day as it was driven, or why it was not
+TeamDays = dict[str, "DrivenDay | SettingError"]
+
+
 def drive_team(
     day: TeamSeason,
     broker: Broker,
     names: RobotName,
     say: Callable[[str], None] = lambda _: None,
     recordings: Mapping[str, Recording] | None = None,
-) -> dict[str, DrivenDay]:
-    """Drive what is left of a team's day; return each one's day by its name.
+) -> TeamDays:
+    """Drive what is left of a team's day; return each robot's day by its name.
 
     A find by one is planned for by all. No two are in one aisle at once: who comes second waits at
-    the end of its own.
+    the end of its own. A robot that never comes takes nothing from the others, and has the error
+    instead of a day. People of the team are left out.
 
     Parameters
     ----------
@@ -45,7 +52,7 @@ def drive_team(
         What each one's day is noted in.
     """
 
-    def one(member: TeamMember) -> DrivenDay:
+    def one(member: TeamMember) -> DrivenDay | SettingError:
         own, noted = day.member(member.name), (recordings or {}).get(member.name)
         robot = RobotName(names.manufacturer, member.name, names.version)
 
@@ -56,10 +63,16 @@ def drive_team(
         try:
             with live_robot(broker, robot, str(day.on), tell, day.keeper) as live:
                 return drive_day(own, own.aisles, (member.robot, live), watch)
+        except SettingError as error:
+            tell(str(error))
+            if own.at == GATE:
+                day.keeper.keep_only(member.name, [])
+            return error
         finally:
             # it stays where it is: at the gate, or in its aisle
             day.keeper.end(member.name)
+            own.leave()
 
-    with ThreadPoolExecutor(len(day.team), "robot") as threads:
-        running = {member.name: threads.submit(one, member) for member in day.team}
+    with ThreadPoolExecutor(len(day.robots), "robot") as threads:
+        running = {member.name: threads.submit(one, member) for member in day.robots}
         return {name: each.result() for name, each in running.items()}

@@ -1,16 +1,23 @@
 """Asked and told over a broker: nothing lost, nothing twice, whatever the line does."""
 
 import threading
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
 
 from fieldmon.drive.charged import ChargedRobot
 from fieldmon.drive.day import drive_day
+from fieldmon.drive.season_day import SeasonDay
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.drive.vda5050.wire import RobotName, Wire
+from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.monitoring import Season
 from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.settings import MonitoringSettings
+from tests.drive.test_season_day import ON
 from tests.drive.vda5050.conftest import ROBOT
 
 
@@ -118,15 +125,39 @@ def test_a_pause_is_waited_for_and_said(broker, plot, robot, monitor):
     assert any("paused" in sentence for sentence in said)
 
 
-def test_a_robot_that_is_never_heard_ends_the_day(broker, plot, robot, monitor):
-    nobody = RobotName("fieldmon", "nobody")
+def test_a_robot_that_never_comes_is_waited_for_by_name_and_then_an_error(
+    broker, plot, robot, monitor, monkeypatch
+):
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._AGAIN_S", 0.1)
+    nobody, said = RobotName("fieldmon", "nobody"), []
     wire = Wire(broker, "fleet", nobody, ("state", "connection"))
-    driver = Vda5050Robot(wire, "x", patience_s=0.5)
-    with monitor.day() as day:
-        driven = drive_day(day, plot.aisles.for_robot(robot), (robot, driver))
+    driver = Vda5050Robot(wire, "x", said.append, patience_s=1.0)
+    with monitor.day() as day, pytest.raises(SettingError, match="called fieldmon/nobody must be"):
+        drive_day(day, plot.aisles.for_robot(robot), (robot, driver))
     wire.close()
-    assert "has not been heard" in driven.stuck[0]
+    assert said == ["Waiting for the robot fieldmon/nobody, which has not been heard yet."]
     assert len(day.plants) == 0
+
+
+def test_of_a_plant_that_a_robot_did_not_get_to_nothing_is_told(broker, plot, robot, tmp_path):
+    settings = MonitoringSettings(ON, robot=robot)
+    season = Season.create(tmp_path / "season.gpkg", plot, None, settings)
+
+    class Day:
+        """A season's day that looks as a monitor's."""
+
+        def day(self):
+            return nullcontext(SeasonDay(season, ON))
+
+    def fail(other, errand):
+        if errand.number == 2:
+            other.self.errors = [{"errorType": "motor", "errorLevel": "FATAL"}]
+
+    driven, _, _ = drive(broker, plot, robot, Day(), "lost", fail)
+    assert "motor" in driven.stuck[0]
+    done = season.history.inspections
+    assert done.plant.tolist() == [one.stop.plant for one in driven.stops[:2]]
+    assert SKIPPED not in done.result.tolist()
 
 
 @pytest.mark.parametrize("said", [b"{", b'{"headerId": 1}'])

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from fieldmon.drive.team_season import TeamSeason
+from fieldmon.drive.vda5050.fleet import Vda5050Robot
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.drive.vda5050.team import drive_team
 from fieldmon.drive.vda5050.wire import RobotName
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.planning.members import Teamwork, team_of
-from fieldmon.plot.robot import Robot
+from fieldmon.planning.members import TeamMember, Teamwork, team_of
+from fieldmon.plot.robot import Robot, scout
 from tests.drive.test_season_day import ON
 from tests.drive.vda5050.conftest import ROBOT
 
@@ -104,6 +105,28 @@ def test_a_teams_day_is_driven_once_by_all_and_nobody_is_in_anothers_aisle(broke
     assert len(season.batches()) == 1
     # every find is planned for by all
     assert day.replanned > sum(one.found for one in driven.values()) > 0
+
+
+def test_scouts_do_not_drive_and_a_robot_that_never_comes_takes_nothing(
+    broker, plot, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(Vda5050Robot.__init__, "__kwdefaults__",
+                        {**Vda5050Robot.__init__.__kwdefaults__, "patience_s": 3.0})  # fmt: skip
+    robot = Robot(hours=0.2)
+    team = (TeamMember("Ann", scout().with_hours(0.2)), *team_of(2, robot))
+    settings = MonitoringSettings(ON, robot=robot, team=team)
+    season = Season.create(tmp_path / "mixed.gpkg", plot, None, settings)
+    other = StandIn(broker, RobotName(ROBOT.manufacturer, "robot-1"), seen, 0.7, 1e6)
+    other.start()
+    day = TeamSeason(season, ON)
+    driven = drive_team(day, broker, ROBOT)
+    other.stop()
+    assert [*driven] == ["robot-1", "robot-2"]
+    assert "called fieldmon/robot-2 must be at the broker" in str(driven["robot-2"])
+    assert len(driven["robot-1"].stops) > 3
+    assert {*season.history.inspections.who.tolist()} == {"robot-1"}
+    assert not day.errands
+    assert day.keeper.enter("anybody", day.aisle[[*day.done]].tolist())
 
 
 def test_a_robot_that_breaks_down_blocks_its_aisle_and_the_others_go_on(broker, season):

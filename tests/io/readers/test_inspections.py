@@ -47,7 +47,7 @@ def test_counts_alone_say_whether_and_how_many():
 
 
 def test_result_and_count_that_contradict_are_left_out_unless_one_asks():
-    text = "plant,found,count\n1,clean,4\n2,found,0\n3,,0\n4,skipped,0\n5,clean,0\n6,,3\n"
+    text = "plant,found,count\n1,clean,4\n2,7,0\n3,,0\n4,skipped,0\n5,clean,0\n6,,3\n"
     imported = read(text)
     assert imported.value.plant.tolist() == [4, 5, 6]
     assert imported.value.result.tolist() == [SKIPPED, CLEAN, FOUND]
@@ -57,6 +57,8 @@ def test_result_and_count_that_contradict_are_left_out_unless_one_asks():
     taken = read(text, InspectionOptions().choose("take_doubtful", "yes")).value
     assert taken.result.tolist() == [FOUND, FOUND, CLEAN, SKIPPED, CLEAN, FOUND]
     np.testing.assert_array_equal(taken.count[:2], [4, np.nan])
+    asked = read("plant,found,count\n1,found,0\n").value
+    assert (asked.result.tolist(), np.isnan(asked.count).tolist()) == ([FOUND], [True])
 
 
 def test_plants_are_named_by_row_and_number_in_every_dialect():

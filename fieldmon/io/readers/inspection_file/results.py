@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.result_words import (
     MINUS,
     NOT_INSPECTED,
@@ -107,21 +107,29 @@ def _put_together(
     """Return what result and count say together.
 
     Forms fill in zeros by themselves: in a file with results, a zero beside an empty result is
-    doubtful, and one beside "not inspected" says nothing.
+    doubtful, one beside "not inspected" says nothing, and one beside a find that nobody counted.
     """
     first = np.array([s.result for s in by_result], dtype=np.int8)
     second = np.array([s.result for s in by_count], dtype=np.int8)
     spoken = np.array([s.is_said for s in by_result], dtype=bool)
     counted_too = np.array([s.is_said for s in by_count], dtype=bool)
-    against = spoken & (second != UNKNOWN) & (first != second)
+    own = np.array([s.how_many for s in by_result], dtype=np.float64)
+    zero_found = (first == PRESENT) & (second == ABSENT) & np.isnan(own)
+    against = spoken & (second != UNKNOWN) & (first != second) & ~zero_found
     against &= (first != UNKNOWN) | (second == PRESENT)
     zero_alone = ~spoken & (second == ABSENT) & spoken.any()
     doubt = np.where(against, "its result and its count contradict each other", "")
     doubt = np.where(zero_alone, "its count is 0, but its result is empty", doubt)
     result = np.where(against, PRESENT, np.where(spoken, first, second)).astype(np.int8)
-    own = np.array([s.how_many for s in by_result], dtype=np.float64)
     count = np.array([s.how_many for s in by_count], dtype=np.float64)
     how_many = np.where(np.isnan(count), own, count)
+    if zero_found.any():
+        said = worded(
+            "{n} {n:record is|records are} found, but {n:its count is|their counts are} 0: taken "
+            "as found, not counted.",
+            n=int(zero_found.sum()),
+        )
+        messages = [*messages, guessed(said)]
     return SeenResults(result, how_many, doubt.astype(np.str_), spoken | counted_too, messages)
 
 

@@ -76,11 +76,19 @@ def test_a_number_in_the_column_of_results_is_a_count_but_one_is_yes():
 def test_a_result_and_a_count_that_contradict_are_a_find_in_doubt():
     seen = read(
         plant=[1, 2, 3, 4, 5],
-        found=["clean", "found", "", "skipped", "clean"],
+        found=["clean", "7", "", "skipped", "clean"],
         count=["4", "0", "0", "0", "0"],
     )
     assert seen.result.tolist() == [PRESENT, PRESENT, ABSENT, UNKNOWN, ABSENT]
     assert [bool(doubt) for doubt in seen.doubt] == [True, True, True, False, False]
+
+
+def test_a_find_with_a_count_of_zero_is_a_find_that_nobody_counted_and_that_is_said():
+    seen = read(plant=[1, 2, 3], found=["found", "found", "clean"], count=["0", "3", "0"])
+    assert seen.result.tolist() == [PRESENT, PRESENT, ABSENT]
+    assert not any(seen.doubt)
+    (said,) = [str(one) for one in seen.messages if "found, but" in str(one)]
+    assert "1 record is found, but its count is 0: taken as found, not counted." in said
 
 
 @given(st.lists(st.sampled_from(("", "0")), min_size=1, max_size=5))

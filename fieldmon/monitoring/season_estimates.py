@@ -19,6 +19,7 @@ from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status
+from fieldmon.monitoring.told_detection import told_at_first
 from fieldmon.pests.development import development
 
 if TYPE_CHECKING:
@@ -151,8 +152,9 @@ class SeasonEstimates(OpenSeason):
         belief, settings = now.settings.belief, now.settings
         if belief.earlier is None or not belief.traces:
             return None
-        detects = settings.robot.detects
-        return belief.earlier.sentence(belief.believed(self.plot.grid, settings.pest, detects))
+        with self.store.reading() as db:
+            told = told_at_first(db)
+        return belief.earlier.sentence(belief.believed(self.plot.grid, settings.pest, told))
 
     def as_earlier(self) -> EarlierSeason:
         """Return what the season learnt until its last day, as a next one may begin with it.
@@ -175,7 +177,8 @@ class SeasonEstimates(OpenSeason):
                 )
             )
         settings, plot = contents.settings, self.plot
-        believed = settings.belief.believed(plot.grid, settings.pest, settings.robot.detects)
+        told = settings.robot.detects if settings.team else contents.history.told(day)
+        believed = settings.belief.believed(plot.grid, settings.pest, told)
         return EarlierSeason.of(evening, believed, plot.field.name, on)
 
     def progress(self, on: date) -> Progress:

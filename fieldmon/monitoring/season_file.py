@@ -163,7 +163,8 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         if risk is not None:
             risk = array_of(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
-        history = nothing_yet(plot, settings, prior, observations)
+        told = settings.robot.detects
+        history = nothing_yet(plot, settings, prior, observations, told)
         first = SeasonContents(FileRevision(0, 0), settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
@@ -224,7 +225,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
 
         As when the day was planned last or, if it never was, first recorded. What is believed is
-        of now, for all days; so is a team.
+        of now, for all days (but see `fieldmon.monitoring.told_detection`); so is a team.
         """
         with self.store.reading() as db:
             now, moment = settings_of(db), season_log.planned_last(db, str(on))

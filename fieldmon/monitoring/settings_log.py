@@ -18,6 +18,7 @@ from fieldmon.monitoring.tables import utc_now
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Sequence
 
     from fieldmon.monitoring.settings import MonitoringSettings
 
@@ -34,6 +35,13 @@ def at(db: sqlite3.Connection, moment: str) -> Parts:
     """Return what counted at a moment (UTC, as `utc_now` writes it); nothing before the first."""
     counted = "SELECT name, value FROM settings WHERE changed <= ? ORDER BY fid"
     return dict(db.execute(counted, (moment,)).fetchall())
+
+
+def moments(db: sqlite3.Connection, names: Sequence[str]) -> list[str]:
+    """Return when any of these parts was chosen (UTC), the first time first."""
+    asked = ", ".join("?" * len(names))
+    rows = f"SELECT DISTINCT changed FROM settings WHERE name IN ({asked}) ORDER BY changed"  # noqa: S608 - ours
+    return [moment for (moment,) in db.execute(rows, tuple(names))]
 
 
 def begun(db: sqlite3.Connection) -> str:

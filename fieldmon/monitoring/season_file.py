@@ -152,13 +152,15 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         FileProblem
             If the file exists, or cannot be written.
         SettingError
-            If what is handed over is something else.
+            If what is handed over is something else, or an earlier season did not end before.
         """
         if settings is None:
             today = local_clock(plot.field).today()
             settings = settings_from({"begins": today} | chosen)
         if observations is None:
             observations = Observations.none()
+        if settings.belief.earlier is not None:
+            settings.belief.earlier.must_end_before(settings.begins)
         begins = np.datetime64(settings.begins, "D")
         if risk is not None:
             risk = array_of(np.float64, "A risk map", risk)

@@ -158,7 +158,8 @@ def test_what_is_learnt_of_an_earlier_season_is_of_the_detection_at_first(season
     season.record(some_results(season, n=6, found=(1, 3)))
     change(season, robot=LOOKS_LESS)
     assert season.as_earlier().believed.detection == SHARP  # nobody inspected with the new one
-    belief = replace(season.settings.belief, earlier=season.as_earlier())
+    earlier = replace(season.as_earlier(), until=on(-1))
+    belief = replace(season.settings.belief, earlier=earlier)
     second = a_season(tmp_path / "second.gpkg", belief=belief)
     before, said = second.learnt(BEGINS), second.taught()
     change(second, robot=Robot(hours=1.5, detection=0.4))

@@ -378,9 +378,15 @@ class History:
         # what was found is known: it is not out there any more
         return evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))
 
-    def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
-        """Return what the inspections up to the evening of a day tell of the insects."""
-        return learnt_from(self.in_hindsight(morning, day), self.told(day))
+    def learnt(
+        self, morning: Belief, day: int, detection: float | None = None
+    ) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects.
+
+        And of inspections that are told to have a `detection`; None: of those made until then.
+        """
+        told = self.told(day) if detection is None else detection
+        return learnt_from(self.in_hindsight(morning, day), told)
 
     def first_find(self, on: date) -> date | None:
         """Return the day of the first find up to a date; None: there is none yet."""

@@ -141,10 +141,13 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             return contents.history.flagged(morning, day)
 
-    def learnt(self, on: date) -> tuple[Learnt, ...]:
-        """Return what the inspections up to the evening of `on` tell of the insects."""
+    def learnt(self, on: date, detection: float | None = None) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of `on` tell of the insects.
+
+        And of inspections that are told to have a `detection`; None: of those made until then.
+        """
         with self._asked(on) as (contents, morning, day):
-            return contents.history.learnt(morning, day)
+            return contents.history.learnt(morning, day, detection)
 
     def taught(self) -> Worded | None:
         """Return what of an earlier season counts in this one; None: it began without one."""

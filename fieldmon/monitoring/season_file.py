@@ -40,7 +40,7 @@ from fieldmon.monitoring.season_records import SeasonRecords
 from fieldmon.monitoring.season_treatments import SeasonTreatments
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, settings_from
 from fieldmon.monitoring.transactions import Store, set_meta
-from fieldmon.planning.assumptions import assumed_by
+from fieldmon.planning.assumptions import assumed_by, assumed_by_team
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import local_clock
 
@@ -189,7 +189,11 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         `settings` are those that count, as of an earlier day; None: those of now.
         """
         settings = settings or self.settings
-        made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
+        laid, prior = self.plot.assumed, settings.prior
+        if settings.team:
+            made = assumed_by_team(laid, prior, settings.team, self.plot.grid)
+        else:
+            made = assumed_by(laid, prior, settings.robot, self.plot.grid)
         rate = settings.belief.spread.rate_per_day
         if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
             return made

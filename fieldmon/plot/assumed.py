@@ -29,12 +29,18 @@ class Assumed:
         ``"row_change_s"``, ``"stop_s"`` and ``"detects"`` of `Robot`.
     value
         What was taken: metres, metres a second, seconds, or a chance.
+    of
+        Names of those of a team of whom it was taken; empty: of all.
     """
 
     setting: str
     value: float
+    of: str = ""
 
     def __str__(self) -> str:
+        return f"{self._said()} ({self.of})" if self.of else self._said()
+
+    def _said(self) -> str:
         words = self.setting.removesuffix("_m").replace("_", " ")
         words = _WORDS.get(self.setting, words)
         if self.setting in _SHARES:

@@ -56,11 +56,12 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
         )
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
-    typer.echo(f"{on}: {done}{day_in_words(route)}")
+    chance = season.evening(on)
+    typer.echo(f"{on}: {done}{day_in_words(route, float(chance[route.plant].sum()))}")
     tell_assumed(season.assumed())
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
-    write_chance_map(options.chance_map, season.plot, today.chance)
+    write_chance_map(options.chance_map, season.plot, chance)
 
 
 def _tell_detection(season: Season, on: date) -> None:
@@ -108,4 +109,4 @@ def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
     ahead = cache(lambda: season.forecast(on))
     for member, today, paths in zip(team, days, files, strict=True):
         write_member(member.name, with_forecast(today.route, ahead), paths)
-    write_chance_map(options.chance_map, season.plot, days[0].chance)
+    write_chance_map(options.chance_map, season.plot, season.evening(on))

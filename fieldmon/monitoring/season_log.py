@@ -84,7 +84,7 @@ _SAID = {
     "begins": "the log begins: {why}",
     "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
     "batch {batch}",
-    "planned": "{date}: {stops} stops by {sampler}, about {expected} of them infested",
+    "planned": "{date}: {stops} stops by {sampler}, about {expected} of them visibly infested",
     "advised": "{date}: {said}",
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",

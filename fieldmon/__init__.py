@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
     from fieldmon.samplers import SAMPLERS
+    from fieldmon.samplers.base import Sampler, Scene, Stops
     from fieldmon.simulation.library import draw_start, simulate
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SeasonSettings
@@ -104,6 +105,7 @@ _MODULES = {
     "plot.plot": ("Plot",),
     "plot.robot": ("Robot", "Viewpoints", "rover", "scout"),
     "samplers": ("SAMPLERS",),
+    "samplers.base": ("Sampler", "Scene", "Stops"),
     "simulation.library": ("draw_start", "simulate"),
     "simulation.metrics": ("SeasonMetrics",),
     "simulation.season": ("SeasonSettings",),
@@ -143,12 +145,15 @@ __all__ = [
     "ProductLabel",
     "Robot",
     "Route",
+    "Sampler",
+    "Scene",
     "Season",
     "SeasonMetrics",
     "SeasonSettings",
     "SettingError",
     "Spread",
     "Start",
+    "Stops",
     "Viewpoints",
     "Weather",
     "__version__",

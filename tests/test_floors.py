@@ -24,7 +24,7 @@ FLOORS = [
     {"studies", "reports", "drive"},
     {"__init__"},
     {"cli"},
-    {"app", "__main__"},
+    {"app"},
 ]
 FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 #: likewise within the app
@@ -77,6 +77,8 @@ def tree_of(module: str) -> ast.Module:
 def room(module: str) -> str:
     """Return the room of a dotted name."""
     top, *rest = module.split(".")
+    if rest == ["__main__"]:  # the door of the command line
+        return "cli"
     return "app" if top == "app" else rest[0] if rest else "__init__"
 
 

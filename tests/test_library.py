@@ -255,8 +255,8 @@ MISTAKES = {
     "records of no day": (
         lambda _: fm.Observations.of([[35, 30]], [1], day=["soon"]), "must be as 2026-11-18",
     ),
-    "a chance of too few": (lambda plot: fm.draw_start(plot, [0.1, 0.2]), "each of 3825 plants"),
-    "a chance above 1": (lambda plot: fm.draw_start(plot, np.full(3825, 2.0)), "in 0..1 for each"),
+    "a chance of too few": (lambda plot: fm.draw_start(plot, [0.1, 0.2]), "shape (3825,)"),
+    "a chance above 1": (lambda plot: fm.draw_start(plot, np.full(3825, 2.0)), "0..1, but plant 0"),
     "states of nobody": (lambda plot: fm.hot_spots(plot.grid, None), "one entry a plant"),
     "states of words": (lambda plot: fm.hot_spots(plot.grid, ["a"] * 3825), "must hold numbers"),
     "states in a table": (lambda plot: fm.hot_spots(plot.grid, np.zeros((3825, 2))), "one entry a"),

@@ -15,6 +15,8 @@ from ..words import texts
 from . import drawing
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..state.choices import Choices
 
 
@@ -29,6 +31,14 @@ def show(choices: Choices) -> None:
             _boxes(choices)
         else:
             _boxes_of_season(choices)
+
+
+def finds_are(show: Callable[..., object], key: str, **begins: object) -> None:
+    """Show the box for what happens with a find: treated at once, or only flagged."""
+    show(
+        st.radio, texts.FINDS_ARE, list(texts.FINDS_TREATED), key=key, horizontal=True,
+        format_func=texts.FINDS_TREATED.get, help=texts.FINDS_ARE_HELP, **begins,
+    )  # fmt: skip
 
 
 def _boxes(choices: Choices) -> None:
@@ -54,6 +64,7 @@ def _boxes_of_season(choices: Choices) -> None:
             usual = 100 * settings.belief.spread.rate_per_day
             widget_memory.anew(st.number_input, texts.SPREAD, 0.0, 100.0, usual, 0.5,
                                key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
+        finds_are(widget_memory.anew, "season_finds", index=0 if settings.belief.treated else 1)
         st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
 
 
@@ -62,7 +73,7 @@ def _change(choices: Choices) -> str:
     """Let a season believe otherwise, from its first morning on."""
     settings, state = choices.season.settings, st.session_state
     prior = replace(settings.prior, background_chance=state["season_background"] / 100)
-    belief = settings.belief
+    belief = replace(settings.belief, treated=state["season_finds"])
     if settings.pest is None:
         rate = state["season_spread"] / 100
         belief = replace(belief, spread=replace(belief.spread, rate_per_day=rate))

@@ -9,29 +9,47 @@ import streamlit as st
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.history import BeliefSettings
 
-from ..state import chosen_day, chosen_pest, notices, plot_source, seasons_folder, work_day
+from ..state import (
+    chosen_day,
+    chosen_pest,
+    notices,
+    plot_source,
+    seasons_folder,
+    widget_memory,
+    work_day,
+)
 from ..words import language, texts
-from . import acting
+from . import acting, assuming
 
 if TYPE_CHECKING:
     from fieldmon.infestation.earlier_season import EarlierSeason
 
     from ..state.choices import Choices
 
+#: the box for what happens with a find
+_FINDS = "begin_finds"
+
 
 def show(choices: Choices) -> None:
     """Offer to keep what is chosen as a season."""
-    with st.form("begin", border=True):
+    with st.container(border=True):
         st.markdown(f"### {texts.BEGIN_TITLE}")
         st.caption(texts.BEGIN_NOTE)
+        # outside the form: it counts for the button above, too, which begins at once
+        assuming.finds_are(widget_memory.show, _FINDS, default=True)
+        pressed = _form(choices)
+    acting.once(pressed, begin, choices)
+
+
+def _form(choices: Choices) -> bool:
+    with st.form("begin", border=False):
         st.text_input(texts.SEASON_NAME, _proposed(choices), key="season_name")
         if kept := seasons_folder.names():
             st.selectbox(
                 texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
                 format_func=lambda name: texts.NO_EARLIER if name is None else name,
             )  # fmt: skip
-        pressed = st.form_submit_button(texts.BEGIN)
-    acting.once(pressed, begin, choices)
+        return bool(st.form_submit_button(texts.BEGIN))
 
 
 def _proposed(choices: Choices) -> str:
@@ -51,7 +69,7 @@ def begin(choices: Choices) -> str:
     name = st.session_state.get("season_name", _proposed(choices)).strip()
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
-        belief=BeliefSettings(earlier=_earlier()),
+        belief=BeliefSettings(treated=widget_memory.value(_FINDS, True), earlier=_earlier()),
         pest=chosen_pest.pest(), weather=chosen_pest.met(choices) if chosen_pest.pest() else None,
         language=language.current(),
     )  # fmt: skip

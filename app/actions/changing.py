@@ -57,10 +57,17 @@ def in_hours() -> str:
     return texts.IN_HOURS.format(hours="%g")
 
 
-def show(name: str, season: Season, work: Work) -> None:
-    """Show who works in the season of this name, and change it on demand."""
+def show(name: str, season: Season, work: Work, by: MonitoringSettings) -> None:
+    """Show who works in the season of this name, and change it on demand.
+
+    A day that goes `by` what counted then says so instead: a change is for days to come.
+    """
     with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         settings = season.settings
+        if by != settings:
+            was = strategy_name(by.sampler, by.robot.hours, by.robot.look_s)
+            st.caption(texts.EARLIER_SETTINGS.format(strategy=was, starts=f"{by.starts:%H:%M}"))
+            return
         wanted, hours = _wanted(name, settings, work)
         others = replace(wanted, robot=wanted.robot.with_hours(settings.robot.hours))
         # what was changed with the day is used there

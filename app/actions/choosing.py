@@ -143,11 +143,12 @@ def _from_season(name: str, work: Work) -> Choices:
     calendar = Calendar(clock.today(), settings.begins, last)
     day = _day(name, calendar, clock)
     said = tuple(FileMessage(key, _message(kept)) for kept in cached.import_messages(key, season))
+    by = season.planned_by(day)
     choices = Choices(
-        key, season.plot, season.observations, said, settings.robot, settings.sampler, str(day),
+        key, season.plot, season.observations, said, by.robot, by.sampler, str(day),
         units, season, key, today=calendar.today, prior=settings.prior,
     )  # fmt: skip
-    changing.show(name, season, work)
+    changing.show(name, season, work, by)
     return choices
 
 

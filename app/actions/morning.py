@@ -66,8 +66,17 @@ def _day_before(choices: Choices, _: DayPlan) -> str:
     return _recorded(before.found, before.inspected)
 
 
-def _planned(_: Choices, plan: DayPlan) -> str:
-    return day.plan_in_short(plan) if len(plan.route) else ""
+def _planned(choices: Choices, plan: DayPlan) -> str:
+    """Return the plan kept of the day and what is left of it; else what there is to keep."""
+    rest = day.plan_in_short(plan) if len(plan.route) else ""
+    if choices.season is None:
+        return rest
+    kept = chosen_day.planned_and_done(choices)
+    if not chosen_day.progress(choices).inspected_today:
+        return rest if kept is None else day.in_short(kept.planned, kept.hours)
+    if kept is None:
+        return rest and texts.STEP_REST.format(plan=rest)
+    return texts.STEP_KEPT.format(plan=day.in_short(kept.planned, kept.hours), left=kept.left)
 
 
 def _today(choices: Choices, _: DayPlan) -> str:

@@ -14,7 +14,7 @@ from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
-from fieldmon.monitoring import counting_copy
+from fieldmon.monitoring import counting_copy, findings
 from fieldmon.monitoring.transactions import is_season
 from fieldmon.plot.grid import plant_at, row_label
 
@@ -158,7 +158,10 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
     # what reads files is half a second to import
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
     from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
+    from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
 
+    if is_phone_file(Upload(name, data)):
+        return _record_saved(choices, Upload(name, data))
     options = InspectionOptions(take_doubtful=bool(st.session_state.get("take_doubtful")))
     options = options.choose("day", choices.day).on(choices.plot.field)
     with _source(choices, name, data) as (source, copy):
@@ -167,6 +170,20 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
     messages = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
     said = _recorded(choices, read.value, name)
     return "\n\n".join(part for part in (corrected, said + messages if said else "") if part)
+
+
+def _record_saved(choices: Choices, source: Upload) -> str:
+    """Record what a phone saved because it could not send it."""
+    from fieldmon.io.read import read_phone_file  # noqa: PLC0415
+
+    saved = read_phone_file(source)
+    taken = findings.take_saved(choices.season, saved.value, choices.who or "")
+    good = [one.new for one in taken if not one.problem]
+    problems = sorted({one.problem for one in taken} - {""})
+    said = [message.sentence for message in saved.messages]
+    said += [*findings.of_others(choices.season, saved.value), *problems]
+    recorded = texts.RECORDED.format(new=sum(good), known=len(good) - sum(good))
+    return recorded + "".join(f"\n- {in_words(sentence)}" for sentence in said)
 
 
 @contextmanager

@@ -27,7 +27,8 @@ ID: dict[str, Any] = {
 _MOMENT = {
     "type": "string",
     "format": "date-time",
-    "pattern": r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$",
+    # an empty battery sets a clock to 1970
+    "pattern": r"^(19[7-9]|2\d\d)\d-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$",
 }
 _PLACE = {
     "lon": {"type": ["number", "null"], "minimum": -180, "maximum": 180},
@@ -51,12 +52,23 @@ FINDING: dict[str, Any] = {
             "description": "From 0, as in plot.",
         },
         "result": {"enum": [*RESULT_NAMES.values(), None]},
-        "count": {"type": ["number", "null"], "minimum": 0, "maximum": MOST_COUNTED},
+        "count": {
+            "type": ["number", "null"],
+            "minimum": 0,
+            "maximum": MOST_COUNTED,
+            "description": "Pests of a find: whole, from 1. Anything else does not count.",
+        },
         "stage": {"type": "string", "maxLength": 60},
         "leaves": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
         "notes": {"type": "string", "maxLength": 2000},
         **_PLACE,
-        "on": _DATE | {"description": "The day meant, where it is not today: it has no time then."},
+        "on": _DATE
+        | {"description": "The day meant; it has no time where that is not the day of `at`."},
+        "after": {"anyOf": [_MOMENT, {"type": "null"}]}
+        | {
+            "description": "The `Date` of the last answer before it was made, and what passed "
+            "since: a time before it is not believed."
+        },
         "off_route": {"type": "boolean"},
         "undoes": {"anyOf": [ID, {"const": ""}]},
     },
@@ -169,6 +181,7 @@ DAY: dict[str, Any] = {
         "plot": {"type": "string", "description": "Changes if the plot does: fetch it anew."},
         "day": {"type": "string", "format": "date"},
         "live": {"type": "boolean", "description": "Whether it is today on the plot."},
+        "past": {"type": "boolean", "description": "Whether it is over on the plot."},
         "starts": {"type": "string"},
         "robot": {"type": "object"},
         "seconds_left": {"type": "number"},

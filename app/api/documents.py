@@ -82,6 +82,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
         "plot": plot_document(season)[0],
         "day": on.isoformat(),
         "live": on == _today(season),
+        "past": on < _today(season),
         "starts": f"{season.settings.starts:%H:%M}",
         "robot": {
             "hours": robot.hours,

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import math
 import re
-from datetime import date, datetime
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.io.readers.phone_file import day, fields_of, moment
 from fieldmon.monitoring.findings import Finding
 from fieldmon.monitoring.photos import Photo
 
@@ -18,14 +17,13 @@ from . import description
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-_CODES = {name: code for code, name in RESULT_NAMES.items()}
+    from datetime import date, datetime
 
 
 def findings(body: bytes) -> tuple[list[Finding], datetime]:
     """Return what is told, and the phone's clock; raise `ObservationError` if it is not so."""
     sent = _checked(body, "FINDINGS")
-    return [_finding(one) for one in sent["findings"]], _moment(sent["sent"])
+    return [Finding(**fields_of(one)) for one in sent["findings"]], moment(sent["sent"])
 
 
 def asked(body: bytes) -> tuple[date | None, float | None]:
@@ -41,14 +39,6 @@ def asked_photo(name: str, body: bytes) -> tuple[int, str]:
     return sent["plant"], sent.get("note", "")
 
 
-def day(text: str | None) -> date | None:
-    """Return a day, or None where none is said."""
-    try:
-        return date.fromisoformat(text) if text else None
-    except ValueError as error:
-        raise ObservationError(f"A day must be as 2026-11-18, but it is {text!r}.") from error
-
-
 def photo(name: str, query: Mapping[str, str], data: bytes) -> Photo:
     """Return a photo with what its address says of it."""
     _matches(name, description.ID)
@@ -59,37 +49,7 @@ def photo(name: str, query: Mapping[str, str], data: bytes) -> Photo:
     lon, lat = (_number(query, name, most) for name, most in (("lon", 180.0), ("lat", 90.0)))
     lonlat = None if lon is None or lat is None else (lon, lat)
     accuracy_m = _number(query, "accuracy_m", 1e7)
-    return Photo(name, query["finding"], data, _moment(query["at"]), lonlat, accuracy_m)
-
-
-def _finding(sent: dict[str, Any]) -> Finding:
-    lon, lat = sent.get("lon"), sent.get("lat")
-    result = sent.get("result")
-    return Finding(
-        id=sent["id"],
-        at=_moment(sent["at"]),
-        plant=sent.get("plant"),
-        result=None if result is None else _CODES[result],
-        count=sent.get("count"),
-        stage=sent.get("stage", ""),
-        leaves=sent.get("leaves"),
-        notes=sent.get("notes", ""),
-        lonlat=None if lon is None or lat is None else (lon, lat),
-        accuracy_m=sent.get("accuracy_m"),
-        on=day(sent.get("on")),
-        off_route=sent.get("off_route", False),
-        undoes=sent.get("undoes", ""),
-    )
-
-
-def _moment(text: str) -> datetime:
-    try:
-        moment = datetime.fromisoformat(text)
-    except ValueError as error:
-        raise ObservationError(f"A time must be one that exists, but it is {text!r}.") from error
-    if moment.tzinfo is None:
-        raise ObservationError(f"A time must name its zone, but it is {text!r}.")
-    return moment
+    return Photo(name, query["finding"], data, moment(query["at"]), lonlat, accuracy_m)
 
 
 def _number(query: Mapping[str, str], name: str, most: float) -> float | None:

@@ -58,8 +58,12 @@ def headline(choices: Choices, plan: DayPlan) -> str:
 
 def plan_in_short(plan: DayPlan) -> str:
     """Return how many plants there are to inspect, and how long it takes."""
-    plants = texts.PLANTS_COUNTED.format(n=len(plan.route))
-    return listed([plants, hours(plan.route.end_s / 3600)])
+    return in_short(len(plan.route), plan.route.end_s / 3600)
+
+
+def in_short(plants: int, hours_h: float) -> str:
+    """Return so many plants and hours in words."""
+    return listed([texts.PLANTS_COUNTED.format(n=plants), hours(hours_h)])
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
@@ -67,7 +71,7 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
     route, n = plan.route, len(choices.plot.grid)
     taken = assumptions.of(choices)
     rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
-    for_finds = (*rows, "background_chance", "rate_per_day", "detects")
+    for_finds = (*rows, "background_chance", "rate_per_day", "detects", "treated")
     with st.container(horizontal=True):
         st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows),
                   f"{number(len(route), ',')} / {number(n, ',')}", width="content")  # fmt: skip

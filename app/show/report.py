@@ -49,6 +49,7 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         0 if season is None else chosen_day.progress(choices).inspected_today,
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
+        None if season is None else season.planned_and_done(choices.on),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     return lambda: day_report(facts, units).said_in(of_paper)
@@ -64,4 +65,5 @@ def _settings(choices: Choices, *, worked: bool) -> WorkSettings:
         choices.robot, choices.sampler, choices.prior, (grid.row_spacing_m, grid.plant_spacing_m),
         assumptions.of(choices),
         guessed=tuple(one.sentence for one in said if one.severity is Severity.GUESSED),
+        chosen=choices.plot.chosen,
     )  # fmt: skip

@@ -27,5 +27,5 @@ def prior() -> PriorSettings:
 def of(choices: Choices) -> tuple[Assumed, ...]:
     """Return what the figures of a day rest on though nobody said it."""
     if choices.season is not None:
-        return choices.season.assumed()
+        return choices.season.assumed(choices.season.planned_by(choices.on))
     return assumed_by(choices.plot.assumed, choices.prior, choices.robot, choices.plot.grid)

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
-    from fieldmon.monitoring import DayFigures, KeptMessage, Progress, Season
+    from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice import Advice, AdviceSettings
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
@@ -162,6 +162,18 @@ def kept_route(
     """Return the plants of the route that was given out for a day; empty if none was."""
     day, who = of
     return _season.kept_route(np.datetime64(day).item(), who or "")
+
+
+@st.cache_resource(max_entries=FEW)
+def planned_and_done(
+    path: str,
+    revision: str,
+    of: tuple[str, str | None],
+    _season: Season,
+) -> PlannedAndDone | None:
+    """Return a day's kept plan, held to what was inspected; None: none was kept."""
+    day, who = of
+    return _season.planned_and_done(np.datetime64(day).item(), who)
 
 
 @st.cache_resource(max_entries=FEW)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
-    from fieldmon.monitoring import DayFigures, Progress
+    from fieldmon.monitoring import DayFigures, PlannedAndDone, Progress
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot
@@ -56,7 +56,7 @@ def _work_begins(choices: Choices, *, worked: bool = False) -> datetime:
     """Return the local time at which the day's work starts for the one whose day is shown."""
     if (season := choices.season) is None:
         return datetime.combine(choices.on, STARTS)
-    settings = season.settings_on(choices.on) if worked else season.settings
+    settings = (season.settings_on if worked else season.planned_by)(choices.on)
     late_s = settings.member(choices.who).starts_s if choices.who else 0.0
     return datetime.combine(choices.on, settings.starts) + timedelta(seconds=late_s)
 
@@ -87,6 +87,12 @@ def given_out(choices: Choices) -> cached.Array:
     """Return the plants of the route that a season keeps as given out for the day, or none."""
     of = choices.day, choices.who
     return cached.kept_route(choices.key, choices.revision, of, choices.season)
+
+
+def planned_and_done(choices: Choices) -> PlannedAndDone | None:
+    """Return the plan that a season keeps of the day, held to what was inspected; None: none."""
+    of = choices.day, choices.who
+    return cached.planned_and_done(choices.key, choices.revision, of, choices.season)
 
 
 def chance(choices: Choices) -> cached.Array:

@@ -43,7 +43,7 @@ def show(choices: Choices) -> None:
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     plants = len(choices.plot.grid)
-    shares = now.found_of_all_pct(progress.found)
+    shares = now.share_found_pct(progress.found)
     detected, least, most = (number(one, ".0f") for one in shares)
     star = " *" if assumptions.of(choices) else ""
     with st.container(horizontal=True):
@@ -53,7 +53,7 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
         share = texts.IN_PERCENT.format(value=f"{detected} ({least}–{most})")
-        st.metric(f"{texts.DETECTED}{star}", share, width="content")
+        st.metric(f"{texts.DETECTED}{star}", share, help=texts.DETECTED_HELP, width="content")
         seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
         st.metric(texts.INSPECTED_EVER, seen, width="content")
         st.metric(f"{texts.CLEAN_CHANCE}{star}", number(now.chance_clean, ".1%"), width="content")

@@ -115,6 +115,7 @@ ASSUMED_WHAT = {
     "stop_s": "a stop takes {value} s more, as in simulated drives",
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
+    "treated": "plants found infested are treated at once",
 }
 ASSUMED_ROBOT_TOO = "how fast and how thoroughly plants are inspected"
 ASSUMED_OF_ROBOT = "Of who inspects: {what}."
@@ -123,6 +124,12 @@ ASSUMED_NOTHING = "Nothing is assumed: all of it was said, or stands in your fil
 ASSUMED_ROBOT = "Who inspects, and how thoroughly, is chosen further down, under Who inspects."
 ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they are."
 ASSUMED_CHANGED = "The season reckons with these from its first morning on."
+FINDS_ARE = "Plants found infested are"
+FINDS_TREATED = {True: "treated at once", False: "only flagged"}
+FINDS_ARE_HELP = (
+    "Plants that are only flagged stay infested: they infest others, and count when it is decided "
+    "whether to treat."
+)
 BACKGROUND = "Plants infested where nothing is known (%)"
 BACKGROUND_HELP = "Far from records, edges and paths. Leave it empty for our guess."
 BOUND = "Another route of these hours could expect {share} % more finds at most."
@@ -309,6 +316,10 @@ STUDY_STOPPED = "Stopped. Nothing of it is kept; press Run to begin again."
 STUDY_ALT = "Found so far by day, a line a configuration: {title}."
 
 # -- who works, and how numbers are written
+EARLIER_SETTINGS = (
+    "This day goes by what counted then: {strategy}, from {starts}. Who works, and how long, is "
+    "changed on a later day."
+)
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
 UNDO_CHANGE = "Back to {strategy}, from {starts}"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
@@ -406,6 +417,7 @@ STEP_FOUND = Plural(
     "{found:,} found on {inspected:,} plants",
     by="inspected",
 )
+STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"
 SEND_SCAN = "**Point the phone's camera here.** It opens the day's work, in the phone's language."
@@ -551,7 +563,8 @@ MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop n
 DECIDE_NEEDS_SEASON = (
     "**To treat or not** is answered from what was inspected. Begin a season and record a day."
 )
-DECIDE_AREA, DECIDE_LIQUID, DECIDE_LITRES = "To be sprayed", "Liquid", "{value} l"
+DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
+DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
 DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
@@ -663,7 +676,11 @@ NEEDS_SEASON = (
 )
 LEAST, MOST = "at least (90 %)", "at most (90 %)"
 EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
-CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Found of all expected"
+CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Share found"
+DETECTED_HELP = (
+    "Plants found so far, in percent of these and of those still infested. Plants that a treatment "
+    "cleaned before anybody found them are in neither: the share rises with it."
+)
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
 FOUND_AGAIN = (
@@ -682,7 +699,8 @@ CORRECTED_UNSAID = (
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
     "The route file with its found column filled in, any table or GPS file with plants, rows "
-    "or positions, or a copy of this season that QGIS or QField changed"
+    "or positions, a copy of this season that QGIS or QField changed, or what a phone saved as not "
+    "sent"
 )
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
@@ -948,6 +966,8 @@ SCOUT_PAGE = {
     "scan": "Scan the code that the app shows: Today, Send to phone.",
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
+    "clock_wrong": "The clock of this phone is wrong: set it right.",
+    "other_day": "What is recorded now counts for {day}.",
     "loading": "Loading ...", "route_done": "The route is done.",
     "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
     "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
@@ -976,6 +996,9 @@ SCOUT_PAGE = {
     "state_offline": "No network: all is kept on this phone and goes in by itself later.",
     "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
     "scan it.",
+    "count_whole": "Pests of a find are a whole number from 1. Leave it empty if nobody counted.",
+    "stranded": "{n} of {who} wait here, whose key no longer holds. Save them to a file.",
+    "plots": "Seasons on this phone",
     "refused": "Not taken", "send_again": "Send again what was not taken",
     "save_file": "Save what is not sent to a file",
     "hand": "Hand", "left": "Left", "right": "Right", "theme": "Light", "auto": "As the phone",

@@ -30,6 +30,7 @@ from fieldmon.samplers import EVERY
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
+    from fieldmon.monitoring.history import BeliefSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.field import Field
 
@@ -66,6 +67,13 @@ class ChangeOptions:
             help="Trace finds beyond the plants next to them, and learn how far insects jump.",
         ),
     ] = None
+    flag_only: Annotated[
+        bool | None,
+        typer.Option(
+            "--flag-only/--treat-finds",
+            help="Plants found infested are only flagged, or treated at once; for all days.",
+        ),
+    ] = None
     harvest: Annotated[
         str | None,
         typer.Option(
@@ -89,11 +97,7 @@ class ChangeOptions:
             new = replace(new, starts=clock(self.start))
         if self.spread is not None and self.pest_options.pest != "none":
             self._must_spread(settings)
-        if self.spread is not None:
-            rate = replace(settings.belief.spread, rate_per_day=self.spread)
-            new = replace(new, belief=replace(new.belief, spread=rate))
-        if self.trace is not None:
-            new = replace(new, belief=replace(new.belief, traces=self.trace))
+        new = replace(new, belief=self._believed(new.belief))
         if self.harvest is not None:
             none = self.harvest.casefold() == "none"
             new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))
@@ -133,6 +137,18 @@ class ChangeOptions:
             f"alike, but this season's team is {each}. Give all of it anew with: fieldmon change "
             "--robots TEAM.csv"
         )
+
+    def _believed(self, belief: BeliefSettings) -> BeliefSettings:
+        from dataclasses import replace
+
+        if self.spread is not None:
+            rate = replace(belief.spread, rate_per_day=self.spread)
+            belief = replace(belief, spread=rate)
+        if self.trace is not None:
+            belief = replace(belief, traces=self.trace)
+        if self.flag_only is not None:
+            belief = replace(belief, treated=not self.flag_only)
+        return belief
 
     def _must_spread(self, settings: MonitoringSettings) -> None:
         """Refuse a rate of spread where a pest says how it spreads."""

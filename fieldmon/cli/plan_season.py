@@ -36,7 +36,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     season = Season(file)
     tell_drafts(season.drafts)
     on, now = day_on(season.plot.field, day(options.on)), options.now
-    settings, field = season.settings, season.plot.field
+    settings, field = season.planned_by(on), season.plot.field
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, field)
     tell_past_midnight(datetime.combine(on, settings.starts), hours)
@@ -58,7 +58,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     done = f"{len(seen)} done, " if len(seen) else ""
     chance = season.evening(on)
     typer.echo(f"{on}: {done}{day_in_words(route, float(chance[route.plant].sum()))}")
-    tell_assumed(season.assumed())
+    tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, chance)
@@ -68,7 +68,7 @@ def _tell_detection(season: Season, on: date) -> None:
     """Print what the season learnt that inspections find, where routes go by another value."""
     from fieldmon.compute.wording import written
 
-    settings = season.settings
+    settings = season.planned_by(on)
     names: dict[float, list[str]] = {}
     for member in settings.team:
         names.setdefault(member.robot.detects, []).append(member.name)

@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
 
 FindingFiles = Annotated[
     list[Path],
     typer.Argument(
         help="Findings: CSV, Excel, GeoJSON, GPX, GeoPackage... with plants or positions; "
-        "or the route file given out, filled in."
+        "the route file given out, filled in; or what a phone saved as not sent."
     ),
 ]
 TakeDoubtful = Annotated[
@@ -82,14 +83,18 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
 
     process.warm("fieldmon.io.sandbox.tasks")  # it loads while the season is read
     from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.phone_file import is_phone_file
     from fieldmon.monitoring import Season
 
     kept = Season(season)
+    saved = [file for file in files if is_phone_file(file)]
+    files = [file for file in files if file not in saved]
     options = InspectionOptions(take_doubtful=flags.take_doubtful)
     if flags.on is not None:
         options = options.choose("day", str(day(flags.on)))
     options = chosen(options, flags.finding_option).on(kept.plot.field)
     tell_drafts(kept.drafts)
+    told = [(file, _read_saved(file)) for file in saved]
     with working_folder() as folder:
         copies = _copies(files, Path(folder))
         last, read = None, _read(kept, files, options, copies)
@@ -104,9 +109,35 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
             last = max(last or inspections.date.max(), inspections.date.max())
         batch = "" if done.batch is None else f" (batch {done.batch})"
         typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
-    if last is not None:
+    for file, one in told:
+        _take_saved(kept, file, one, flags.who)
+    on = kept.last_date() if told else None if last is None else last.item()
+    if on is not None:
         with kept.one_moment():
-            typer.echo("\n".join(lines(kept, kept.status(last.item()))))
+            typer.echo("\n".join(lines(kept, kept.status(on))))
+
+
+def _read_saved(file: Path) -> PhoneFile:
+    """Return what a phone saved, and say what of it cannot be read."""
+    from fieldmon.io.read import read_phone_file
+
+    read = read_phone_file(file)
+    for message in read.messages:
+        typer.echo(f"{file.name}: {message.line(FLAGS['findings'])}", err=True)
+    return read.value
+
+
+def _take_saved(season: Season, file: Path, saved: PhoneFile, who: str) -> None:
+    """Record what a phone saved, as what it sends."""
+    from fieldmon.monitoring.findings import of_others, take_saved
+
+    taken = take_saved(season, saved, who.strip())
+    new, known = (
+        sum(one.new is is_new and not one.problem for one in taken) for is_new in (True, False)
+    )
+    typer.echo(f"{file.name}: {new} new, {known} known already")
+    for said in (*of_others(season, saved), *sorted({one.problem for one in taken} - {""})):
+        typer.echo(f"{file.name}: {said}", err=True)
 
 
 def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:

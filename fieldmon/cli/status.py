@@ -128,8 +128,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  {'':22} {said}"
     least, most = now.detection_range_pct
     yield (
-        f"  found of all           {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %), "
-        "as believed"
+        f"  share found            {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %) of "
+        "found and still there"
     )
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
     since = "learnt so far" if now.inspected else "believed at first"

@@ -39,7 +39,10 @@ class StudyOptions:
     observations: Annotated[Path | None, typer.Option(help="Dated pest records.")] = None
     sampler: Annotated[
         list[str] | None,
-        typer.Option(help="Sampler; repeat for more. Default: naive, bouncy, dynamic."),
+        typer.Option(
+            help="Sampler, or one of your own: my_sampler.py:Mine (docs: own_sampler); repeat for "
+            "more. Default: naive, bouncy, dynamic."
+        ),
     ] = None
     hours: Annotated[
         list[float] | None,

@@ -66,12 +66,17 @@ def shown(given: object) -> str:
 
     Examples
     --------
-    >>> shown("4h"), shown(None), shown([1, 2])
-    ("'4h'", 'None', 'a list')
+    >>> import numpy as np
+    >>> shown("4h"), shown(None), shown([1, 2]), shown((1, "x")), shown(np.arange(3))
+    ("'4h'", 'None', 'a list', "(1, 'x')", 'an array of int64')
     """
     if given is None or isinstance(given, str | bytes | Real):
         text = repr(getattr(given, "item", lambda: given)())
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+    if hasattr(given, "setflags") and hasattr(given, "dtype"):
+        return f"an array of {given.dtype}"
+    if isinstance(given, tuple) and len(text := repr(given)) <= _LONGEST:
+        return text
     return of_kind(type(given))
 
 
@@ -206,6 +211,26 @@ def must_be_shaped(whose: str, arrays: Mapping[str, tuple[Any, tuple[int, ...]]]
 def must_hold_shapes(holder: object, whose: str, shapes: Mapping[str, tuple[int, ...]]) -> None:
     """Raise `SettingError` unless a holder's arrays, by their names, have these `shapes`."""
     must_be_shaped(whose, {name: (getattr(holder, name), one) for name, one in shapes.items()})
+
+
+def must_be_chances(what: str, chance: NDArray[np.float64]) -> None:
+    """Raise `SettingError` unless an array ``(n,)`` holds chances from 0 to 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> must_be_chances("A start", np.array([0.1, 12.0]))
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A start must hold chances in 0..1, but plant 1 of 2 has 12.
+    """
+    wrong = ~((chance >= 0) & (chance <= 1))
+    if wrong.any():
+        plant = int(wrong.argmax())
+        raise SettingError(
+            f"{what} must hold chances in 0..1, but plant {plant} of {len(chance)} has "
+            f"{chance[plant]:g}."
+        )
 
 
 def must_be_in(what: str, allowed: AllowedRange, given: float) -> None:

@@ -97,11 +97,11 @@ class Zones:
                 outside=estimate(self.outside),
             )
         return worded(
-            "Treat {area} in {zones}, {share} of the plot: {inside} infested plants are expected "
-            "there and {outside} elsewhere. It costs {cost:,.2f} and saves {saved:,.2f}, in your "
-            "currency.",
+            "Treat {area} in {zones}, {share} of the {of} under plants: {inside} infested plants "
+            "are expected there and {outside} elsewhere. It costs {cost:,.2f} and saves "
+            "{saved:,.2f}, in your currency.",
             area=Units().square(self.m2), zones=counted(len(self), "zone"),
-            share=share_figure(self.m2 / self.plot_m2),
+            share=share_figure(self.m2 / self.plot_m2), of=Units().square(self.plot_m2),
             inside=estimate(self.inside), outside=estimate(self.outside), cost=self.cost,
             saved=self.saved,
         )  # fmt: skip
@@ -112,6 +112,7 @@ def best_zones(
     chance: Floats,
     sprayer: Sprayer | None = None,
     costs: TreatmentCosts | None = None,
+    spared: NDArray[np.bool_] | None = None,
 ) -> Zones:
     """Return the zones whose spraying is expected to lose least; the plot as one if that does.
 
@@ -123,6 +124,8 @@ def best_zones(
         ``(n,)`` chance that each plant is infested.
     sprayer, costs
         What can be switched, and what it costs; None: the defaults.
+    spared
+        ``(n,)`` plants that must not be sprayed, whatever their chance; None: none.
 
     Examples
     --------
@@ -135,13 +138,15 @@ def best_zones(
     """
     sprayer, costs = sprayer or Sprayer(), costs or TreatmentCosts()
     plants = _Plants.of(grid, chance, costs)
+    if spared is not None:
+        plants = plants.without(spared[grid.vine])
     choose = _knapsack if sprayer.rows == 0 else _switched
     zone = choose(grid, plants, sprayer, costs)
     most = (1.0 - costs.reserve) * plants.area_m2
     if costs.reserve > 0.0 and plants.m2 * np.count_nonzero(plants.once & (zone >= 0)) > most:
         zone = _within(lambda dearer: choose(grid, dearer, sprayer, costs), plants, most)
     zones = _zones(zone, chance, plants, costs)
-    if costs.reserve > 0.0:
+    if costs.reserve > 0.0 or (spared is not None and spared.any()):
         return zones
     # where so many zones pay that switching costs more than what lies between them
     whole = whole_plot(grid, chance, costs)
@@ -180,6 +185,11 @@ class _Plants(NamedTuple):
     def area_m2(self) -> float:
         """Return the ground of all plants."""
         return float(self.once.sum()) * self.m2
+
+    def without(self, spared: NDArray[np.bool_]) -> _Plants:
+        """Return the same, some plants so dear that all others together do not pay for one."""
+        never = -1.0 - float(self.gain.clip(0.0).sum())
+        return self._replace(gain=np.where(spared & self.once, never, self.gain))
 
     def dearer(self, by: float) -> _Plants:
         """Return the same, each plant by so much less worth spraying."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, replace
 from types import NoneType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from fieldmon.compute.arguments import (
 )
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ImportDoubt, ObservationError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -134,8 +135,9 @@ class Observations:
         Raises
         ------
         ObservationError
-            If columns have different lengths, a position is none on earth, or a result is not 1,
-            0 or -1.
+            If columns have different lengths, a position is none on earth (NaN: not known), a
+            result is not 1, 0 or -1, or a number is below 0 or has no end. A count that contradicts
+            its result is taken: the result is believed.
         """
         points = lonlat_of("Positions of records", lonlat, _READ, nowhere=True)
         results = np.atleast_1d(array_of(np.float64, "Results of records", present))
@@ -159,6 +161,7 @@ class Observations:
             )
         must_be_known("Columns of records", columns, list(unknown))
         given = {name: _column(name, values) for name, values in columns.items()}
+        _must_make_sense(given)
         return cls(points, results.astype(np.int8), days, **(unknown | given))  # type: ignore[arg-type]
 
     def take(self, which: NDArray[np.generic]) -> Observations:
@@ -215,6 +218,15 @@ class UsableRecords:
         return tuple(sentence for sentence in said if sentence.values["n"])
 
 
+def _must_make_sense(given: dict[str, Any]) -> None:
+    """Raise `ObservationError` where a number cannot be."""
+    for name, values in given.items():
+        if values.dtype.kind == "f" and (wrong := (values < 0) | np.isinf(values)).any():
+            raise ObservationError(
+                f"Records' {name} must be numbers from 0 on, but one is {values[wrong][0]:g}."
+            )
+
+
 def usable(
     observations: Observations, on_day: np.datetime64, hardly_days: float = HARDLY_DAYS
 ) -> UsableRecords:
@@ -234,6 +246,13 @@ def usable(
         old=int(np.count_nonzero((today - kept.day) / _DAY > hardly_days)),
         hardly_days=hardly_days,
     )
+
+
+def warn_of_left_out(observations: Observations, on_day: np.datetime64) -> None:
+    """Warn the caller of the caller of records that say nothing on a day."""
+    known = replace(usable(observations, on_day), undated=0, old=0)
+    for doubt in known.messages():
+        warnings.warn(doubt, ImportDoubt, stacklevel=3)
 
 
 def must_be_records(given: object) -> None:

@@ -89,6 +89,13 @@ def scaled(chance: Floats, expected_share: float) -> Floats:
     free = (chance > 0.0) & (chance < 1.0)
     certain = np.count_nonzero(chance >= 1.0)
     wanted = expected_share * len(chance) - certain
+    if not free.any():
+        raise SettingError(
+            worded(
+                "Some plants must have a chance between 0 and 1, or nothing is left to draw, but "
+                "all are at 0 or 1."
+            )
+        )
     if not (0.0 < wanted < np.count_nonzero(free)):
         raise SettingError(
             worded(

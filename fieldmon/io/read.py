@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
     from fieldmon.io.readers.weather_options import WeatherOptions
@@ -156,6 +157,12 @@ def read_inspection_rows(source: Source, options: InspectionOptions) -> Imported
     """Return what a file says of plants that were inspected, before they are looked up."""
     rows: Imported[InspectionRows] = _read("inspection_rows", source, options)
     return rows
+
+
+def read_phone_file(source: Source) -> Imported[PhoneFile]:
+    """Return what a phone saved to a file because it could not send it."""
+    saved: Imported[PhoneFile] = _read("phone_file", source)
+    return saved
 
 
 def read_weather(source: Source, options: WeatherOptions) -> Imported[Weather]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Batch, Recorded
 from fieldmon.monitoring.cautions import Caution
-from fieldmon.monitoring.day_figures import DayFigures, Progress
+from fieldmon.monitoring.day_figures import DayFigures, PlannedAndDone, Progress
 from fieldmon.monitoring.inspection_table import counting_copy
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.outside_changes import OutsideChange
@@ -38,6 +38,7 @@ __all__ = [
     "Merged",
     "MonitoringSettings",
     "OutsideChange",
+    "PlannedAndDone",
     "Progress",
     "Recorded",
     "Season",

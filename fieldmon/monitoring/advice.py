@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.sequential import Verdict
     from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.belief import Belief
+    from fieldmon.monitoring.history import Treatment
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.samplers.base import Scene
@@ -135,6 +136,8 @@ class Advice:
         What is said of each of them.
     more
         Looks to a verdict; None: there is one.
+    done
+        What was treated that day: its plants are in no zone.
     """
 
     grid: PlantGrid
@@ -143,6 +146,7 @@ class Advice:
     zones: Zones
     said: ZoneVerdicts
     more: MoreInspections | None = None
+    done: tuple[Treatment, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Advice: {self.verdict}, {counted(len(self.zones), 'zone')}>"
@@ -181,25 +185,36 @@ class Advice:
         """Return the daily question's answer in one sentence; `units` writes its area."""
         if self.verdict == LOOK_ON:
             return self._look_on()
+        written = units or Units()
         area = {
-            "area": (units or Units()).square(self.zones.m2),
+            "area": written.square(self.zones.m2),
             "zones": counted(len(self.zones), "zone"),
             "share": share_figure(self.zones.m2 / self.zones.plot_m2),
+            "of": written.square(self.zones.plot_m2),
         }  # fmt: skip
         if self.verdict == TREAT and self.zones.m2 >= _WHOLE * self.zones.plot_m2:
-            return worded("Treat the whole plot, {area}.", area=area["area"])
+            return worded("Treat the whole plot, {area} under plants.", area=area["area"])
         if self.verdict == TREAT and len(self.zones):
-            return worded("Treat {area} in {zones}, {share} of the plot.", **area)
+            return worded("Treat {area} in {zones}, {share} of the {of} under plants.", **area)
         if self.verdict == TREAT:
-            return worded(
-                "Treat: the plot is above the threshold, though by these costs it pays nowhere."
-            )
+            return self._pays_nowhere()
         if self.above:
             return worded(
-                "Do not treat the whole plot, but {area} of it in {zones}, {share}.",
+                "Do not treat the whole plot, but {area} of it in {zones}, {share} of the {of} "
+                "under plants.",
                 **area,
             )
         return worded("Do not treat today.")
+
+    def _pays_nowhere(self) -> str:
+        if self.done:
+            return worded(
+                "Do not treat again today: the plot is still above the threshold, but what is left "
+                "of it pays nowhere."
+            )
+        return worded(
+            "Treat: the plot is above the threshold, though by these costs it pays nowhere."
+        )
 
     def _look_on(self) -> str:
         more = self.more or MoreInspections(None, None)
@@ -228,7 +243,22 @@ class Advice:
 
     def reasons(self) -> list[str]:
         """Return what the answer rests on, and what would end it sooner."""
-        return [self.plot.believed(), *self._sooner_said()]
+        return [self.plot.believed(), *self._done_said(), *self._sooner_said()]
+
+    def _done_said(self) -> list[str]:
+        if not self.done:
+            return []
+        plants = np.logical_or.reduce([one.plants for one in self.done])
+        works = sorted({one.efficacy for one in self.done})
+        return [
+            worded(
+                "{plants} {n:was|were} treated that day and {n:is|are} in no zone: {works} of the "
+                "infested ones are taken for clean since.",
+                plants=counted(int(np.count_nonzero(plants)), "plant"),
+                n=int(np.count_nonzero(plants)),
+                works=joined(" / ", [figure(one, ".0%") for one in works]),
+            )
+        ]
 
     def _sooner_said(self) -> list[str]:
         more = self.more
@@ -308,8 +338,9 @@ class Advice:
 
 
 def advice(
-    grid: PlantGrid, evening: Belief, asked: AdviceSettings, scene: Scene | None = None
-) -> Advice:
+    grid: PlantGrid, evening: Belief, asked: AdviceSettings, scene: Scene | None = None,
+    done: tuple[Treatment, ...] = (),
+) -> Advice:  # fmt: skip
     """Return what is advised on what is believed after a day's work.
 
     Parameters
@@ -322,12 +353,15 @@ def advice(
         What is asked and assumed.
     scene
         The day, for the looks to a verdict; None: they are not asked for.
+    done
+        What was treated that day.
     """
     plot = map_verdict(
         grid, evening.chance, asked.level, evening.pair_chance,
         sure=asked.sure, doubt=evening.doubt_of_rates,
     )  # fmt: skip
-    zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs)
+    spared = np.logical_or.reduce([one.plants for one in done]) if done else None
+    zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs, spared)
     said = zone_verdicts(
         grid, (evening.chance, evening.pair_chance), zones.zone,
         (asked.level, asked.sure, asked.costs.works), evening.doubt_of_rates,
@@ -335,7 +369,7 @@ def advice(
     more = None
     if scene is not None and plot.verdict == LOOK_ON:
         more = inspections_to_verdict(evening, scene, asked)
-    return Advice(grid, asked, plot, zones, said, more)
+    return Advice(grid, asked, plot, zones, said, more, done)
 
 
 def inspections_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings) -> MoreInspections:

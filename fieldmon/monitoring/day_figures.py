@@ -15,6 +15,7 @@ from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
@@ -87,7 +88,7 @@ class DayFigures:
         done = progress.inspected_today, progress.found_today
         return cls(on, *done, estimate.expected, estimate.low, estimate.high, estimate.chance_clean)
 
-    def found_of_all_pct(self, found: int) -> tuple[float, float, float]:
+    def share_found_pct(self, found: int) -> tuple[float, float, float]:
         """Return `found` plants in percent of those and of what is left: guess, low and high."""
         value, low, high = (found_pct(found, n) for n in (self.expected, self.high, self.low))
         return value, low, high
@@ -132,6 +133,51 @@ class Progress:
             found_today=len(np.unique(today.plant[today.result == FOUND])),
             days_since=np.where(last == NEVER, np.nan, day - last),
         )
+
+
+@dataclass(frozen=True)
+class PlannedAndDone:
+    """The stops of a day's kept plan, held to what was inspected.
+
+    Parameters
+    ----------
+    planned
+        Stops of the plan kept last, with those of plans before it that were inspected.
+    done, added
+        Plants inspected of these, and besides them.
+    hours
+        From the begin of the first plan to the end of the last one.
+    """
+
+    planned: int
+    done: int
+    added: int
+    hours: float
+
+    @property
+    def left(self) -> int:
+        """Return how many stops were not inspected, or could not be."""
+        return self.planned - self.done
+
+    @classmethod
+    def of(
+        cls, kept: Iterable[tuple[NDArray[np.int32], NDArray[np.int32]]],
+        inspected: NDArray[np.int32], hours: float,
+    ) -> PlannedAndDone:  # fmt: skip
+        """Return it of each one's plans, the plants of the last one and of all, and what was done.
+
+        Examples
+        --------
+        >>> last, of_all, seen = (np.array(plants) for plants in ([3, 4], [1, 2, 3, 4], [1, 3, 9]))
+        >>> PlannedAndDone.of([(last, of_all)], seen, 4.0)
+        PlannedAndDone(planned=3, done=2, added=1, hours=4.0)
+        """
+        seen = set(inspected.tolist())
+        planned: set[int] = set()
+        for last, of_all in kept:
+            planned |= {*last.tolist()} | (seen & {*of_all.tolist()})
+        done = len(planned & seen)
+        return cls(len(planned), done, len(seen) - done, hours)
 
 
 def kept(db: sqlite3.Connection) -> tuple[DayFigures, ...]:

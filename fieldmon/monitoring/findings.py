@@ -7,7 +7,8 @@ a network breaks; once `take` returns, it is on the disk, and comes to no second
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from collections import Counter
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, date, datetime, timedelta
 from typing import TYPE_CHECKING
 
@@ -21,12 +22,14 @@ from fieldmon.monitoring import (
     batches,
     inspection_table,
     phone_tables,
+    photos,
     schema,
     scouts,
     season_log,
 )
 from fieldmon.monitoring.geopackage import insert, point_blobs, touch
 from fieldmon.monitoring.open_season import settings_of
+from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.local_clock import local_clock, utc_now
 
@@ -34,8 +37,9 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
 
-    from fieldmon.monitoring.scouts import Scout
+    from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring.season_file import Season, SeasonChange
+    from fieldmon.plot.local_clock import LocalClock
 
 SOURCE = "phone"
 #: what one person may tell in a day: ten times what anybody can inspect
@@ -63,7 +67,9 @@ class Finding:
     lonlat, accuracy_m
         Where the phone was, and how well it knew.
     on
-        The day it is meant for, where that is not today: then it has no time.
+        The day it is meant for, where that is not today; another one than `at` has no time.
+    after
+        The least that the time can be, by the season's clock; None: nothing is known.
     off_route
         Whether the plant was not on the route.
     undoes
@@ -83,10 +89,13 @@ class Finding:
     on: date | None = None
     off_route: bool = False
     undoes: str = ""
+    after: datetime | None = None
 
     def content(self) -> str:
         """Return all of it as JSON, the same for the same finding only."""
-        return json.dumps(asdict(self), default=str, sort_keys=True, ensure_ascii=False)
+        # when phones did not say it, it was no part
+        said = {name: value for name, value in asdict(self).items() if name != "after" or value}
+        return json.dumps(said, default=str, sort_keys=True, ensure_ascii=False)
 
 
 @dataclass(frozen=True)
@@ -139,25 +148,89 @@ def take(
     shift = fast if abs(fast) > _WRONG else timedelta()
     with season.changing() as change:
         scout = scouts.who_in(change.db, season, key)
-        known = _known(change.db, [one.id for one in findings])
-        news = {one.id: one for one in findings if one.id not in known}
-        _limit(change.db, scout, received, len(news))
-        clocks = received, sent
-        for one in news.values():
-            known[one.id] = one.content(), ""
-        letter = _SentFindings(list(news.values()), clocks, shift)
-        problems, batch, made = _write(season, change, scout, letter)
-        taken_back = _take_back(change) if news else set()
-        if made:
-            states = season_log.states(change.db, {batch, *taken_back})
-            columns = (np.concatenate([getattr(one, name) for one in made])
-                       for name in ("result", "date"))  # fmt: skip
-            said = {"batch": batch, "source": SOURCE, **inspection_table.in_words(*columns)}
-            season_log.append(change.db, "seen", scout.name, states=states, **said)
-        elif taken_back:
-            states = season_log.states(change.db, taken_back)
-            said = {"said": "What a phone told was taken back by it."}
-            season_log.append(change.db, "undone", scout.name, states=states, **said)
+        return _take(season, change, scout, _SentFindings([*findings], (received, sent), shift))
+
+
+def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, ...]:
+    """Keep what phones saved to a file, as what they send; it may be in the season already.
+
+    Nobody needs a key who has the season's file. What is of another season is left out.
+
+    Parameters
+    ----------
+    season
+        The season.
+    saved
+        See `fieldmon.io.readers.phone_file`.
+    who
+        Whose it is, where the file does not say.
+
+    Raises
+    ------
+    SettingError
+        If nobody says whose it is.
+    LimitError
+        If somebody tells more than `MOST_A_DAY`.
+    """
+    received = utc_now()
+    taken: list[Taken] = []
+    findings, kept = ([one for one in some if one.season in {"", season.path.stem}]
+                      for some in (saved.findings, saved.photos))  # fmt: skip
+    names = {one.who or who for one in (*findings, *kept)}
+    if "" in names:
+        raise SettingError(
+            worded("Records must have an author, but the file names none. Say who (--who NAME).")
+        )
+    with season.changing() as change:
+        for name in sorted(names):
+            told = [Finding(**one.fields) for one in findings if (one.who or who) == name]
+            letter = _SentFindings(told, (received, received), timedelta())
+            taken += _take(season, change, Scout(name, None, ""), letter)
+        for one in kept:
+            new, problem = False, ""
+            try:
+                new = photos.keep_of(change.db, one.who or who, photos.Photo(**one.fields))
+            except (ObservationError, LimitError) as error:  # it may be why it is in the file
+                problem = str(error)
+            taken.append(Taken(one.fields["id"], new, problem))
+    return tuple(taken)
+
+
+def of_others(season: Season, saved: PhoneFile) -> tuple[str, ...]:
+    """Return a sentence for each other season of which a phone saved something."""
+    of = Counter(one.season for one in (*saved.findings, *saved.photos))
+    return tuple(
+        worded(
+            "{n} of season {name} {n:was|were} left out: record {n:it|them} there.", n=n, name=name
+        )
+        for name, n in sorted(of.items())
+        if name not in {"", season.path.stem}
+    )
+
+
+def _take(
+    season: Season, change: SeasonChange, scout: Scout, letter: _SentFindings
+) -> tuple[Taken, ...]:
+    """Keep what somebody tells, each finding once."""
+    findings = letter.findings
+    known = _known(change.db, [one.id for one in findings])
+    news = {one.id: one for one in findings if one.id not in known}
+    _limit(change.db, scout, letter.clocks[0], len(news))
+    for one in news.values():
+        known[one.id] = one.content(), ""
+    letter = replace(letter, findings=list(news.values()))
+    problems, batch, made = _write(season, change, scout, letter)
+    taken_back = _take_back(change) if news else set()
+    if made:
+        states = season_log.states(change.db, {batch, *taken_back})
+        columns = (np.concatenate([getattr(one, name) for one in made])
+                   for name in ("result", "date"))  # fmt: skip
+        said = {"batch": batch, "source": SOURCE, **inspection_table.in_words(*columns)}
+        season_log.append(change.db, "seen", scout.name, states=states, **said)
+    elif taken_back:
+        states = season_log.states(change.db, taken_back)
+        said = {"said": "What a phone told was taken back by it."}
+        season_log.append(change.db, "undone", scout.name, states=states, **said)
     return tuple(
         Taken(
             one.id, one.id in news, problems.get(one.id, known[one.id][1]) or _differs(one, known)
@@ -216,9 +289,11 @@ def _write(
     problems: dict[str, str] = {}
     for one in letter.findings:
         inspection = None
-        if not one.undoes:
+        if one.undoes:
+            problems |= _of_another(change.db, scout, one)
+        else:
             try:
-                made = _inspection(season, one, one.at - letter.shift)
+                made = _inspection(season, one, letter)
                 days = (settings, (batch, scout.name))
                 (row,) = inspection_table.rows(made, season.plot.grid, season.label, *days)
                 inspection = _insert(change.db, row, one.id)
@@ -233,23 +308,67 @@ def _write(
     return problems, batch, seen
 
 
-def _inspection(season: Season, one: Finding, at: datetime) -> Inspections:
+def _of_another(db: sqlite3.Connection, scout: Scout, one: Finding) -> dict[str, str]:
+    """Return why a finding takes nothing back, by its id: nobody takes back what others told."""
+    told = db.execute("SELECT scout FROM tellings WHERE id = ?", (one.undoes,)).fetchone()
+    if told is None or told[0] == scout.name:
+        return {}
+    said = worded("This was recorded by {who}, so nobody else can take it back here.", who=told[0])
+    return {one.id: said}
+
+
+def _inspection(season: Season, one: Finding, letter: _SentFindings) -> Inspections:
     """Return a finding as an inspection; raise `ObservationError` where it names none."""
     if one.plant is None or one.result not in RESULT_NAMES:
         raise ObservationError(
             worded("A finding must name a plant and a result, but one of them is missing.")
         )
-    local = local_clock(season.plot.field).at(at)
-    second = np.nan if one.on else seconds(local.time())
+    if (
+        one.result == FOUND
+        and one.count is not None
+        and not (one.count >= 1 and one.count % 1 == 0)
+    ):
+        raise ObservationError(
+            worded(
+                "Pests of a find must be a whole number from 1, but it says {count:g}.",
+                count=one.count,
+            )
+        )
+    day, second = _when(local_clock(season.plot.field), one, letter)
     count = np.nan if one.count is None or one.result != FOUND else one.count
     return Inspections.of(
         np.array([one.plant]),
         np.array([one.result]),
-        np.datetime64(one.on or local.date(), "D"),
+        np.datetime64(day, "D"),
         second=np.array([second]),
         count=np.array([count]),
         notes=np.array([one.notes], object),
     )
+
+
+def _when(clock: LocalClock, one: Finding, letter: _SentFindings) -> tuple[date, float]:
+    """Return a finding's day, and its second or NaN; raise `ObservationError` if no day is sure.
+
+    No time is believed after its arrival, or before the least that it can be.
+    """
+    received, at = letter.clocks[0], one.at - letter.shift
+    local, named = clock.at(at), one.on
+    least = one.after if one.after is None or one.after <= received + _WRONG else None
+    is_believed = at <= received + _WRONG and (least is None or at >= least - _WRONG)
+    if named is not None:
+        return named, seconds(local.time()) if is_believed and named == local.date() else np.nan
+    if is_believed:
+        return local.date(), seconds(local.time())
+    day = clock.at(received).date()
+    if least is None or clock.at(least).date() != day:
+        raise ObservationError(
+            worded(
+                "The clock of the phone was wrong when this was recorded ({at}), so nobody knows "
+                "its day. Record it by hand.",
+                at=f"{local:%Y-%m-%d %H:%M}",
+            )
+        )
+    return day, np.nan
 
 
 def _insert(db: sqlite3.Connection, row: tuple[object, ...], told: str) -> int:

@@ -449,8 +449,9 @@ class History:
         return Scene(
             aisles=aisles,
             robot=robot,
-            chance=believed.chance,
-            pair_chance=believed.pair_chance,
+            # who is given a scene may write to it; the belief is kept for others
+            chance=believed.chance.copy(),
+            pair_chance=None if believed.pair_chance is None else believed.pair_chance.copy(),
             traces=believed.traces,
             last_inspected=last,
             day=day,

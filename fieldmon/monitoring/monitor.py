@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of, must_be, shown
+from fieldmon.compute.arguments import (
+    array_of,
+    must_be,
+    must_be_chances,
+    must_be_shaped,
+    shown,
+)
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
@@ -150,7 +156,7 @@ class Monitor:
 
     def __repr__(self) -> str:
         """Say which plot, who decides, and how far the season is."""
-        who = type(self._sampler).__name__
+        who = type(getattr(self._sampler, "own", self._sampler)).__name__
         return f"<Monitor {self.plot.field.name}: {who}, day {self.day_number + 1}>"
 
     @property
@@ -435,15 +441,6 @@ def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.
         none, day = Observations.none(), np.datetime64(local_clock(plot.field).today())
         return prior_chance(plot.grid, plot.field, none, day, PriorSettings())
     given = array_of(np.float64, "A chance map", chance)
-    if given.shape != (len(plot.grid),):
-        raise SettingError(
-            f"A chance map must have a chance for each of {len(plot.grid)} plants, but it has the "
-            f"shape {given.shape}."
-        )
-    if not (wrong := ~((given >= 0) & (given <= 1))).any():
-        return given
-    plant = int(np.argmax(wrong))
-    raise SettingError(
-        f"A chance map must hold chances in 0..1, but plant {plant} of {len(plot.grid)} has "
-        f"{given[plant]:g}."
-    )
+    must_be_shaped("A plot's", {"chance map": (given, (len(plot.grid),))})
+    must_be_chances("A chance map", given)
+    return given

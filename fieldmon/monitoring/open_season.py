@@ -23,6 +23,7 @@ from fieldmon.monitoring import (
     outside_changes,
     qgis_project,
     schema,
+    season_log,
     settings_log,
     tables,
     treatments,
@@ -149,6 +150,53 @@ class OpenSeason:
             outside_changes.refuse(db)
             return settings_of(db) if (known := self._known(db)) is None else known.settings
 
+    def settings_on(self, on: date) -> MonitoringSettings:
+        """Return what counts, with who worked on a day, from when, and who chose, as it was then.
+
+        As when the day was planned last or, if it never was, first recorded. What is believed is
+        of now, for all days (but see `fieldmon.monitoring.told_detection`); so is a team.
+        """
+        return self._counted_on(on)
+
+    def _counted_on(self, *days: date) -> MonitoringSettings:
+        """Return what counted on the first of some days that was planned or recorded; else now."""
+        with self.store.reading() as db:
+            now = settings_of(db)
+            moments = (season_log.planned_last(db, str(day)) for day in days)
+            moment = next((one for one in moments if one is not None), None)
+            parts = {} if moment is None else settings_log.at(db, moment)
+        if not parts:
+            return now
+        then = from_json(parts)
+        if now.team or then.team:
+            return now
+        return replace(
+            now, robot=then.robot, starts=then.starts, sampler=then.sampler,
+            sampler_settings=then.sampler_settings,
+        )  # fmt: skip
+
+    @property
+    def was_changed(self) -> bool:
+        """Return whether anything else was ever chosen than what the season began with."""
+        with self.store.reading() as db:
+            return len(settings_log.all_moments(db)) > 1
+
+    def planned_by(self, on: date) -> MonitoringSettings:
+        """Return what a day is planned by: an earlier one by what counted then, see `settings_on`.
+
+        A day is an earlier one once something was recorded of a later one. If it was neither
+        planned nor recorded itself, it goes by what counted on the day recorded before it.
+        """
+        return self._planned_by(self._now(), on)
+
+    def _planned_by(self, contents: SeasonContents, on: date) -> MonitoringSettings:
+        recorded = contents.history.inspections.date
+        day = np.datetime64(on, "D")
+        if not len(recorded) or day >= recorded[-1]:
+            return contents.settings
+        before = recorded[recorded <= day][-1:].tolist()
+        return self._counted_on(on, *before)
+
     @property
     def history(self) -> History:
         """Return all that happened so far."""
@@ -192,7 +240,7 @@ class OpenSeason:
     def _scene(
         self, contents: SeasonContents, on: date, now: time | None = None, who: str = ""
     ) -> Scene:
-        settings, day = contents.settings, contents.settings.day(on)
+        settings, day = self._planned_by(contents, on), contents.settings.day(on)
         now_s = None if now is None else seconds(now)
         morning = contents.morning(day)
         if not settings.team:

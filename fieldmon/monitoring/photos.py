@@ -15,6 +15,7 @@ from fieldmon.monitoring.tables import utc_now as text_now
 from fieldmon.plot.local_clock import utc_now
 
 if TYPE_CHECKING:
+    import sqlite3
     from datetime import datetime
 
     from fieldmon.monitoring.season_file import Season
@@ -73,27 +74,29 @@ def keep(season: Season, key: str, photo: Photo) -> bool:
     ObservationError
         If it is no picture, or another photo has its id.
     """
-    kind, mark = _kind(photo.data), digest(photo.data, end=b"")
     with season.store.writing() as db:
-        scout = scouts.who_in(db, season, key)
-        there = db.execute("SELECT digest FROM photos WHERE photo = ?", (photo.id,)).fetchone()
-        if there is not None:
-            if there[0] != mark:
-                raise ObservationError(
-                    worded("A photo must have an id of its own, but another one has it.")
-                )
-            return False
-        since = (utc_now() - timedelta(days=1)).strftime("%Y-%m-%dT%H:%M:%S")
-        sent = "SELECT count(*) FROM photos WHERE scout = ? AND received > ?"
-        if db.execute(sent, (scout.name, since)).fetchone()[0] >= MOST_A_DAY:
-            raise LimitError(
-                worded("One person may send {n} photos a day. Wait a day.", n=MOST_A_DAY)
+        return keep_of(db, scouts.who_in(db, season, key).name, photo)
+
+
+def keep_of(db: sqlite3.Connection, who: str, photo: Photo) -> bool:
+    """Keep somebody's photo within a transaction, as `keep` does."""
+    kind, mark = _kind(photo.data), digest(photo.data, end=b"")
+    there = db.execute("SELECT digest FROM photos WHERE photo = ?", (photo.id,)).fetchone()
+    if there is not None:
+        if there[0] != mark:
+            raise ObservationError(
+                worded("A photo must have an id of its own, but another one has it.")
             )
-        lon, lat = photo.lonlat or (None, None)
-        who = (photo.id, photo.finding, scout.name, photo.at.isoformat(), text_now())
-        row = (photo.data, kind, *who, lon, lat, photo.accuracy_m, mark)
-        insert(db, phone_tables.PHOTOS, [row])
-        touch(db, phone_tables.PHOTOS.name)
+        return False
+    since = (utc_now() - timedelta(days=1)).strftime("%Y-%m-%dT%H:%M:%S")
+    sent = "SELECT count(*) FROM photos WHERE scout = ? AND received > ?"
+    if db.execute(sent, (who, since)).fetchone()[0] >= MOST_A_DAY:
+        raise LimitError(worded("One person may send {n} photos a day. Wait a day.", n=MOST_A_DAY))
+    lon, lat = photo.lonlat or (None, None)
+    named = (photo.id, photo.finding, who, photo.at.isoformat(), text_now())
+    row = (photo.data, kind, *named, lon, lat, photo.accuracy_m, mark)
+    insert(db, phone_tables.PHOTOS, [row])
+    touch(db, phone_tables.PHOTOS.name)
     return True
 
 

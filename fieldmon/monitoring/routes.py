@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -121,6 +122,49 @@ def plants(db: sqlite3.Connection, day: int, who: str = "") -> NDArray[np.int32]
         (day, who),
     )
     return np.array([plant for (plant,) in rows], np.int32)
+
+
+@dataclass(frozen=True, eq=False)
+class KeptPlans:
+    """All that is kept of a day's plans for one: who, and what of it.
+
+    Parameters
+    ----------
+    who
+        Of a team; empty where one works.
+    last, of_all
+        Plants of the plan kept last, and of all of them.
+    hours
+        From the begin of the first to the end of the last.
+    """
+
+    who: str
+    last: NDArray[np.int32]
+    of_all: NDArray[np.int32]
+    hours: float
+
+    def __repr__(self) -> str:
+        return f"<KeptPlans: {len(self.last)} stops, {self.hours:.1f} h>"
+
+
+def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
+    """Return what is kept of a day's plans, for each who has one."""
+    rows = db.execute(
+        "SELECT who, starts, seconds FROM routes WHERE day = ? ORDER BY who, revision", (day,)
+    ).fetchall()
+    made = []
+    for who in dict.fromkeys(name for name, _, _ in rows):
+        own = [(datetime.fromisoformat(starts), s) for name, starts, s in rows if name == who]
+        ends = own[-1][0] + timedelta(seconds=own[-1][1])
+        of_all = db.execute(
+            "SELECT DISTINCT plant FROM stops WHERE route IN (SELECT fid FROM routes "
+            "WHERE day = ? AND who = ?)",
+            (day, who),
+        )
+        every = np.array([plant for (plant,) in of_all], np.int32)
+        hours = (ends - own[0][0]).total_seconds() / 3600
+        made.append(KeptPlans(who, plants(db, day, who), every, hours))
+    return made
 
 
 def _digest(today: DayPlan) -> str:

@@ -55,19 +55,19 @@ class SeasonEstimates(OpenSeason):
     """What follows on each day from all that was recorded before."""
 
     def morning(self, on: date) -> Floats:
-        """Return the chance map ``(n,)`` of the morning of `on`."""
+        """Return the chance map ``(n,)`` of the morning of `on`; it is yours to change."""
         with self._asked(on) as (_, morning, _):
-            return morning.chance
+            return morning.chance.copy()
 
     def morning_in_sight(self, on: date) -> Floats:
         """Return the chances ``(n,)`` by which `on` is planned: of what inspections can see."""
         with self._asked(on) as (_, morning, _):
-            return in_sight(morning).chance
+            return in_sight(morning).chance.copy()
 
     def evening(self, on: date) -> Floats:
         """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far."""
         with self._asked(on) as (contents, morning, day):
-            return contents.history.in_hindsight(morning, day).chance
+            return contents.history.in_hindsight(morning, day).chance.copy()
 
     def level_range(self, on: date) -> LevelRange:
         """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
@@ -112,7 +112,8 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             scene = self._scene(contents, on)
             evening = contents.history.in_hindsight(morning, day)
-        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene)
+        done = tuple(one for one in contents.history.treatments if one.day == day)
+        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene, done)
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,7 @@ from fieldmon.compute.arguments import array_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.observations import Observations, warn_of_left_out
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     derived_layers,
@@ -122,7 +121,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         plot: Plot,
         observations: Observations | None = None,
         settings: MonitoringSettings | None = None,
-        messages: Iterable[KeptMessage] = (),
+        messages: Iterable[KeptMessage] | None = None,
         risk: Floats | Sequence[Any] | None = None,
         **chosen: Any,  # noqa: ANN401 - fields of the settings
     ) -> Season:
@@ -139,7 +138,8 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         settings
             What is chosen; None: the defaults, from today on in the plot's time zone.
         messages
-            What imports had to say, to be kept.
+            What imports had to say, to be kept; None: nothing, and `ImportDoubt` warns of records
+            that are left out.
         risk
             ``(n,)`` one more chance of being infested at the start, from a raster for instance,
             see `fieldmon.infestation.prior.prior_chance`; None: none.
@@ -159,9 +159,12 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
             settings = settings_from({"begins": today} | chosen)
         if observations is None:
             observations = Observations.none()
+        settings.must_detect()
         if settings.belief.earlier is not None:
             settings.belief.earlier.must_end_before(settings.begins)
         begins = np.datetime64(settings.begins, "D")
+        if messages is None:
+            warn_of_left_out(observations, begins)
         if risk is not None:
             risk = array_of(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
@@ -171,7 +174,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
-            tables.write_messages(db, messages)
+            tables.write_messages(db, messages or ())
             if risk is not None:
                 tables.write_array(db, "risk", risk)
             settings_log.write(db, as_json(settings))
@@ -194,10 +197,12 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
             made = assumed_by_team(laid, prior, settings.team, self.plot.grid)
         else:
             made = assumed_by(laid, prior, settings.robot, self.plot.grid)
-        rate = settings.belief.spread.rate_per_day
-        if settings.pest is not None or rate != BeliefSettings().spread.rate_per_day:
-            return made
-        return (*made, Assumed("rate_per_day", rate))
+        rate, usual = settings.belief.spread.rate_per_day, BeliefSettings()
+        if settings.pest is None and rate == usual.spread.rate_per_day:
+            made = (*made, Assumed("rate_per_day", rate))
+        if settings.belief.treated == usual.treated:
+            made = (*made, Assumed("treated", 1.0))
+        return made
 
     def change(self, settings: MonitoringSettings, seen: MonitoringSettings, who: str = "") -> None:
         """Choose otherwise.
@@ -216,6 +221,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         FileProblem
             If something else than `seen` counts by now.
         """
+        settings.must_detect()
         with self._lock, self.store.writing() as db:
             if as_json(settings_of(db)) != as_json(seen):
                 raise FileProblem(
@@ -224,27 +230,10 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                         "window changed them. Look again and repeat your change."
                     )
                 )
-            self._log_change(db, settings_log.write(db, as_json(settings)), who)
+            before = settings_log.now(db)
+            settings_log.write(db, as_json(settings))
+            self._log_change(db, before, who)
             self._refresh(db)
-
-    def settings_on(self, on: date) -> MonitoringSettings:
-        """Return what counts, with who worked on a day, from when, and who chose, as it was then.
-
-        As when the day was planned last or, if it never was, first recorded. What is believed is
-        of now, for all days (but see `fieldmon.monitoring.told_detection`); so is a team.
-        """
-        with self.store.reading() as db:
-            now, moment = settings_of(db), season_log.planned_last(db, str(on))
-            parts = {} if moment is None else settings_log.at(db, moment)
-        if not parts:
-            return now
-        then = from_json(parts)
-        if now.team or then.team:
-            return now
-        return replace(
-            now, robot=then.robot, starts=then.starts, sampler=then.sampler,
-            sampler_settings=then.sampler_settings,
-        )  # fmt: skip
 
     def before_change(self) -> MonitoringSettings | None:
         """Return what counted before the last change of settings; None: nothing was changed."""
@@ -260,17 +249,18 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with self._lock, self.store.writing() as db:
             before = settings_log.now(db)
             settings = settings_log.undo(db)
-            now = settings_log.now(db)
-            self._log_change(db, [name for name in now if now[name] != before.get(name)], who)
+            self._log_change(db, before, who)
             self._refresh(db)
         return settings
 
-    def _log_change(self, db: sqlite3.Connection, names: list[str], who: str) -> None:
+    def _log_change(self, db: sqlite3.Connection, before: settings_log.Parts, who: str) -> None:
         now = settings_log.now(db)
+        names = [name for name in now if now[name] != before.get(name)]
         season_log.append(
             db, "changed", who,
             states={"settings": season_log.settings_state(db)},
             names=", ".join(names), now={name: now[name] for name in names},
+            said="; ".join(settings_log.differences(before, now)),
         )  # fmt: skip
 
     @contextmanager

@@ -67,6 +67,8 @@ class LogEntry:
         what = _Blank(self.what)
         if isinstance(number := what.get("expected"), int | float):
             what["expected"] = estimate(number)
+        if self.kind == "changed":  # earlier versions wrote the names of the parts alone
+            what.setdefault("said", self.what.get("names", "?"))
         anew = "; batches were numbered anew" if what.get("moved") else ""
         return _SAID[self.kind].format_map(what) + anew
 
@@ -89,7 +91,7 @@ _SAID = {
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",
     "corrected": "changes of another program taken as corrections: {rows}",
-    "changed": "settings: {names}",
+    "changed": "settings: {said}",
     "labels": "{labels} labels from {source}",
     "merged": "another copy of the season taken in: {new} inspections, {entries} entries",
     "saved": "saved from a damaged file",

@@ -12,8 +12,10 @@ from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes, season_log
+from fieldmon.monitoring.day_figures import PlannedAndDone
+from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.mornings import is_behind
-from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
+from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day, settings_of
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
@@ -37,7 +39,7 @@ class SeasonPlans(OpenSeason):
         self, on: date, now: time | None = None, *, keep: bool = True,
         wishes: Wishes | None = None, who: str | None = None,
     ) -> DayPlan:  # fmt: skip
-        """Plan what is left of a day from all that is known.
+        """Plan what is left of a day from all that is known; see `planned_by`.
 
         Parameters
         ----------
@@ -69,7 +71,7 @@ class SeasonPlans(OpenSeason):
         """
         with self._lock:
             contents = self._now()
-            settings, day = contents.settings, contents.settings.day(on)
+            settings, day = self._planned_by(contents, on), contents.settings.day(on)
             scenes = [self._scene(contents, on, now, who) for who in _names(settings)]
             if settings.team:
                 days = self._team_days(settings, day, scenes, wishes)
@@ -93,6 +95,24 @@ class SeasonPlans(OpenSeason):
             if settings.team:
                 who = settings.member(who).name if who else settings.team[0].name
             return routes.plants(db, settings.day(on), who)
+
+    def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
+        """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
+
+        `who`: of one of a team alone; None: of all who work.
+        """
+        with self._lock, self.store.reading() as db:  # both of one moment
+            done = self._inspections(db).on(on).inspected
+            of_all = routes.of_day(db, settings_of(db).day(on))
+        name = None if who is None else who.casefold()
+        kept = [one for one in of_all if name is None or one.who.casefold() == name]
+        if not kept:
+            return None
+        return PlannedAndDone.of(
+            [(one.last, one.of_all) for one in kept],
+            np.unique(made_by(done, who).plant),
+            max(one.hours for one in kept),
+        )
 
     def _keep(self, settings: MonitoringSettings, noted: tuple[DayPlan, ...]) -> None:
         """Keep routes; those that are kept already are not written: that would wait for readers."""

@@ -24,6 +24,7 @@ from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json,
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ
 from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
+from fieldmon.samplers.answers import must_detect
 
 if TYPE_CHECKING:
     from fieldmon.pests.pest import Pest
@@ -141,6 +142,11 @@ class MonitoringSettings:
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
         return sampler(self.sampler, **self.sampler_settings)
+
+    def must_detect(self) -> None:
+        """Raise `SettingError` unless whoever works can find something."""
+        for robot in [one.robot for one in self.team] or [self.robot]:
+            must_detect(self.decides(), robot)
 
     def member(self, who: str) -> TeamMember:
         """Return the one of the team whose name is `who`; raise `SettingError` if there is none."""

@@ -18,7 +18,7 @@ from fieldmon.monitoring.tables import utc_now
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Sequence
+    from collections.abc import Iterator
 
     from fieldmon.monitoring.settings import MonitoringSettings
 
@@ -37,11 +37,10 @@ def at(db: sqlite3.Connection, moment: str) -> Parts:
     return dict(db.execute(counted, (moment,)).fetchall())
 
 
-def moments(db: sqlite3.Connection, names: Sequence[str]) -> list[str]:
-    """Return when any of these parts was chosen (UTC), the first time first."""
-    asked = ", ".join("?" * len(names))
-    rows = f"SELECT DISTINCT changed FROM settings WHERE name IN ({asked}) ORDER BY changed"  # noqa: S608 - ours
-    return [moment for (moment,) in db.execute(rows, tuple(names))]
+def all_moments(db: sqlite3.Connection) -> list[str]:
+    """Return when anything was chosen (UTC), the first time first."""
+    chosen = db.execute("SELECT DISTINCT changed FROM settings ORDER BY changed")
+    return [moment for (moment,) in chosen]
 
 
 def begun(db: sqlite3.Connection) -> str:
@@ -58,6 +57,46 @@ def write(db: sqlite3.Connection, parts: Parts) -> list[str]:
     changed = [(name, text, at) for name, text in wanted.items() if before.get(name) != text]
     insert(db, schema.SETTINGS, changed)
     return [name for name, _, _ in changed]
+
+
+def differences(before: Parts, after: Parts) -> list[str]:
+    """Return what differs between two choices, from what to what; what is long by its name alone.
+
+    Examples
+    --------
+    >>> one, other = '{"hours": 4.0, "look_s": 40.0}', '{"hours": 6.0, "look_s": 40.0}'
+    >>> differences({"robot": one, "pest": "null"}, {"robot": other, "pest": '{"name": "mite"}'})
+    ['robot hours 4 to 6', 'pest none to mite']
+    """
+    said: list[str] = []
+    for name in {**before, **after}:
+        was, now = before.get(name, "null"), after.get(name, "null")
+        if was != now:
+            # a year of hours is no line
+            said += [name] if name == "weather" else _differing(name, *map(json.loads, (was, now)))
+    return said
+
+
+def _differing(name: str, was: object, now: object) -> Iterator[str]:
+    if isinstance(was, dict) and isinstance(now, dict):
+        for key in {**was, **now}:
+            if was.get(key) != now.get(key):
+                yield from _differing(f"{name} {key}", was.get(key), now.get(key))
+        return
+    said = [_in_short(one) for one in (was, now)]
+    words = name.replace("_", " ")
+    yield words if "" in said else f"{words} {said[0]} to {said[1]}"
+
+
+def _in_short(value: object) -> str:
+    """Return a value in short; empty: it is none to be said in a line."""
+    if isinstance(value, dict):
+        return str(value.get("name", ""))
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:g}"
+    return "" if isinstance(value, list) else "none" if value is None else str(value)
 
 
 def before_now(db: sqlite3.Connection) -> Parts | None:

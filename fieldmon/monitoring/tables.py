@@ -288,7 +288,7 @@ def read_observations(db: sqlite3.Connection) -> Observations:
     if not rows:
         return Observations.none()
     geom, present, day, count, accuracy, species, stage, leaves = zip(*rows, strict=True)
-    return Observations.of(
+    return Observations(
         np.array([[(p := geometry(g)).x, p.y] for g in geom]),
         np.array(present, np.int8),
         np.array([np.datetime64(d or "NaT", "D") for d in day]),

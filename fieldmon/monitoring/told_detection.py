@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-# parts of the settings that say it
-_SAYING = ("robot", "team", "pest")
-
 
 class ToldDetection(NamedTuple):
     """What inspections were told to find of what is there, from some moment on.
@@ -98,7 +95,7 @@ def told_at_first(db: sqlite3.Connection) -> float:
 
 def _changes(db: sqlite3.Connection) -> _Changes:
     now, changes = settings_log.now(db), _Changes([], [])
-    for moment in settings_log.moments(db, _SAYING):
+    for moment in settings_log.all_moments(db):
         told = ToldDetection.in_parts(settings_log.at(db, moment), now)
         if changes.told[-1:] != [told]:
             changes.since.append(moment)

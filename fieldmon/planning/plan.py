@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import Observations, must_be_records
+from fieldmon.infestation.observations import Observations, must_be_records, warn_of_left_out
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.traced_pairs import TracedPairs
@@ -23,6 +23,7 @@ from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.adaptive import Adaptive
+from fieldmon.samplers.answers import must_detect
 from fieldmon.samplers.base import NEVER, Sampler, Scene
 
 _STARTS = time(6)
@@ -170,11 +171,16 @@ def plan_day(
         ``(n,)`` one more chance of infestation in 0..1, from a raster for instance; NaN where it
         says nothing.
 
+    Warns
+    -----
+    ImportDoubt
+        For records that are left out: of a later day, or neither infested nor clean.
+
     Raises
     ------
     SettingError
-        If `plot` is none, there is no such day or sampler, or the hours do not reach a plant and
-        back.
+        If `plot` is none, there is no such day or sampler, inspections find nothing, or the hours
+        do not reach a plant and back.
     ObservationError
         If all records are too far away to say anything, or `risk` does not fit the plants.
 
@@ -193,7 +199,9 @@ def plan_day(
     decides = sampler_or_name(sampler)
     plans = PlanSettings(robot or Robot(), decides)
     given = Observations.none() if records is None else records
-    today = first_day(plot, given, np.datetime64(starts.date(), "D"), plans, risk)
+    day = np.datetime64(starts.date(), "D")
+    warn_of_left_out(given, day)
+    today = first_day(plot, given, day, plans, risk)
     if not len(today.route):
         raise SettingError(
             worded(
@@ -274,5 +282,6 @@ def plan_in(scene: Scene, sampler: Sampler, wishes: Wishes | None = None) -> Day
 
     Wishes change where it goes, not what is believed of the plants.
     """
+    must_detect(sampler, scene.robot)
     work = plan_work(scene if wishes is None else wishes.applied_to(scene), sampler)
     return DayPlan(scene, work, route_of(scene, work))

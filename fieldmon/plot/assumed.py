@@ -13,6 +13,7 @@ _WORDS = {
     "half_canopy_m": "reach of plants to each side",
     "row_change_s": "time added for a row change, as in simulated drives:",
     "stop_s": "time added for a stop, as in simulated drives:",
+    "treated": "plants found infested are treated at once",
 }
 
 
@@ -26,9 +27,10 @@ class Assumed:
         Its name where it can be said: ``"row_spacing_m"`` of `PlantingChoices`,
         ``"half_canopy_m"`` of `Planting`,
         ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``,
-        ``"row_change_s"``, ``"stop_s"`` and ``"detects"`` of `Robot`.
+        ``"row_change_s"``, ``"stop_s"`` and ``"detects"`` of `Robot`, ``"treated"`` of
+        `BeliefSettings`.
     value
-        What was taken: metres, metres a second, seconds, or a chance.
+        What was taken: metres, metres a second, seconds, or a chance; 1: it is so.
     of
         Names of those of a team of whom it was taken; empty: of all.
     """
@@ -43,6 +45,8 @@ class Assumed:
     def _said(self) -> str:
         words = self.setting.removesuffix("_m").replace("_", " ")
         words = _WORDS.get(self.setting, words)
+        if self.setting == "treated":
+            return f"guessed: {words}"
         if self.setting in _SHARES:
             return f"guessed: {words} {100 * self.value:g} %"
         if self.setting == "speed_m_s":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import isclose
 from typing import TYPE_CHECKING
 
 import shapely
@@ -110,6 +111,25 @@ class Plot:
     def grid(self) -> PlantGrid:
         """Return the plants."""
         return self.aisles.grid
+
+    @property
+    def chosen(self) -> tuple[str, ...]:
+        """Return which spacings, by name, somebody said: neither assumed nor as files have them."""
+        assumed = {one.setting for one in self.assumed}
+        names = ("row_spacing_m", "plant_spacing_m")
+        return tuple(name for name in names if name not in assumed and not self._has(name))
+
+    def _has(self, spacing: str) -> bool:
+        """Return whether the plot's files have a spacing: plants, rows, blocks or words of them."""
+        field = self.field
+        if field.plants is not None:
+            return True
+        if spacing == "row_spacing_m" and len(field.row_lines.geoms) > 1:
+            return True
+        if field.blocks and all(getattr(one, spacing) is not None for one in field.blocks):
+            return True
+        stated = getattr(field, spacing)
+        return stated is not None and isclose(stated, getattr(self.grid, spacing))
 
     @classmethod
     def of(cls, field: Field, planting: Planting | None = None) -> Plot:

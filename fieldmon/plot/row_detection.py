@@ -412,6 +412,8 @@ def main_bearing(edges_m: Float) -> float:
     """Return the bearing (0..180) that most metres of edge share, within a few degrees."""
     length = np.hypot(*edges_m.T)
     bearing_deg = np.rad2deg(np.arctan2(edges_m[:, 0], edges_m[:, 1])) % 180.0
+    if not length.any():
+        return 0.0  # of no length at all: any will do
     n = 180 * _BINS_PER_DEG
     metres = np.bincount((bearing_deg * _BINS_PER_DEG).astype(int) % n, length, n)
     smooth = _smoothed(metres, _EDGE_SMOOTH_DEG * _BINS_PER_DEG, mode="wrap")

@@ -53,7 +53,7 @@ def advice_report(
 
 def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
     zones = advice.zones
-    share = worded(words.OF_PLOT, share=zones.m2 / zones.plot_m2)
+    share = worded(words.OF_PLANTED, share=zones.m2 / zones.plot_m2, of=units.square(zones.plot_m2))
     rate = worded(words.RATE, rate=advice.asked.rate_l_ha)
     return KeyFigures(
         (

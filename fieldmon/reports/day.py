@@ -32,13 +32,14 @@ from fieldmon.reports.sentences import headline, runs
 from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from datetime import date
 
     from numpy.typing import NDArray
 
     from fieldmon.compute.units import Units
     from fieldmon.infestation.hotspots import HotSpots
-    from fieldmon.monitoring import Season
+    from fieldmon.monitoring import PlannedAndDone, Season
     from fieldmon.planning.route import Route
 
 # of more rows, three tables stand side by side instead of two
@@ -73,6 +74,8 @@ class DayFacts:
         Whether the day is over.
     results
         Result of each plant inspected that day, by its number.
+    held
+        The plan kept of the day, held to what was inspected; None: none was kept.
     """
 
     name: str
@@ -86,6 +89,7 @@ class DayFacts:
     found: NDArray[np.integer] = field(default_factory=lambda: np.empty(0, np.int32))
     worked: bool = False
     results: dict[int, int] = field(default_factory=dict)
+    held: PlannedAndDone | None = None
 
     @classmethod
     def of_season(cls, season: Season, on: date) -> DayFacts:
@@ -94,7 +98,7 @@ class DayFacts:
             plan = season.plan(on, keep=False)
             route = plan.route
             worked = day_was_worked(season, on, route)
-            settings = season.settings_on(on) if worked else season.settings
+            settings = season.settings_on(on) if worked else season.planned_by(on)
             day = settings.day(on)
             gone = timedelta(seconds=settings.robot.day_s - plan.scene.seconds_left)
             begins = datetime.combine(on, settings.starts)
@@ -105,7 +109,7 @@ class DayFacts:
                 hot_spots(season.plot.grid, state),
                 WorkSettings.of_season(season, on, worked=worked),
                 len(done), np.unique(done.plant[done.result == FOUND]),
-                worked, results_on(season, on),
+                worked, results_on(season, on), season.planned_and_done(on),
             )  # fmt: skip
 
 
@@ -141,7 +145,15 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
     if facts.inspected:
         numbers = {"inspected": facts.inspected, "found": len(facts.found)}
         said.append(worded(words.WORKED, day=day, **numbers))
+        if facts.held is not None:
+            said.append(worded(words.PLANNED_DONE, **held_in_words([facts.held])))
     return said if facts.worked and said else [*said, headline(facts.route, day)]
+
+
+def held_in_words(held: Sequence[PlannedAndDone]) -> dict[str, int]:
+    """Return what plans came to altogether, for a sentence."""
+    names = ("planned", "done", "left", "added")
+    return {name: sum(getattr(one, name) for one in held) for name in names}
 
 
 def _figures(facts: DayFacts, units: Units) -> KeyFigures:

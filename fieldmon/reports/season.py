@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,10 +32,15 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import NO_ROW, legend_block, map_alt, which
+from fieldmon.reports.day import NO_ROW, held_in_words, legend_block, map_alt, which
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
-from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
+from fieldmon.reports.settings_rows import (
+    WorkSettings,
+    assumed_sentence,
+    changed_rows,
+    settings_blocks,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,7 +53,7 @@ if TYPE_CHECKING:
 
 _LATE_DAYS = 7
 # as many as a page has room for beside its map
-_MOST_CAUTIONS, _MOST_EFFECTS = 6, 3
+_MOST_CAUTIONS, _MOST_EFFECTS, _MOST_CHANGES = 6, 3, 6
 # as many letters as a line of rows, and a column of plants, may have
 _ROWS_LONG, _FINDS_LONG = 70, 46
 
@@ -78,7 +85,23 @@ class _Facts:
 
     @property
     def goes_by(self) -> WorkSettings:
-        return WorkSettings.of_season(self.season, self.on, learnt=self.status.learnt)
+        return self.in_force[-1][1]
+
+    @cached_property
+    def in_force(self) -> list[tuple[date, WorkSettings]]:
+        """What counted on each day that was worked and, if it lies ahead, on the last one."""
+        season, learnt = self.season, self.status.learnt
+        worked = [one.on for one in self.days if one.inspected]
+        recorded = season.inspections.date
+        is_ahead = not len(recorded) or np.datetime64(self.on, "D") > recorded[-1]
+        if not season.was_changed:
+            worked = []  # the same on all of them
+        by = [
+            (day, WorkSettings.of_season(season, day, worked=True, learnt=learnt)) for day in worked
+        ]
+        if is_ahead or not by:
+            by.append((self.on, WorkSettings.of_season(season, self.on, learnt=learnt)))
+        return by
 
     @property
     def state(self) -> NDArray[np.int8]:
@@ -159,7 +182,7 @@ def _figures(facts: _Facts) -> KeyFigures:
             KeyFigure(words.STILL, estimate(ahead.expected),
                       worded(words.INTERVAL, low=figure(ahead.low), high=figure(ahead.high))),
             KeyFigure(words.FOUND_SO_FAR, figure(status.found), twice),
-            KeyFigure(words.FOUND_OF_ALL, figure(status.detection_pct, ".0f", " %"),
+            KeyFigure(words.SHARE_FOUND, figure(status.detection_pct, ".0f", " %"),
                       worded(words.INTERVAL, low=figure(low, ".0f"),
                              high=figure(high, ".0f", " %"))),
             KeyFigure(words.INSPECTED, figure(status.inspected),
@@ -208,12 +231,19 @@ def _went(facts: _Facts) -> Iterator[Block]:
     inspected = np.array([one.inspected for one in facts.days], np.float64)
     charts = {
         words.CHART_FOUND: DayChart(on, found, facts.units),
-        words.CHART_OF_ALL: DayChart(on, share, facts.units, least, most, top=100.0),
+        words.CHART_SHARE: DayChart(
+            on, share, facts.units, least, most, top=100.0, marks=_treated(facts)
+        ),
         words.CHART_STILL: DayChart(on, still, facts.units, low, high, marks=_treated(facts)),
         words.CHART_INSPECTED: DayChart(on, inspected, facts.units),
     }
     for title, chart in charts.items():
         yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
+    plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected]
+    if held := [one for one in plans if one is not None]:
+        days = counted(len(held), "day")
+        said = worded(words.PLANNED_DONE, **held_in_words(held))
+        yield Paragraph(joined(" ", (worded(words.PLANNED_DAYS, days=days), said)))
     yield _days(facts)
 
 
@@ -273,8 +303,17 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
     if told:
         yield Listing("", tuple(one.sentence() for one in told[-_MOST_EFFECTS:]))
     yield from settings_blocks(facts.goes_by, facts.units)
+    if changes := tuple(_changes(facts)):
+        yield Listing(words.CHANGES, changes[-_MOST_CHANGES:])
     yield Listing(words.MEANING, words.MEANINGS)
     yield NoteLines(words.NOTES)
+
+
+def _changes(facts: _Facts) -> Iterator[str]:
+    """Yield on which days who worked, or how, was another than before."""
+    for (_, before), (day, now) in pairwise(facts.in_force):
+        if rows := changed_rows(before, now):
+            yield worded(words.CHANGED_ON, day=facts.units.day(day), what=joined("; ", rows))
 
 
 def _batches(facts: _Facts) -> Block:

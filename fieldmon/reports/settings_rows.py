@@ -53,6 +53,8 @@ class WorkSettings:
         The pest in its weather, by which nights go; None: as `belief` has them.
     learnt_detection
         What inspections detect, as the season learnt; None: it learnt nothing.
+    chosen
+        Which spacings somebody said by hand, by name (`Plot.chosen`).
     """
 
     robot: Robot
@@ -64,6 +66,7 @@ class WorkSettings:
     guessed: tuple[str, ...] = ()
     pest_in_weather: PestInWeather | None = None
     learnt_detection: float | None = None
+    chosen: tuple[str, ...] = ()
 
     @classmethod
     def of_season(
@@ -79,7 +82,7 @@ class WorkSettings:
         Of a day that was `worked` it is what counted then. `learnt` is what is known already of
         what the season learnt until then; None: nothing.
         """
-        settings, grid = season.settings_on(on) if worked else season.settings, season.plot.grid
+        settings, grid = (season.settings_on if worked else season.planned_by)(on), season.plot.grid
         if learnt is None:
             learnt = season.learnt(on)
         guessed = (one for one in season.messages() if one.severity == Severity.GUESSED)
@@ -88,6 +91,7 @@ class WorkSettings:
             (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(settings),
             settings.belief, tuple(one.sentence for one in guessed), settings.pest_in_weather(),
             next((one.value for one in learnt if one.name == "detection"), None),
+            season.plot.chosen,
         )  # fmt: skip
 
     def origin(self, setting: str) -> str:
@@ -98,6 +102,16 @@ class WorkSettings:
     def names(self) -> set[str]:
         """Names of what is assumed."""
         return {one.setting for one in self.assumed}
+
+
+def changed_rows(before: WorkSettings, now: WorkSettings) -> list[str]:
+    """Return who worked and how otherwise than before, each with both values."""
+    then = {name: value for name, value, _ in _of_work(before)}
+    return [
+        worded(words.CHANGED, name=name, before=then[name], now=value)
+        for name, value, _ in _of_work(now)
+        if then.get(name, value) != value
+    ]
 
 
 def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
@@ -133,7 +147,9 @@ def _of_plot(settings: WorkSettings, units: Units) -> Iterator[Row]:
 
 
 def _told(settings: WorkSettings, setting: str) -> str:
-    """Return where a spacing comes from: nobody chose it who did not have to."""
+    """Return where a spacing comes from."""
+    if setting in settings.chosen:
+        return words.FROM_CHOSEN
     return words.FROM_NOBODY if setting in settings.names else words.FROM_FILE
 
 
@@ -162,8 +178,7 @@ def _of_belief(settings: WorkSettings, units: Units) -> Iterator[Row]:
     if (earlier := settings.belief.earlier) is not None:
         said = {"plot": words.isolated(earlier.plot), "until": earlier.until}
         yield words.EARLIER, worded(words.EARLIER_VALUE, **said), words.FROM_CHOSEN
-    treated, usual = settings.belief.treated, BeliefSettings()
-    yield words.TREATED, words.TREATED_VALUES[treated], _from(treated == usual.treated)
+    yield words.TREATED, words.TREATED_VALUES[settings.belief.treated], settings.origin("treated")
 
 
 def _of_nights(settings: WorkSettings, spread: Spread) -> Iterator[Row]:

@@ -22,6 +22,10 @@ FEW_FINDS = "{n:.1f} finds"
 HEADLINE = "Inspect {plants} in {rows} on {day}, {hours} h: about {finds} expected."
 HEADLINE_NONE = "Nothing to inspect on {day}."
 WORKED = "Worked on {day}: {inspected:,} plants inspected, {found:,} found infested."
+PLANNED_DONE = (
+    "Stops planned: {planned:,}; inspected: {done:,}; left out: {left:,}; added: {added:,}."
+)
+PLANNED_DAYS = "On {days} planned and worked:"
 ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
 NO_ROWS = "no rows"
 LEGEND_CHANCE = "Chance that a plant is infested"
@@ -65,19 +69,19 @@ STANDS_CLEAN = "The plot is clean with a chance of {chance:.0%}."
 STANDS_HOT = "Finds cluster in {n}."
 STILL, INTERVAL = "Still infested", "{low} to {high} (90 %)"
 FOUND_SO_FAR, FOUND_TWICE = "Plants found", "in {n:,} finds"
-FOUND_OF_ALL, INSPECTED = "Found of all expected", "Plants inspected"
+SHARE_FOUND, INSPECTED = "Share found", "Plants inspected"
 CLEAN, CLEAN_NOTE = "Chance it is clean", "as believed"
 HOT_SPOTS, HOT_NOTE = "Hot spots", "see page 3"
 ROWS_UNSEEN = "Never inspected: {rows}."
 ROWS_LATE = "Not inspected for a week or more: {rows}."
 ROWS_ALL = "Every row was inspected within the last week."
 CHART_INSPECTED, CHART_FOUND = "Plants inspected a day", "Plants found a day"
-CHART_OF_ALL = "Found of all infestations so far, % (line), and its 90 % interval"
+CHART_SHARE = "Share found, of found and still infested, % (line), and its 90 % interval"
 CHART_STILL = "Still infested and not found, as expected (line), and its 90 % interval"
 CHART_TREATED = "treated"
 CHART_ALT = "Chart by day: {title}."
 DAYS = "Day by day"
-DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "found of all")
+DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "share found")
 DAYS_REST = "... and {n} earlier days; the season's file holds all of them."
 HOT_LIST = "Hot spots"
 HOT_MEANS = (
@@ -118,7 +122,9 @@ WEATHER_NONE = "none: as its figures hold"
 ARRIVALS_NONE = "none"
 ARRIVALS_VALUE = "1 in {n:,.0f}"
 BACKGROUND = "Chance where nothing is known"
-TREATED, TREATED_VALUES = "Plants found are", {True: "treated", False: "flagged"}
+TREATED, TREATED_VALUES = "Plants found are", {True: "treated at once", False: "only flagged"}
+CHANGES, CHANGED = "Changed meanwhile", "{name}: {before}, then {now}"
+CHANGED_ON = "From {day} on: {what}."
 GUESSED = "Guessed when the plot was read"
 EARLIER, EARLIER_VALUE = "Begun with what was learnt on", "{plot}, until {until}"
 FROM_CHOSEN, FROM_USUAL, FROM_FILE = "chosen", "the usual", "of the plot's file"
@@ -127,7 +133,7 @@ FROM_LEARNT = "for chances, not for routes"
 ADVICE_TITLE = "Advice of {day}"
 ADVICE_SHEET = "Treat, or not, and where"
 ADVICE_ALT = "Map of the zones to treat."
-AREA_SPRAYED, OF_PLOT = "To be sprayed", "{share:.0%} of the plot"
+AREA_SPRAYED, OF_PLANTED = "To be sprayed", "{share:.0%} of {of} under plants"
 PRODUCT, PRODUCT_OPEN, RATE = "Product", "not said", "{rate:g} l/ha"
 LIQUID, INFESTED_INSIDE = "Liquid", "Infested plants inside"
 AND_ELSEWHERE, ENOUGH = "{n} elsewhere", "Chance that it is enough"
@@ -141,6 +147,10 @@ MEANINGS = (
     (
         "An interval of 90 % is to hold the true number nine times in ten; in simulated seasons of "
         "some kinds it holds less often."
+    ),
+    (
+        "The share found is of plants found and those still infested: it rises, too, when a "
+        "treatment cleans plants that nobody found."
     ),
     "A hot spot is where finds cluster more than chance allows, three or more; false ones: 5 %.",
     "What is marked as assumed was neither measured nor chosen. Other values give other chances.",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, TypeAlias
 import numpy as np
 
 from fieldmon.compute.wording import counted
-from fieldmon.plot.travel import GATE, robot_clock
+from fieldmon.plot.travel import GATE, robot_clock, travel_s
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,6 +57,12 @@ class Stops(NamedTuple):
         ``(k,)`` seconds since the start, on arrival.
     time
         ``(k,)`` uint8 which of its `InspectionTimes` each plant gets; None: the only one.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> fm.Stops(np.array([4, 5], np.int32), np.array([60.0, 103.0]))
+    <Stops: 2 plants>
     """
 
     plant: NDArray[np.int32]
@@ -106,6 +112,14 @@ class Scene:
     supposed
         Whether results are supposed, as in a plan that takes every plant for clean: from those
         nobody learns how many plants are infested.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> scene = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=4)).scene
+    >>> scene, round(scene.travel_s(-1, 0), 1)
+    (<Scene of day 0: 3,825 plants in 45 rows, 4.00 h left>, 3.6)
     """
 
     aisles: Aisles
@@ -153,6 +167,10 @@ class Scene:
         """Return the robot's numbers for the rest of the day."""
         return robot_clock(self.robot, self.seconds_left)
 
+    def travel_s(self, i: int, j: int) -> float:
+        """Return the seconds from plant i to plant j, either of which may be `GATE` (-1)."""
+        return travel_s(self.aisles.travel, self.clock, i, j)
+
     def walked(self, walk: Callable[..., int], *arrays: object) -> Stops:
         """Return the stops of a compiled walk through the rest of the day.
 
@@ -179,6 +197,16 @@ class Sampler(Protocol):
     reads_chance
         Whether it reads the chances of a scene. For one that does not, nothing is believed: its
         scene holds the chances of the first morning, and no chances of pairs.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> class First(fm.Sampler):
+    ...     def walk(self, scene, would_find):
+    ...         return fm.Stops(np.array([0]), np.array([scene.travel_s(scene.at, 0)]))
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> fm.plan_day(plot, on="2026-11-18", sampler=First()).route.plant.tolist()
+    [0]
     """
 
     reads_chance: ClassVar[bool] = True
@@ -189,7 +217,7 @@ class Sampler(Protocol):
 
     @abstractmethod
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
-        """Return the stops from here to the end of the day.
+        """Return the stops from here to the end of the day, in a `scene`.
 
         ``would_find`` (n,) says of each plant from which of the sampler's inspection times on an
         inspection today would find it infested, counted from 1; 0: none would. Where there is one

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.arguments import must_be, must_be_known, shown
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.errors import SettingError
+from fieldmon.samplers.own import is_own, own_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -144,19 +145,27 @@ def sampler(name: str, **settings: Any) -> Sampler:  # noqa: ANN401 - each sampl
 
 
 def sampler_or_name(given: str | Sampler) -> Sampler:
-    """Return the sampler of a name, or one of a caller's own as it is.
+    """Return the sampler of a name, or one of a caller's own: made, or ``my_sampler.py:Mine``.
+
+    What one of a caller's own answers is checked, see `Checked`.
 
     Raise `SettingError` if there is none of that name, or it is no sampler.
     """
     if isinstance(given, str):
-        return sampler(given)
+        if not is_own(given):
+            return sampler(given)
+        given = own_class(given)()
     own = all(callable(getattr(given, name, None)) for name in ("walk", "inspection_times"))
     if isinstance(given, type) or not own:
         raise SettingError(
             f"A sampler must be one of {', '.join(SAMPLERS)}, or one of your own with a method "
-            f"walk, but it is {shown(given)}. Derive your own from samplers.base.Sampler."
+            f"walk, but it is {shown(given)}. Derive your own from fieldmon.Sampler."
         )
-    return given
+    if type(given).__module__.startswith("fieldmon."):
+        return given
+    from fieldmon.samplers.answers import Checked  # noqa: PLC0415 - it has a loop to compile
+
+    return Checked(given)
 
 
 def of_equal_times() -> dict[str, SamplerKind]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.samplers import COMPARED, kind_of
+from fieldmon.samplers import COMPARED, kind_of, sampler_or_name
+from fieldmon.samplers.own import is_own, label_of, own_digest
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.study_plot import DIGITS, Combination, StudyPlot, as_written
 from fieldmon.simulation.worker import simulate_chunk
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 # a chunk takes about so long; what seasons cost was measured, see docs/benchmarks
 _CHUNK_S = 4.0
 _S_PER_DAY = 3e-4
+# likewise for each plant, of a sampler of which nothing is known
+_S_OF_OWN = 1e-5
 # changes when seasons come out differently, so that old chunks are not taken for new ones
 _VERSION = "4"
 
@@ -34,7 +37,7 @@ class Design:
     Parameters
     ----------
     samplers
-        Names in `fieldmon.samplers.SAMPLERS`.
+        Names in `fieldmon.samplers.SAMPLERS`, or files of your own as ``my_sampler.py:Mine``.
     hours, look_s, infested, spread
         The levels of each factor, see `Combination`.
     n_days
@@ -54,7 +57,12 @@ class Design:
 
     def __post_init__(self) -> None:
         for name in self.samplers:
-            kind_of(name)
+            sampler_or_name(name)
+        labels = [label_of(name) for name in self.samplers]
+        if len(set(labels)) < len(labels):
+            raise SettingError(
+                f"Samplers of a study must have different names, but they are {', '.join(labels)}."
+            )
         for named in fields(self)[:5]:
             values = getattr(self, named.name)
             if not values or len(set(values)) < len(values):
@@ -89,8 +97,11 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
 
     def key(setting: Setting, seeds: range) -> tuple[str, str]:
         plot, levels = setting
-        parts = (plot.digest, as_written(levels), (seeds.start, seeds.stop), n_days)
-        return levels.sampler, digest(_VERSION, *parts, length=DIGITS)
+        label = label_of(levels.sampler)
+        own = (own_digest(levels.sampler),) if is_own(levels.sampler) else ()
+        written = as_written(replace(levels, sampler=label))
+        parts = (plot.digest, written, (seeds.start, seeds.stop), n_days, *own)
+        return label, digest(_VERSION, *parts, length=DIGITS)
 
     return Experiment(
         settings=list(product(plots, design.combinations)),
@@ -103,5 +114,6 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
 
 def _seasons(sampler: str, n_plants: int, n_days: int) -> int:
     """Return how many seasons take about `_CHUNK_S`."""
-    day_s = _S_PER_DAY + n_plants * kind_of(sampler).s_per_plant_day
+    per_plant_s = _S_OF_OWN if is_own(sampler) else kind_of(sampler).s_per_plant_day
+    day_s = _S_PER_DAY + n_plants * per_plant_s
     return math.ceil(_CHUNK_S / (n_days * day_s))

@@ -56,9 +56,9 @@ class NightInsects:
         evening = self.infested.copy()
         evening[found] = False
         self.infested = self._night(self.grid, evening, key)
-        self._shows_on[self.infested & ~evening] = number + 1 + self._hidden_nights
-        # nobody recovers at night
-        return int(np.count_nonzero(self.infested) - np.count_nonzero(evening))
+        new = self.infested & ~evening
+        self._shows_on[new] = number + 1 + self._hidden_nights
+        return int(np.count_nonzero(new))
 
 
 class PestInsects:

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of
+from fieldmon.compute.arguments import array_of, must_be_chances, must_be_shaped
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.errors import SettingError
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
@@ -56,11 +55,8 @@ def draw_start(
     """
     must_be_plot(plot)
     chance = array_of(np.float64, "A chance map", chance)
-    if chance.shape != (len(plot.grid),) or not ((chance >= 0) & (chance <= 1)).all():
-        raise SettingError(
-            f"A chance map must have a chance in 0..1 for each of {len(plot.grid)} plants. Give "
-            "DayPlan.chance, for instance."
-        )
+    must_be_shaped("A plot's", {"chance map": (chance, (len(plot.grid),))})
+    must_be_chances("A chance map", chance)
     must_be_of("The share infested at the start", "float", share)
     return season_start(plot.grid, chance, share, RandomStreams(seed))
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_in
-from fieldmon.compute.kinds import checked, must_hold_kinds
+from fieldmon.compute.arguments import must_be_in, must_be_shaped
+from fieldmon.compute.kinds import checked, must_be_of, must_hold_kinds
 from fieldmon.compute.ranges import DAYS, AllowedRange
 from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
@@ -59,7 +59,7 @@ class SeasonSettings:
     spread
         What the insects do at night.
     believed_spread
-        What the chance map takes them to do; None: the same.
+        What the chance map takes them to do; None: the same, also where `pests` do otherwise.
     learning
         How findings change the chance map; None: with the robot's own detection.
     believe
@@ -115,7 +115,11 @@ class SeasonSettings:
             The night's stream, see `RandomStreams.key`.
         """
         if self.pests is not None:
-            return self.pests(grid, infested, key)
+            # it may write into what it is given
+            morning = self.pests(grid, infested.copy(), key)
+            must_be_of("What a season's pests return", "NDArray[np.bool_]", morning)
+            must_be_shaped("The next morning's", {"infested plants": (morning, infested.shape)})
+            return morning
         return night(grid, infested, self.spread, key)
 
     def insects(self, grid: PlantGrid, infested: NDArray[np.bool_]) -> PlotInsects:

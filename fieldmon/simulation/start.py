@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_hold_shapes
+from fieldmon.compute.arguments import must_be_chances, must_hold_shapes
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
@@ -43,6 +43,7 @@ class Start:
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A start's")
         must_hold_shapes(self, "A start's", dict.fromkeys(vars(self), (self.infested.size,)))
+        must_be_chances("A start", self.chance)
 
     def __repr__(self) -> str:
         plants = counted(len(self.infested), "plant")

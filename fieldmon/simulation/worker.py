@@ -14,7 +14,8 @@ from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import sampler
+from fieldmon.samplers import sampler_or_name
+from fieldmon.samplers.own import label_of
 from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT, season_metrics
 from fieldmon.simulation.season import SeasonSettings
 from fieldmon.simulation.start import season_start
@@ -77,9 +78,10 @@ def simulate_chunk(setting: Setting, seeds: range, n_days: int) -> ChunkSeasons:
     except FieldmonError as error:
         return RefusedPlot(of.field.name, str(error))
     rows, plot = [], laid.plot
+    named = replace(levels, sampler=label_of(levels.sampler))
     for seed in seeds:
         season = simulated_season(laid, Robot(), levels, seed, n_days)
-        about = {"plot": plot.field.name, **vars(levels), "seed": seed, "days": n_days}
+        about = {"plot": plot.field.name, **vars(named), "seed": seed, "days": n_days}
         rows.append(about | {"plants": len(plot.grid)} | _measures(season))
     return rows
 
@@ -99,7 +101,7 @@ def simulated_season(
     settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread), pest=pest_in_weather)
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
     robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
-    decides = sampler(levels.sampler)
+    decides = sampler_or_name(levels.sampler)
     return season_metrics(team.days((plot, robot), decides, start, settings, streams))
 
 

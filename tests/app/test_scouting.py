@@ -7,19 +7,22 @@ import hashlib
 import os
 import random
 import shutil
-from datetime import date
+from datetime import date, timedelta
 
 import pytest
 
 from app.state.scout_page import invitation
 from app.words import texts
+from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, photos, scouts
 from fieldmon.monitoring.day_ahead import route_ahead
+from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.local_clock import utc_now
 from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
 from tests.app.test_hostile_texts import EVIL, NAMES, hostile_season
-from tests.monitoring.phone import told
+from tests.monitoring.phone import a_finding, told
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -236,6 +239,84 @@ def holds(season, there, said):
         assert (kind, hashlib.sha256(data).hexdigest()) == ("image/jpeg", digest)
     assert len(photos.photos_of(season)) == PHOTOS
     keeps_the_rules(season.path)
+
+
+def test_a_tap_is_of_the_plant_in_large_print_whoever_records_it_meanwhile(season, line, phone):
+    invited(phone, line, season, "Dan")
+    page = phone.page
+    page.locator(SENT).wait_for()
+    plant = plant_of(page)
+    theirs = a_finding(plant, FOUND, on=BEGINS, at=utc_now())
+    take(season, scouts.let_in(season, "Ann"), [theirs], utc_now())
+    page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator("#place", has_text="Ann").wait_for()
+    assert plant_of(page) == plant
+    told_now(page, "clean")
+    assert [one["plant"] for one in kept(page).records] == [plant]
+
+
+def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):
+    invited(phone, line, season, "Dan")
+    page, label = phone.page, season.label
+    page.locator(SENT).wait_for()
+    phone.window.set_offline(True)
+    page.locator("#sync[data-state=offline]").wait_for()
+    plant = plant_of(page)
+    page.locator("#place", has_text="Chance").wait_for()
+    page.locator("#found").click()
+    for count in ("2.5", "0"):
+        page.locator("#count").fill(count)
+        page.locator("#save").click()
+        page.locator("#note.bad", has_text="whole number").wait_for()
+        assert plant_of(page) == plant
+    page.locator("#cancel").click()
+    told_now(page, "found", 3)
+    assert "✓" not in page.locator("#sync[data-left='1']").inner_text()
+    page.locator("#other_plant").click()
+    page.locator("#other_row").fill(str(label.line[plant]))
+    page.locator("#other_plant").last.fill(str(label.number[plant]))
+    page.locator("#ok").click()
+    page.locator(f"#place[data-plant='{plant}']").wait_for()
+    assert "Chance" not in page.locator("#place").inner_text()
+
+
+def test_a_phone_handed_over_and_taken_to_another_plot_mixes_nothing(season, line, phone):
+    invited(phone, line, season, "Noa")
+    page, window = phone.page, phone.window
+    page.locator(SENT).wait_for()
+    window.set_offline(True)
+    first = told_now(page, "clean")
+    scouts.take_back(season, "Noa")
+    window.set_offline(False)
+    page.goto("about:blank")
+    invited(phone, line, season, "Gil")
+    second = told_now(page, "clean")
+    page.locator("#sync.bad[data-state=sent][data-left='1']").wait_for()
+    page.locator("#open_menu").click()
+    page.locator("dialog h2", has_text="Gil").wait_for()
+    page.locator("dialog .bad", has_text="Noa").wait_for()
+    page.keyboard.press("Escape")
+    # a code of another season, without a network
+    other = Season(shutil.copy(season.path, season.path.parent / "Other.gpkg"))
+    key, problems = scouts.let_in(other, "Bea"), []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    window.set_offline(True)
+    page.goto("about:blank")
+    page.goto(invitation(line.address, "Other", key, str(BEGINS), "en"))
+    page.locator("#note.bad", has_text="no network").wait_for()
+    window.set_offline(False)
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator("#clean").wait_for()
+    assert page.locator("#note").inner_text() == ""
+    told_now(page, "clean")
+    page.locator("#open_menu").click()
+    page.locator(".season", has_text="Gate 2026").click()
+    page.locator(f"#last[data-plant='{second[0]}']").wait_for()
+    assert problems == []
+    with Season(season.path).store.reading() as db:
+        assert db.execute("SELECT scout FROM tellings").fetchall() == [("Gil",)]
+    assert first[0] in {one["plant"] for one in kept(page).records}
 
 
 def test_a_glove_that_bounces_says_nothing_of_the_next_plant(season, line, phone):

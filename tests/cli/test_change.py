@@ -91,3 +91,10 @@ def test_seconds_do_not_go_with_a_detection_that_a_table_gives(run, season, tmp_
     run("change", season, "--robots", team)
     assert "finds 60 %" in run("change", season, "--look", "30")[2]
     assert run("change", season, "--hours", "3")[0] == 0
+
+
+def test_whether_finds_are_treated_or_only_flagged_is_chosen(run, season):
+    for option, treated in (("--flag-only", False), ("--treat-finds", True)):
+        code, _, err, _ = run("change", season, option)
+        assert code == 0, err
+        assert Season(season).settings.belief.treated is treated

@@ -1,7 +1,9 @@
 """`fieldmon record`: what was found."""
 
+import json
 import shutil
 import sys
+import uuid
 
 import numpy as np
 import pyogrio
@@ -91,3 +93,25 @@ def test_what_somebody_else_recorded_meanwhile_is_not_contradicted_unasked(
     assert "1 of them contradict it" in err
     assert "Confirm with: --contradicting" in err
     assert len(Season(season).history.inspections) == 3
+
+
+def test_what_a_phone_saved_as_not_sent_is_recorded_and_changes_nothing_twice(
+    run, season, tmp_path
+):
+    one = {"at": f"{BEGINS}T06:00:00.123Z", "season": Season(season).path.stem, "who": "Ann"}
+    ids = [str(uuid.UUID(int=k)) for k in range(4)]
+    told = [
+        one | {"id": ids[0], "plant": 3, "result": "found", "count": 4},
+        one | {"id": ids[1], "plant": 4, "result": "clean"},
+        one | {"id": ids[2], "undoes": ids[1]},
+        one | {"id": ids[3], "plant": 10**6, "result": "clean"},
+    ]
+    (tmp_path / "rescue.json").write_text(json.dumps({"findings": told, "photos": []}))
+    code, out, err, _ = run("record", season, "rescue.json")
+    assert (code, "rescue.json: 3 new, 0 known already" in out) == (0, True), err
+    assert "plant's number" in err
+    seen = Season(season).history.inspections
+    assert (seen.plant.tolist(), seen.who.tolist()) == ([3], ["Ann"])
+    code, out, _, _ = run("record", season, "rescue.json")
+    assert "0 new, 3 known already" in out
+    assert len(Season(season).history.inspections) == 1

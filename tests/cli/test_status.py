@@ -23,7 +23,7 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     now = kept.status(kept.last_date())
     ahead = f"  forecast               {kept.forecast(now.on).sentence()}"
     assert out.splitlines() == [*lines(kept, now), ahead]
-    assert "found of all                0 % (0 to 0 %), as believed" in out
+    assert "share found                 0 % (0 to 0 %) of found and still there" in out
     assert f"{now.plants:,} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
     assert "believed at first      An inspection finds 84 % of what is there" in out

@@ -6,6 +6,7 @@ import pytest
 from fieldmon.cli.study_run import _tell
 from fieldmon.simulation import results
 from tests.cli.estate import ZIP
+from tests.paths import ROOT
 
 FEW = ["--seeds", 3, "--days", 2, "--workers", 1, "--date", "2026-11-02"]
 
@@ -53,3 +54,19 @@ def test_how_much_more_a_sampler_loses_is_told_season_by_season(capsys):
     assert dynamic.endswith(" 20  (best)")
     # differences 2, 5 and 3: mean 3.3, and by Student's t 4.30 * 1.53 / sqrt(3) to each side
     assert naive.endswith(" 23  +3.3 (-0.5 to +7.1)")
+
+
+def test_a_sampler_of_ones_own_is_compared_under_its_name(run, tmp_path):
+    page = (ROOT / "docs" / "own_sampler.md").read_text(encoding="utf-8")
+    text = page.split("```python\n")[1].split("```")[0]
+    (tmp_path / "my_sampler.py").write_text(text, encoding="utf-8")
+    words = ["study", "run", ZIP, "--feature", "Nursery", "--hours", 1, *FEW]
+    own = ["--sampler", "my_sampler.py:Mine", "--sampler", "naive", "-o", "mine"]
+    code, out, err, _ = run(*words, *own)
+    assert code == 0, err
+    assert {line.split()[0] for line in out.splitlines()} >= {"Mine", "naive"}
+    assert set(results.seasons(tmp_path / "mine")["sampler"].to_pylist()) == {"Mine", "naive"}
+    refused = text.replace("plants.append(at)", "plants.append(-1)")
+    (tmp_path / "my_sampler.py").write_text(refused, encoding="utf-8")
+    code, _, err, _ = run(*words, *own)
+    assert (code, "Mine must answer plants from 0 on" in err) == (2, True)

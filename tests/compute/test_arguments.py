@@ -43,7 +43,7 @@ def test_what_is_of_its_kind_passes_and_anything_else_is_said_with_what_to_do():
         ("4h", "'4h'"),
         (np.float64(2.5), "2.5"),
         ([1], "a list"),
-        (np.zeros(2), "a ndarray"),
+        (np.zeros(2), "an array of float64"),
         (object(), "an object"),
     ],
 )

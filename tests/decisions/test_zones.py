@@ -39,6 +39,16 @@ def clustered(grid, seed=3):
     return np.minimum(chance, 0.95)
 
 
+@pytest.mark.parametrize("sprayer", [Sprayer(2, 6.0, 6.0), Sprayer(0), Sprayer(0, ring=2)])
+def test_plants_that_are_spared_are_in_no_zone_though_all_else_pays(sprayer):
+    grid = rectangle(20, 20, Planting(90.0, 4.0, 3.0))
+    spared = (grid.xy_m - grid.xy_m.min(axis=0) < 20).all(axis=1)
+    zones = best_zones(grid, np.full(len(grid), 0.9), sprayer, CHEAP, spared)
+    assert zones.treated.any()
+    assert not zones.treated[spared].any()
+    assert zones.outside >= 0.9 * np.count_nonzero(spared) - 1e-9
+
+
 def test_clusters_are_treated_with_less_than_two_fifths_of_the_area():
     """The goal: at most 40 % of the whole field, where infested plants stand in clusters."""
     grid = rectangle(60, 60, Planting(90.0, 4.0, 3.0))
@@ -116,7 +126,7 @@ def test_where_nothing_is_worth_it_nothing_is_treated():
     assert len(zones) == 0
     assert zones.sentence().startswith("Treat nowhere")
     assert (
-        "Treat 0.0072 ha in 1 zone, 100 % of the plot"
+        "Treat 0.0072 ha in 1 zone, 100 % of the 0.0072 ha under plants"
         in best_zones(ROW, np.full(9, 0.9), Sprayer(1), CHEAP).sentence()
     )
 

@@ -85,3 +85,18 @@ def test_how_old_that_is_follows_from_the_half_life_of_records():
         for days in (0, 20)
     )
     assert new / 40 < old < new / 20
+
+
+@pytest.mark.parametrize(
+    ("present", "columns", "said"),
+    [
+        (PRESENT, {"count": -5.0}, "count must be numbers from 0 on, but one is -5"),
+        (PRESENT, {"count": np.inf}, "count must be numbers from 0 on, but one is inf"),
+        (PRESENT, {"accuracy_m": -5.0}, "accuracy_m must be"),
+        (ABSENT, {"leaves_sampled": -3.0}, "leaves_sampled must be"),
+    ],
+)
+def test_numbers_that_cannot_be_are_refused(present, columns, said):
+    given = {name: np.array([value]) for name, value in columns.items()}
+    with pytest.raises(ObservationError, match=said):
+        Observations.of(np.array([[35.15, 30.36]]), np.array([present]), **given)

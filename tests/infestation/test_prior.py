@@ -187,7 +187,7 @@ some_chances = st.lists(
 def test_chances_are_scaled_to_the_share_exactly_with_one_factor_on_the_odds(chance, share):
     certain, free = chance == 1.0, (chance > 0) & (chance < 1)
     if not certain.sum() < share * len(chance) < certain.sum() + free.sum():
-        with pytest.raises(SettingError, match="strictly between"):
+        with pytest.raises(SettingError, match="strictly between" if free.any() else "at 0 or 1"):
             scaled(chance, share)
         return
     after = scaled(chance, share)
@@ -227,3 +227,9 @@ def test_a_risk_that_is_no_chance_is_refused_below_as_above(odd):
     risk[7] = odd
     with pytest.raises(ObservationError, match=r"chances in 0\.\.1"):
         prior_chance(GRID, field_of(GRID), Observations.none(), TODAY, USUAL, risk)
+
+
+@pytest.mark.parametrize("sure", [0.0, 1.0])
+def test_where_all_is_settled_nothing_is_left_to_draw(sure):
+    with pytest.raises(SettingError, match="all are at 0 or 1"):
+        scaled(np.full(10, sure), 0.3)

@@ -28,7 +28,7 @@ def a_days_findings(season, n=12, seed=0):
     rng = np.random.default_rng(seed)
     plants = season.plan(BEGINS, keep=False).route.plant[:n].tolist()
     return [
-        a_finding(plant, FOUND if rng.random() < 0.2 else CLEAN, at=NOW + timedelta(minutes=k))
+        a_finding(plant, FOUND if rng.random() < 0.2 else CLEAN, at=NOW - timedelta(minutes=n - k))
         for k, plant in enumerate(plants)
     ]
 

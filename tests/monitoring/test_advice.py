@@ -118,12 +118,39 @@ def test_one_look_less_would_not_decide(season):
             assert (said.verdict == verdict) == (k == looks)
 
 
+def test_what_was_treated_that_day_is_not_proposed_anew_and_said(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
+    grid = season.plot.grid
+    plants = np.arange(0, len(grid), 3)
+    corner = (grid.xy_m[plants] - grid.xy_m.min(axis=0) < 16).all(axis=1)
+    season.record(Inspections.of(plants, corner.astype(int), np.datetime64(BEGINS)), "day")
+    asked = AdviceSettings(0.15, costs=replace(CHEAP, per_ha=0.01))
+    before = season.advice(BEGINS, asked)
+    treated = before.zones.treated & (grid.row < 3)
+    assert treated.any()
+    season.treat(BEGINS, 0.3, plants=treated)
+    after = season.advice(BEGINS, asked)
+    assert not (after.zones.treated & treated).any()
+    assert after.zones.outside > 0.5
+    n = np.count_nonzero(treated)
+    said = f"{n} plants were treated that day and are in no zone: 30 % of the infested ones"
+    assert said in " ".join(after.reasons())
+    tomorrow = season.advice(BEGINS + timedelta(days=1), asked)
+    assert tomorrow.done == ()
+    whole = season.plot.grid.row >= 0
+    season.treat(BEGINS, 0.0, plants=whole)
+    again = season.advice(BEGINS, AdviceSettings(0.001, costs=CHEAP))
+    assert len(again.zones) == 0
+    assert again.headline().startswith("Do not treat again today: ")
+
+
 @pytest.mark.parametrize(
     ("m2", "above", "verdict", "said"),
     [
         (1000.0, 1, TREAT, "Treat the whole plot, "), (995.0, 1, TREAT, "Treat the whole plot, "),
-        (990.0, 1, TREAT, " in 1 zone, 99 % of the plot."),
-        (250.0, 1, LEAVE, " of it in 1 zone, 25 %."), (250.0, 0, LEAVE, "Do not treat today."),
+        (990.0, 1, TREAT, " in 1 zone, 99 % of the "),
+        (250.0, 1, LEAVE, " of it in 1 zone, 25 % of the 0.10 ha under plants."),
+        (250.0, 0, LEAVE, "Do not treat today."),
         (0.0, 0, TREAT, "above the threshold, though by these costs it pays nowhere."),
     ],
 )  # fmt: skip
@@ -182,7 +209,7 @@ def test_a_small_zone_is_not_nothing(season):
     assert small.sentence().startswith("Treat 0.0012 ha in ")
     advice = replace(season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)), zones=small)
     said = " ".join(advice.said_of_zones())
-    assert "0.23 % of the plot" in said
+    assert "0.23 % of the 0.53 ha" in said
     assert "It takes 0.37 l and" in said
 
 

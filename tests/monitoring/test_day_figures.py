@@ -96,8 +96,8 @@ def test_the_days_finds_sum_to_all_finds_though_plants_are_found_again(tmp_path)
 
 def test_the_share_found_is_least_where_most_is_left():
     figures = DayFigures(BEGINS, 9, 4, 36.0, 6, 156, 0.0)
-    assert figures.found_of_all_pct(4) == pytest.approx((10.0, 2.5, 40.0))
-    assert DayFigures(BEGINS, 9, 0, 0.0, 0, 0, 1.0).found_of_all_pct(0) == (100.0,) * 3
+    assert figures.share_found_pct(4) == pytest.approx((10.0, 2.5, 40.0))
+    assert DayFigures(BEGINS, 9, 0, 0.0, 0, 0, 1.0).share_found_pct(0) == (100.0,) * 3
 
 
 def test_flagged_plants_are_said_beside_those_not_found_where_there_are_any():

@@ -1,17 +1,20 @@
 """What phones tell is taken once each, in any order, however often it comes."""
 
 import random
+import uuid
 from datetime import date, timedelta
 
 import numpy as np
 import pyogrio
 import pytest
 
-from fieldmon.errors import AccessError, LimitError
+from fieldmon.errors import AccessError, LimitError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
-from fieldmon.monitoring import Season, findings, scouts
-from fieldmon.monitoring.findings import take
-from tests.monitoring.phone import NOW, a_days_findings, a_finding, told
+from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord
+from fieldmon.monitoring import Season, findings, photos, scouts
+from fieldmon.monitoring.findings import of_others, take, take_saved
+from fieldmon.monitoring.photos import Photo
+from tests.monitoring.phone import JPEG, NOW, a_days_findings, a_finding, told
 from tests.monitoring.seasons import BEGINS, state
 
 
@@ -88,7 +91,7 @@ def test_two_people_at_one_plant_are_both_kept_and_the_contradiction_shown(seaso
         ({"plant": None}, "must name a plant"),
         ({"result": 7}, "must name a plant and a result"),
         ({"on": date(2001, 1, 1)}, "of this season"),
-        ({"result": FOUND, "count": -1.0}, "A count must be 0 or more"),
+        ({"result": FOUND, "count": -1.0}, "whole number from 1"),
     ],
 )
 def test_what_does_not_fit_is_kept_and_does_not_count(season, key, wrong, why):
@@ -216,3 +219,105 @@ def test_a_clock_is_put_right_if_it_is_two_minutes_wrong_and_else_believed(
     take(season, key, [a_finding(0, at=NOW + fast)], NOW + fast)
     second = season.history.inspections.second
     assert second[~np.isnan(second)].tolist() == [9 * 3600.0 + (0.0 if shifted else fast_s)]
+
+
+@pytest.mark.parametrize("count", [0.0, 0.5, 2.5])
+def test_pests_of_a_find_are_whole_and_at_least_one(season, key, count):
+    before = len(season.history.inspections)
+    (done,) = take(season, key, [a_finding(3, FOUND, count=count)], NOW)
+    assert "whole number from 1" in done.problem
+    assert len(season.history.inspections) == before
+    (done,) = take(season, key, [a_finding(3, count=0.0)], NOW)
+    assert done.problem == "", "none were counted on a clean plant"
+
+
+def test_a_day_that_is_named_has_times_if_it_is_the_day_of_the_phone(season, key):
+    take(season, key, [a_finding(3, on=BEGINS), a_finding(4, on=BEGINS + timedelta(days=1))], NOW)
+    seen, day = season.history.inspections, BEGINS + timedelta(days=1)
+    assert seen.second[(seen.plant == 3) & (seen.date == np.datetime64(BEGINS))][-1] == 9 * 3600.0
+    assert np.isnan(seen.second[(seen.plant == 4) & (seen.date == np.datetime64(day))]).all()
+
+
+HOUR, DAY = timedelta(hours=1), timedelta(days=1)
+
+
+@pytest.mark.parametrize(
+    ("at", "after", "second"),
+    [
+        (NOW - HOUR, NOW - 2 * HOUR, 8 * 3600.0),
+        (NOW - HOUR, None, 8 * 3600.0),
+        (NOW - DAY, NOW - HOUR, np.nan),  # a battery was empty: the day is sure, the time is not
+        (NOW.replace(year=1970), NOW - HOUR, np.nan),
+        (NOW + 3 * DAY, NOW - HOUR, np.nan),
+        (NOW - DAY, NOW - 2 * DAY, None),  # a day that can be true is believed; of another day here
+        (NOW + 3 * DAY, NOW - DAY, None),
+        (NOW + 3 * DAY, None, None),
+        (NOW.replace(year=1970), None, None),
+    ],
+    ids=str,
+)
+def test_a_time_after_its_arrival_or_before_the_least_it_can_be_is_not_believed(
+    season, key, at, after, second
+):
+    (done,) = take(season, key, [a_finding(37, at=at, after=after)], NOW)
+    seen = season.history.inspections
+    seen = seen.take(seen.plant == 37)
+    assert bool(done.problem) == (second is None)
+    if second is None:
+        assert len(seen) == 0
+    else:
+        assert seen.date.tolist() == [BEGINS]
+        np.testing.assert_equal(seen.second, [second])
+
+
+def test_what_was_taken_before_phones_said_the_least_is_still_the_same():
+    assert "after" not in a_finding(3).content()
+    assert "after" in a_finding(3, after=NOW).content()
+
+
+def test_nobody_takes_back_what_another_told_and_that_is_said(season, key):
+    theirs = a_finding(37)
+    take(season, scouts.let_in(season, "Ben"), [theirs], NOW)
+    back = a_finding(None, None, undoes=theirs.id)
+    assert "recorded by Ben" in take(season, key, [back], NOW)[0].problem
+    assert "recorded by Ben" in take(season, key, [back], NOW)[0].problem, "as often as it comes"
+    assert 37 in season.history.inspections.plant
+
+
+def _saved(findings, season="season", who="Ann", photos=()):
+    def each(some):
+        return tuple(SavedRecord(season, who, vars(one)) for one in some)
+
+    return PhoneFile(each(findings), each(photos))
+
+
+def test_what_a_phone_saved_is_recorded_once_whether_it_is_sent_or_not(season, key):
+    sent, unsent = a_finding(37), a_finding(38, FOUND, count=2.0)
+    photo = Photo(str(uuid.UUID(int=7)), unsent.id, JPEG, NOW)
+    take(season, key, [sent], NOW)
+    file = _saved([sent, unsent], photos=[photo])
+    assert [one.new for one in take_saved(season, file)] == [False, True, True]
+    before = state(season.path)
+    assert not any(one.new for one in take_saved(season, file))
+    assert not take(season, key, [unsent], NOW)[0].new, "the phone sees a network after all"
+    assert state(season.path) == before
+    assert [one.id for one in photos.photos_of(season)] == [photo.id]
+    (who,) = {
+        str(one) for one in season.history.inspections.who[season.history.inspections.plant == 38]
+    }
+    assert who == "Ann"
+
+
+def test_what_a_phone_saved_of_another_season_or_of_nobody_is_not_recorded(season):
+    before = state(season.path)
+    other = _saved([a_finding(37)], season="Other")
+    assert take_saved(season, other) == ()
+    assert of_others(season, other) == ("1 of season Other was left out: record it there.",)
+    with pytest.raises(SettingError, match="--who"):
+        take_saved(season, _saved([a_finding(37)], season="", who=""))
+    assert state(season.path) == before
+    broken = Photo(str(uuid.UUID(int=7)), str(uuid.UUID(int=8)), b"no picture", NOW)
+    told = _saved([a_finding(37)], season="", who="", photos=[broken])
+    one, photo = take_saved(season, told, "Dan")
+    assert (one.new, photo.new) == (True, False)
+    assert "JPEG" in photo.problem

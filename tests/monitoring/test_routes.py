@@ -120,3 +120,13 @@ def test_the_route_of_one_of_a_team_begins_when_that_one_does(tmp_path):
         with season.store.reading() as db:
             assert routes.is_kept(db, today, name)
             assert not routes.is_kept(db, today, "")
+
+
+def test_all_plans_of_a_day_are_told_with_the_last_apart(season):
+    rest = season.plan(BEGINS)
+    with season.store.reading() as db:
+        (kept,) = routes.of_day(db, 0)
+        assert routes.of_day(db, 1) == []
+    assert kept.last.tolist() == rest.route.plant.tolist()
+    assert {*kept.last} < {*kept.of_all}
+    assert kept.hours <= ROBOT.hours

@@ -115,3 +115,21 @@ def test_a_season_in_which_nothing_was_inspected_or_traced_teaches_nothing(tmp_p
     near.record(some_results(near, n=4), "x")
     with pytest.raises(SettingError, match="traced to neighbours only"):
         near.as_earlier()
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        lambda season: season.morning(BEGINS),
+        lambda season: season.morning_in_sight(BEGINS),
+        lambda season: season.evening(BEGINS),
+        lambda season: season.scene(BEGINS).chance,
+        lambda season: season.scene(BEGINS).pair_chance,
+        lambda season: season.plan(BEGINS, keep=False).chance,
+    ],
+)
+def test_who_changes_chances_that_were_given_changes_nothing_for_others(season, given):
+    planned = season.plan(BEGINS, keep=False).route.plant
+    given(season)[:] = 0.0
+    assert season.plan(BEGINS, keep=False).route.plant.tolist() == planned.tolist()
+    assert season.evening(BEGINS).max() > 0.0

@@ -319,3 +319,19 @@ def test_when_a_day_was_planned_last_or_first_recorded_is_told(db):
     assert season_log.planned_last(db, "2026-04-07") == planned.at
     assert season_log.planned_last(db, "2026-04-08") == seen.at
     assert season_log.planned_last(db, "2026-04-09") is None
+
+
+def test_a_change_of_settings_is_told_from_what_to_what(path):
+    season = Season(path)
+    first = season.settings
+    season.change(replace(first, robot=first.robot.with_hours(6.0), sampler="naive"), first)
+    season.undo_change()
+    changed = [one.sentence() for one in season.log() if one.kind == "changed"]
+    assert changed == [
+        "settings: robot hours 1.5 to 6; sampler name adaptive to naive",
+        "settings: robot hours 6 to 1.5; sampler name naive to adaptive",
+    ]
+    of_old = {"names": "robot, sampler", "now": {}}
+    assert season_log.LogEntry(1, "", "changed", "", of_old, "").sentence() == (
+        "settings: robot, sampler"
+    )

@@ -1,5 +1,6 @@
 """A season's days are planned from all that is known, and their routes are kept."""
 
+from dataclasses import replace
 from datetime import date, time
 
 import numpy as np
@@ -7,9 +8,13 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import SKIPPED, Inspections
+from fieldmon.monitoring import Season
+from fieldmon.planning.members import team_of
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
+    a_season,
+    on,
     some_results,
 )
 
@@ -70,3 +75,52 @@ def test_a_date_of_no_season_is_a_sentence(season):
 def test_the_time_now_is_a_time_or_a_sentence(season):
     with pytest.raises(SettingError, match="must be a time, but it is '11:00'"):
         season.plan(BEGINS, "11:00")
+
+
+def test_an_earlier_day_is_planned_by_what_counted_then(season):
+    first = season.settings
+    season.plan(on(0))
+    season.record(some_results(season, n=3))
+    before = season.plan(on(0), keep=False)
+    longer = replace(first, robot=first.robot.with_hours(3.0), sampler="naive")
+    season.change(longer, first)
+    assert season.planned_by(on(0)) == longer  # the last day goes on by what counts now
+    season.record(some_results(season, day=2, n=3))
+    assert season.planned_by(on(0)) == first
+    assert season.planned_by(on(1)) == first  # nothing was planned or recorded of it
+    assert season.planned_by(on(2)) == longer
+    again = season.plan(on(0), keep=False)
+    assert again.scene.robot == first.robot
+    assert np.array_equal(again.route.plant, before.route.plant)
+    assert again.route.notes.sampler == first.sampler
+    assert season.plan(on(2), keep=False).scene.robot.hours == 3.0
+
+
+def test_a_kept_plan_is_held_to_what_was_inspected(season):
+    assert season.planned_and_done(on(0)) is None
+    first = season.plan(on(0))
+    n = len(first.route)
+    besides = np.setdiff1d(np.arange(len(season.plot.grid)), first.route.plant)[:2]
+    done = np.concatenate([first.route.plant[:4], besides.astype(np.int32)])
+    season.record(Inspections.of(done, np.zeros(6, np.int8), np.datetime64(on(0))))
+    held = season.planned_and_done(on(0))
+    assert (held.planned, held.done, held.left, held.added) == (n, 4, n - 4, 2)
+    assert held.hours == pytest.approx(first.route.end_s / 3600, abs=1e-3)
+    rest = season.plan(on(0))  # what is planned anew takes the place of what was not done
+    held = season.planned_and_done(on(0))
+    assert (held.planned, held.done) == (len(rest.route) + 4, 4)
+    assert ROBOT.hours - 0.2 < held.hours <= ROBOT.hours + 0.01
+    assert Season(season.path).planned_and_done(on(1)) is None
+
+
+def test_the_plans_of_a_team_are_held_to_what_each_and_all_did(tmp_path):
+    season = a_season(tmp_path / "team.gpkg", team=team_of(2, ROBOT))
+    names = [member.name for member in season.settings.team]
+    days = season.plan_each(BEGINS)
+    done = days[0].route.plant[:3]
+    who = np.full(3, names[0])
+    season.record(Inspections.of(done, np.zeros(3, np.int8), np.datetime64(BEGINS), who=who))
+    of_all, first, second = (season.planned_and_done(BEGINS, name) for name in (None, *names))
+    assert (first.done, second.done, of_all.done) == (3, 0, 3)
+    assert first.planned == len(days[0].route)
+    assert of_all.planned == first.planned + second.planned

@@ -58,10 +58,10 @@ def test_a_season_says_what_it_said(season, capsys):
         lambda at: f"{clock.at(datetime.fromisoformat(f'{at[0]}Z')):%F %H:%M}", told
     )
     told = re.sub(r"\b1 days ago", "1 day ago", told)
-    # the share found, with its interval instead of a tenth that nobody knows
-    share = r"found of all +([\d.]+) %(?: \(\d+ to \d+ %\))?, as"
+    # the share found, by its name, with its interval instead of a tenth that nobody knows
+    share = r"(?:found of all|share found) +([\d.]+) %.*"
     told, now = (
-        re.sub(share, lambda at: f"found of all {float(at[1]):.0f} %, as", text)
+        re.sub(share, lambda at: f"share found {float(at[1]):.0f} %", text)
         for text in (told, "".join(said))
     )
     more = r"(findings.*|treatment.*)  (\d+ found|\d+ plants, [\d-]+)"

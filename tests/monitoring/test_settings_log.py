@@ -59,16 +59,6 @@ def test_a_choice_that_is_taken_back_counts_as_never_made(db):
     assert as_json(settings_log.undo(db)) == FIRST
 
 
-def test_when_parts_were_chosen_is_told(db):
-    settings_log.write(db, FIRST)
-    settings_log.write(db, {**FIRST, "pest": "{}"})
-    settings_log.write(db, LONGER)
-    told = settings_log.moments(db, ("robot", "team"))
-    assert len(told) == 2
-    assert told == sorted(told)
-    assert settings_log.at(db, told[1])["robot"] == LONGER["robot"]
-
-
 def test_what_counted_at_a_moment_is_told(db):
     settings_log.write(db, FIRST)
     between = utc_now()

@@ -1,5 +1,7 @@
 """A field with its plants and ways: whichever way it is made, the plants are those."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -7,6 +9,8 @@ from shapely import MultiPolygon, box
 
 import fieldmon as fm
 from fieldmon.errors import PlotError, SettingError
+from fieldmon.io import prepare
+from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
@@ -28,6 +32,17 @@ def test_plants_are_laid_as_the_field_states_where_nobody_says_otherwise():
     stated = Field("Gate", AREA, row_bearing_deg=90.0, row_spacing_m=5.0, plant_spacing_m=4.0)
     np.testing.assert_array_equal(Plot.of(stated).grid.xy_m, lay(FIELD, PLANTING).xy_m)
     np.testing.assert_array_equal(Plot.of(FIELD, PLANTING).grid.xy_m, lay(FIELD, PLANTING).xy_m)
+
+
+def test_a_spacing_is_chosen_where_it_is_neither_assumed_nor_as_files_have_it():
+    both = ("row_spacing_m", "plant_spacing_m")
+    stated = Field("Gate", AREA, row_bearing_deg=90.0, row_spacing_m=5.0, plant_spacing_m=4.0)
+    assert prepare.lay(FIELD).plot.chosen == ()
+    assert prepare.lay(FIELD, PlantingChoices(plant_spacing_m=2.0)).plot.chosen == both[1:]
+    assert prepare.lay(stated).plot.chosen == ()
+    assert prepare.lay(stated, PlantingChoices(row_spacing_m=6.0)).plot.chosen == both[:1]
+    assert prepare.lay(stated, PlantingChoices(row_spacing_m=5.0)).plot.chosen == ()
+    assert Plot.of(replace(FIELD, plants=measured())).chosen == ()
 
 
 def measured():

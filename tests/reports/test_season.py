@@ -1,5 +1,6 @@
 """A season on four pages: its figures are the season's."""
 
+from dataclasses import replace
 from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
 
@@ -16,7 +17,7 @@ from fieldmon.plot.grid import row_label
 from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
 from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import hot_spot_meanings
-from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.seasons import BEGINS, a_season, some_results
 from tests.reports.reading import one, table
 
 
@@ -37,7 +38,7 @@ def test_where_it_stands_is_the_season_s_status_with_its_intervals(of_season, wo
     assert shown["Still infested"].value == estimate(left.expected)
     assert shown["Still infested"].note == f"{left.low} to {left.high} (90 %)"
     assert shown["Plants found"].value == f"{status.found}"
-    assert shown["Found of all expected"].value == f"{status.detection_pct:.0f} %"
+    assert shown["Share found"].value == f"{status.detection_pct:.0f} %"
     assert shown["Plants inspected"].value == f"{status.inspected:,}"
     assert shown["Hot spots"].value == f"{len(status.hot_spots)}"
     lead = on_sheet(of_season, 0, Paragraph)[0].text
@@ -47,7 +48,7 @@ def test_where_it_stands_is_the_season_s_status_with_its_intervals(of_season, wo
 def test_the_share_found_lies_in_its_interval(of_season):
     (share,) = [
         each for each in one(of_season, KeyFigures).figures
-        if each.label == "Found of all expected"
+        if each.label == "Share found"
     ]  # fmt: skip
     low, high = (float(part.strip(" %")) for part in share.note.removesuffix("(90 %)").split("to"))
     assert low <= float(share.value.strip(" %")) <= high
@@ -64,10 +65,12 @@ def test_every_day_with_work_has_its_line_the_newest_first(of_season, worked):
 def test_the_charts_show_finds_share_expected_and_inspected(of_season):
     charts = on_sheet(of_season, 1, Illustration)
     assert [chart.title for chart in charts] == [
-        "Plants found a day", "Found of all infestations so far, % (line), and its 90 % interval",
+        "Plants found a day",
+        "Share found, of found and still infested, % (line), and its 90 % interval",
         "Still infested and not found, as expected (line), and its 90 % interval",
         "Plants inspected a day",
     ]  # fmt: skip
+    assert "treated" in charts[1].draw((186.0, 40.0)).words()  # which makes the share rise
     assert "treated" in charts[2].draw((186.0, 40.0)).words()
     assert "treated" not in charts[0].draw((186.0, 40.0)).words()
 
@@ -97,7 +100,7 @@ def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season
     settings = {row[0]: row[1:] for row in table(of_season, "Settings").rows}
     assert settings["Spread to a neighbour, a night"] == ("2 %", "assumed")
     assert settings["Working hours"] == ("1.5", "chosen")
-    assert len(one(of_season, Listing, "How the numbers are meant").sentences) == 5
+    assert len(one(of_season, Listing, "How the numbers are meant").sentences) == 6
 
 
 def test_a_season_just_begun_has_four_pages_too(tmp_path):
@@ -151,3 +154,41 @@ def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
     season.record(looked, "finds")
     lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
     assert "About 20 more plants, which were found and only flagged, are still infested." in lead
+
+
+def test_all_days_are_held_to_their_plans(of_season, worked):
+    planned = sum(len(worked.kept_route(one.on)) for one in worked.days() if one.inspected)
+    (said,) = on_sheet(of_season, 1, Paragraph)
+    assert said.text == (
+        f"On 5 days planned and worked: Stops planned: {planned:,}; inspected: {planned:,}; "
+        "left out: 0; added: 0."
+    )
+
+
+def test_a_period_goes_by_what_was_in_force_in_it_and_tells_of_a_change(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    first = season.settings
+    season.record(some_results(season, 3))
+    longer = replace(first, robot=first.robot.with_hours(3.0), sampler="naive")
+    season.change(longer, first)
+    season.record(some_results(season, 3, day=1))
+
+    def told(day):
+        report = season_report(season, BEGINS + timedelta(days=day), Units())
+        hours = {row[0]: row[1] for row in table(report, "Settings").rows}["Working hours"]
+        said = [one for one in on_sheet(report, 3, Listing) if one.title == "Changed meanwhile"]
+        return hours, [sentence for one in said for sentence in one.sentences]
+
+    assert told(0) == ("1.5", [])
+    said = "From 2026-04-07 on: Who chooses the plants: Adaptive, then Naive; Working hours: 1.5, "
+    assert told(1) == ("3", [f"{said}then 3."])
+    season.undo_change()
+    assert told(1) == ("3", [f"{said}then 3."])  # what counts now was not worked by yet
+    hours, changes = told(2)
+    assert hours == "1.5"
+    assert changes[1:] == [
+        (
+            "From 2026-04-08 on: Who chooses the plants: Naive, then Adaptive; Working hours: 3, "
+            "then 1.5."
+        )
+    ]

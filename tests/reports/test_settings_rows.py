@@ -21,7 +21,7 @@ TOLD = WorkSettings(Robot(), "adaptive", PriorSettings(), (4.0, 2.5), (), Belief
 ALL = tuple(
     Assumed(name, 0.5)
     for name in ("row_spacing_m", "plant_spacing_m", "speed_m_s", "detects", "background_chance",
-                 "rate_per_day")
+                 "rate_per_day", "treated")
 )  # fmt: skip
 
 
@@ -36,6 +36,7 @@ def test_what_is_assumed_is_marked_and_nothing_else():
     marked = {
         "From row to row", "From plant to plant", "Speed", "Finds what is there",
         "Chance where nothing is known", "Spread to a neighbour, a night",
+        "Plants found are",
     }  # fmt: skip
     made = rows(replace(TOLD, assumed=ALL))
     assert {name for name, (_, origin) in made.items() if origin == "assumed"} == marked
@@ -64,8 +65,10 @@ def test_the_sentence_names_what_is_assumed_with_its_value():
             "Plants new from outside, a night",
             ("none", "chosen"),
         ),
-        ({"belief": BeliefSettings(treated=False)}, "Plants found are", ("flagged", "chosen")),
+        ({"belief": BeliefSettings(treated=False)}, "Plants found are", ("only flagged", "chosen")),
         ({}, "From row to row", ("4.0 m", "of the plot's file")),
+        ({"chosen": ("row_spacing_m",)}, "From row to row", ("4.0 m", "chosen")),
+        ({"assumed": ALL[:1]}, "From row to row", ("4.0 m", "assumed")),
     ],
 )
 def test_each_value_is_said_with_where_it_comes_from(changed, name, shown):
@@ -85,6 +88,7 @@ def test_without_a_season_nothing_is_said_of_nights():
 def test_a_season_s_own_are_taken(worked):
     made = WorkSettings.of_season(worked, worked.last_date())
     assert made.assumed == worked.assumed()
+    assert made.chosen == worked.plot.chosen
     assert made.robot == worked.settings.robot
     assert made.spacing_m == (worked.plot.grid.row_spacing_m, worked.plot.grid.plant_spacing_m)
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.errors import SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.pests.pest import Movement, Pest, Stage
@@ -195,3 +196,34 @@ def test_a_map_that_is_told_no_rate_goes_by_the_pest_s_nights():
     assert settings.believed_night(GRID)(3) == pest_in_weather.spread(3, GRID.frame)
     told = SeasonSettings(pest=pest_in_weather, believed_spread=Spread(0.3))
     assert told.believed_night(GRID)(3) == Spread(0.3)
+
+
+def world(answers):
+    """Return a season's settings with insects that do what a function says."""
+    return SeasonSettings(pests=lambda _, infested, __: answers(infested))
+
+
+def test_a_world_may_write_into_what_it_is_given_and_insects_may_die():
+    def comes_and_goes(infested):
+        infested[0], infested[5] = False, True
+        return infested
+
+    infested = np.zeros(N, bool)
+    infested[[0, 1]] = True
+    insects = world(comes_and_goes).insects(GRID, infested)
+    assert insects.pass_night(np.empty(0, np.int32), 0, np.uint64(1)) == 1
+    assert np.flatnonzero(insects.infested).tolist() == [1, 5]
+
+
+@pytest.mark.parametrize(
+    ("answers", "said"),
+    [
+        (lambda _: None, "must be an array of True and False, but it is None"),
+        (lambda infested: infested.astype(float), "but it is an array of float64"),
+        (lambda infested: infested[:-1], r"must have the shape \(144,\), but it has \(143,\)"),
+    ],
+)
+def test_a_world_that_does_not_say_who_is_infested_is_refused(answers, said):
+    insects = world(answers).insects(GRID, np.zeros(N, bool))
+    with pytest.raises(SettingError, match=said):
+        insects.pass_night(np.empty(0, np.int32), 0, np.uint64(1))

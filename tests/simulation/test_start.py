@@ -7,7 +7,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
-from fieldmon.simulation.start import season_start
+from fieldmon.simulation.start import Start, season_start
 
 GRID = rectangle(40, 50)
 CHANCE = np.linspace(0.001, 0.2, len(GRID))
@@ -46,3 +46,11 @@ def test_both_faces_of_a_plant_are_infested_together():
 def test_a_share_of_none_or_all_is_refused(share):
     with pytest.raises(SettingError, match="between 0 and 1"):
         season_start(GRID, CHANCE, share, RandomStreams(1))
+
+
+@pytest.mark.parametrize("odd", [np.nan, 5.0, -0.1])
+def test_what_is_believed_must_be_chances(odd):
+    chance = np.full(4, 0.1)
+    chance[2] = odd
+    with pytest.raises(SettingError, match=r"must hold chances in 0\.\.1, but plant 2 of 4 has"):
+        Start(np.zeros(4, bool), chance)

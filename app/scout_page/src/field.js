@@ -1,11 +1,13 @@
 // What a scout does in the field. A step is seen at once; it is said to be kept when it is on the phone's disk.
 
+import { Clock } from "./clock.js";
 import { laidOut, metres, offered, rings } from "./geo.js";
 import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
-import { fetchDay, fetchRest } from "./sync.js";
+import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
 
 const KEPT = ["season", "plot", "day", "ahead", "draft", "begun", "last"];
+const EMPTY = { plot: null, day: null, ahead: [], draft: null, begun: null, last: null };
 // a record that is on no disk yet
 const WRITING = "writing";
 
@@ -15,10 +17,12 @@ export class Field {
   #way = null;
   #pending = 0;
 
-  constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID() } = {}) {
-    Object.assign(this, { store, ask, clock, id });
+  constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID(), time = new Clock(() => this.clock()) } = {}) {
+    Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
     this.position = null;
     this.records = [];
+    this.people = {};
+    this.seasons = [];
   }
 
   /**
@@ -63,13 +67,51 @@ export class Field {
       kept = await Promise.all(KEPT.map((name) => this.store.get(name)));
     } while (this.#pending);
     Object.assign(this, Object.fromEntries(KEPT.map((name, k) => [name, kept[k]])));
-    if (access) {
-      await this.store.allow(access);
-      if (access.season !== this.season) this.#empty(access.season);
-    }
+    this.time.knew(await this.store.get("heard"));
+    this.people = (await this.store.get("people")) ?? {};
+    if (access) await this.#comes(access);
+    await this.#begin();
+  }
+
+  /** Somebody has scanned a code. */
+  async #comes(access) {
+    const had = await this.store.access(access.season), now = this.season && await this.store.access(this.season);
+    // a page that did not note yet whose key it was
+    if (now && this.day && !this.people[now.key]) await this.#name(now.key, this.day.scout);
+    if (access.season !== this.season) await this.#change(access.season);
+    // the home screen of an iPhone says the same code whenever it is opened
+    if (had?.key === access.key) return;
+    await this.store.allow(access);
+    await this.#change(access.season, { plot: this.plot });
+  }
+
+  async #begin() {
     this.access = this.season ? await this.store.access(this.season) : null;
+    this.seasons = (await this.store.seasons()).sort();
     await this.reread();
     await this.#countPhotos();
+  }
+
+  #name(key, who) {
+    this.people = { ...this.people, [key]: who };
+    return this.store.put({ people: this.people });
+  }
+
+  /** Turn to another season of this phone; the day of this one stays as it is. */
+  async turnTo(season) {
+    await this.settled();
+    if (season !== this.season) await this.#change(season);
+    await this.#begin();
+  }
+
+  /** Go on with a season as it was left, or with what is given of it. */
+  async #change(season, given) {
+    const left = this.season ? { [`of ${this.season}`]: Object.fromEntries(Object.keys(EMPTY).map((name) => [name, this[name]])) } : {};
+    const kept = given ?? (await this.store.get(`of ${season}`));
+    Object.assign(this, EMPTY, kept, { season, position: null });
+    if (this.coords) this.moved(this.coords);
+    const values = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
+    await this.store.put({ ...left, ...values });
   }
 
   /** A photo may be on the disk, and the page was killed before it was counted. */
@@ -79,23 +121,24 @@ export class Field {
     if (photos !== (this.draft.photos ?? 0)) this.draft = { ...this.draft, photos };
   }
 
-  #empty(season) {
-    Object.assign(this, { season, plot: null, day: null, ahead: [], draft: null, begun: null, last: null });
-  }
-
   async reread() {
     const before = new Set(this.records.filter((one) => one.state !== WRITING).map((one) => one.id));
-    const kept = this.season ? await this.store.records(this.season) : [], ids = new Set(kept.map((one) => one.id));
+    const all = this.season ? await this.store.records(this.season) : [];
+    // what another person told on this phone is not one's own
+    const kept = all.filter((one) => isOf(this.people, one.key, this.access?.key)), ids = new Set(kept.map((one) => one.id));
     // what was told while the disk was read
-    const newer = this.records.filter((one) => one.season === this.season && !ids.has(one.id) && !before.has(one.id));
+    const newer = this.records.filter((one) => one.season === this.season && one.key === this.access?.key && !ids.has(one.id) && !before.has(one.id));
     this.records = [...kept, ...newer];
     this.#work();
   }
 
   /** Load plot, plants, route, chances and hot spots, while there is a network. */
   async load() {
+    // a code made for a day ahead is of that day until it is over
+    if (this.access.on && this.isOld()) await this.store.allow((this.access = { ...this.access, on: null }));
     const { day, plot } = await fetchDay(this.ask, this.access, this.plot?.digest);
     await this.settled();
+    await this.#name(this.access.key, day.scout);
     if (plot) this.plot = laidOut(plot, day.plot);
     if (this.coords) this.moved(this.coords);
     this.#take(day);
@@ -118,14 +161,14 @@ export class Field {
     this.#take({ ...day, route, seconds_left });
     const isNew = this.asked().some((one) => !asked.has(one.id));
     this.ahead = isNew ? this.#withAsked(this.ahead) : this.ahead.filter((one) => !this.done.has(one));
-    this.draft = this.#keepDraft();
+    // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
+    if (this.plant < 0) this.draft = this.#keepDraft();
     await this.#keep("day", "ahead", "draft");
   }
 
   /** Let the full planner plan the rest. */
   async planRest() {
-    const on = this.day.live ? null : this.day.day;
-    const route = await fetchRest(this.ask, this.access, on, this.secondsLeft());
+    const route = await fetchRest(this.ask, this.access, this.meant(), this.secondsLeft());
     await this.settled();
     this.day = { ...this.day, route };
     this.ahead = this.#withAsked(route.plants);
@@ -155,7 +198,7 @@ export class Field {
 
   #keep(...names) {
     const values = Object.fromEntries(names.map((name) => [name, this[name] ?? null]));
-    return this.#step({}, () => this.store.put(values));
+    return this.#step({}, () => this.store.put({ ...values, heard: this.time.least() }));
   }
 
   // -- photos asked for
@@ -236,7 +279,19 @@ export class Field {
 
   #common(id) {
     return { id, season: this.season, key: this.access.key, day: this.day.day, order: this.#order(),
-      at: this.clock().toISOString(), on: this.day.live ? null : this.day.day };
+      at: this.clock().toISOString(), on: this.meant(), ...this.#after() };
+  }
+
+  /** Whether a find can have the pests counted: a whole number from 1, or none is said. */
+  isCountable() {
+    const { count } = this.draft;
+    return count == null || (Number.isInteger(count) && count >= 1);
+  }
+
+  /** The least that the time can be, for where the clock is wrong. */
+  #after() {
+    const least = this.time.least();
+    return least === null ? {} : { after: new Date(least).toISOString() };
   }
 
   /** Say what was found at the plant: the next one is there at once; resolves when it is on the disk. */
@@ -245,14 +300,16 @@ export class Field {
     if (plant < 0) return Promise.resolve();
     const of = result === "found" ? { count: count ?? null, stage: stage ?? "", leaves: leaves ?? null } : {};
     const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0 };
-    const begun = this.begun ?? this.clock().getTime();
+    // the hours of a day ahead begin on it
+    const isAhead = this.meant() !== null && this.day.past === false;
+    const begun = this.begun ?? (isAhead ? null : this.time.best());
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
-      ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.clock().getTime()));
+      ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.time.best()));
     }
     const follows = { ahead, begun, draft: this.#fresh(ahead), last: { id, plant, ahead: this.ahead } };
-    return this.#step(follows, () => this.store.record(record, follows), record);
+    return this.#step(follows, () => this.store.record(record, { ...follows, heard: this.time.least() }), record);
   }
 
   /** The last record that can be taken back, or undefined. */
@@ -300,7 +357,7 @@ export class Field {
   /** How many plants are done and on the disk. */
   kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
 
-  secondsLeft() { return secondsLeft(this.day, this.begun, this.clock().getTime()); }
+  secondsLeft() { return secondsLeft(this.day, this.begun, this.time.best()); }
 
   /** The line ahead as it is gone, metres. */
   way() {
@@ -323,11 +380,19 @@ export class Field {
     return shown;
   }
 
-  /** Whether the route is of another day than it is on the plot now. */
+  #today() {
+    return new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.time.best());
+  }
+
+  /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
+  meant() {
+    const { day, live, past = true } = this.day;
+    if (live || this.#today() === day) return null;
+    return past || this.#today() < day ? day : null;
+  }
+
+  /** Whether the route's day is over since it was loaded. */
   isOld() {
-    if (!this.day?.live) return false;
-    const today = new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.clock());
-    return today !== this.day.day;
+    return Boolean(this.day) && this.meant() === null && this.#today() > this.day.day;
   }
 }
-

@@ -62,7 +62,7 @@ async function begin() {
 
 /** What a first screen does not need. */
 async function later(page, field, store, access) {
-  const runner = new Runner(new Sync(store), field, (state) => page.sending(state));
+  const runner = new Runner(new Sync(store, field.ask), field, (...all) => page.sending(...all));
   const others = new BroadcastChannel("fieldmon");
   page.onTold = () => { runner.afterTap(); others.postMessage("told"); };
   // another window of this page told something

@@ -38,6 +38,13 @@ export class PlotMap {
     this.draw();
   }
 
+  /** Show no plot. */
+  clear() {
+    if (!this.plot) return;
+    Object.assign(this, { plot: null, laid: false });
+    this.canvas.getContext("2d").clearRect(0, 0, this.canvas.width, this.canvas.height);
+  }
+
   /** Show this with the next picture, or with the one after it where something else comes first. */
   show(changes, late = false) {
     Object.assign(this.shown, changes);
@@ -46,6 +53,7 @@ export class PlotMap {
   }
 
   fit() {
+    if (!this.plot) return;
     const { x, y } = this.plot;
     let [x0, x1, y0, y1] = [Infinity, -Infinity, Infinity, -Infinity];
     for (let i = 0; i < x.length; i++) {

@@ -3,6 +3,7 @@
 import { plantAt, rowOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
+import { KeyEnded, NotNow } from "./sync.js";
 import { LANGUAGES, own, say, speak } from "./words.js";
 
 // a glove that bounces must say nothing of the next plant
@@ -24,6 +25,7 @@ export class Page {
   constructor(root, field, store) {
     Object.assign(this, { root, field, store });
     this.state = "idle";
+    this.stranded = new Map();
     this.rests = 0;
     this.left = { records: 0, photos: 0, refused: [] };
   }
@@ -49,6 +51,7 @@ export class Page {
   }
 
   #laidOut = null;
+  #shown = null;
 
   get theme() {
     const { theme } = this.choices;
@@ -68,12 +71,17 @@ export class Page {
   }
 
   /** How sending goes. */
-  async sending(state) {
-    this.state = state;
+  async sending(state, stranded) {
+    Object.assign(this, { state, stranded });
     this.left = await this.store.left();
     this.#drawBar();
     if (this.menu.open && this.menu.dataset.of === "menu") this.#openMenu();
-    if (state === "sent") this.#drawMap();
+    if (state !== "sent") return;
+    if (this.#shown !== this.field.day) {
+      if (!this.#shown) this.#say(""); // it was loaded now
+      this.#drawSheet();
+    }
+    this.#drawMap();
   }
 
   async refresh() {
@@ -118,7 +126,7 @@ export class Page {
 
   #drawMap(late = false) {
     const { field } = this;
-    if (!field.plot || !field.day) return;
+    if (!field.plot || !field.day) { this.#laidOut = null; return this.map.clear(); }
     if (this.#laidOut !== field.day) { this.#laidOut = field.day; this.map.lay(field.plot, field.day.chance, field.day.spots); }
     const asked = field.asked().map((one) => one.plant);
     this.map.show({ ...field.known(), ahead: field.ahead, way: field.way(), asked, next: field.plant, position: field.position }, late);
@@ -138,7 +146,8 @@ export class Page {
       h("span", { id: "hours" }, this.#hours()),
     ] : [h("b", {}, "fieldmon")];
     const n = this.left.records + this.left.photos + field.unwritten();
-    const ended = this.state === "ended", signs = { offline: "⏸", ended: "⚠", sending: "↑", sent: "✓", idle: "" };
+    const ended = this.state === "ended" || (this.state === "sent" && this.stranded.size > 0), done = n || this.left.refused.length ? "" : "✓", waits = navigator.onLine ? "↑" : "⏸";
+    const signs = { offline: "⏸", ended: "⚠", sending: done || "↑", sent: done || (n ? waits : ""), idle: "" };
     const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
     // the button stays the same: a keyboard may stand on it
     if (!this.bar.hasChildNodes()) {
@@ -149,7 +158,7 @@ export class Page {
     head.replaceChildren(...said);
     sync.className = ended || this.left.refused.length ? "bad" : "";
     Object.assign(sync.dataset, { state: this.state, left: n });
-    sync.textContent = `${signs[this.state]} ${text}`;
+    sync.textContent = `${ended ? signs.ended : signs[this.state]} ${text}`;
   }
 
   #hours() {
@@ -170,6 +179,7 @@ export class Page {
 
   #layOut() {
     const { field } = this;
+    this.#shown = field.day;
     if (!field.access) return this.sheet.replaceChildren(h("p", { class: "large" }, say("scan")));
     if (!field.day) {
       return this.sheet.replaceChildren(h("p", { class: "large" }, say("not_loaded", { season: field.season })),
@@ -203,8 +213,14 @@ export class Page {
   }
 
   #old() {
+    const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
+    return [...wrong, ...this.#otherDay()];
+  }
+
+  #otherDay() {
     const { field } = this;
-    return field.isOld() ? [h("button", { type: "button", class: "wide bad", onclick: () => this.load() }, say("old_day", { day: field.day.day }))] : [];
+    if (field.isOld()) return [h("button", { type: "button", class: "wide bad", id: "old", onclick: () => this.load() }, say("old_day", { day: field.day.day }))];
+    return field.meant() ? [h("p", { class: "tag", id: "other_day" }, say("other_day", { day: field.day.day }))] : [];
   }
 
   #drawPlace() {
@@ -215,7 +231,9 @@ export class Page {
     const where = away == null ? say("no_position") : field.isThere() ? say("there") : say("away", { m: Math.round(away) });
     place.replaceChildren(
       h("h1", {}, say("place", values)),
-      h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where), h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
+      h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where),
+        // what was seen today is no chance
+        !field.done.has(plant) && h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
         field.offRoute && h("span", { class: "tag" }, say("off_route"))),
     );
     for (const one of field.asked(plant)) {
@@ -236,6 +254,9 @@ export class Page {
 
   async #tell(result, beat) {
     if (performance.now() < this.rests) return;
+    if (result === "found" && !this.field.isCountable()) return this.#say(say("count_whole"), true);
+    // another window of this page may have gone on
+    if (Number(this.place.dataset.plant) !== this.field.plant) return this.#draw();
     this.rests = performance.now() + REST_MS;
     setTimeout(() => document.getElementById("answers")?.removeAttribute("data-resting"), REST_MS);
     const kept = this.#act(() => this.field.tell(result), beat);
@@ -248,9 +269,9 @@ export class Page {
   #details() {
     const { draft } = this.field, save = (changes) => { const kept = this.field.note(changes); kept.catch(() => this.#act(() => kept)); };
     const number = (name) => {
-      const input = h("input", { type: "number", inputmode: "numeric", min: "0", max: "1000000", id: name, value: draft[name] ?? "",
+      const input = h("input", { type: "number", inputmode: "numeric", min: "1", max: "1000000", id: name, value: draft[name] ?? "",
         oninput: () => save({ [name]: input.value === "" ? null : Math.max(0, Number(input.value)) }) });
-      const step = (by) => () => { input.value = Math.max(0, (Number(input.value) || 0) + by); input.dispatchEvent(new Event("input")); };
+      const step = (by) => () => { input.value = Math.max(0, Math.round(Number(input.value) || 0) + by) || ""; input.dispatchEvent(new Event("input")); };
       return h("div", { class: "number" }, h("label", { for: name }, say(name)),
         h("button", { type: "button", "aria-label": say("fewer", { what: say(name) }), onclick: step(-1) }, "−"), input,
         h("button", { type: "button", "aria-label": say("more", { what: say(name) }), onclick: step(1) }, "+"));
@@ -346,16 +367,24 @@ export class Page {
     const act = (name, work) => h("button", { type: "button", class: "wide", id: name, onclick: work }, say(name));
     const pick = (name, options) => h("fieldset", {}, h("legend", {}, say(name)), ...options.map(([value, text]) => h("button", {
       type: "button", lang: name === "language" ? value : null, "aria-pressed": String(choices[name] === value), onclick: () => this.choose({ [name]: value }) }, text)));
-    const refused = this.left.refused.map((one) => h("li", {}, one.problem || say("refused")));
+    // what could not even be read is no sentence for a person
+    const why = (one) => (one.state === "refused" ? say("refused") : own(one.problem));
+    const where = (one) => (one.season === field.season && one.plant >= 0 && field.plot
+      ? `${say("place", { row: rowOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}: ` : "");
+    const refused = this.left.refused.map((one) => h("li", {}, `${where(one)}${why(one)}`));
     const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),
-      h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
+      // it has not everything where it did not take something
+      !((refused.length || this.stranded.size) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
+      ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),
       refused.length ? h("ul", { class: "bad" }, ...refused) : null,
       field.access && act("load_day", () => this.load()),
       field.day && act("plan_rest", () => this.planRest()),
       refused.length ? act("send_again", () => this.store.again().then(() => this.onTold?.())) : null,
       this.left.records + this.left.photos + refused.length > 0 && act("save_file", () => this.#saveFile()),
+      field.seasons.length > 1 && h("fieldset", {}, h("legend", {}, say("plots")), ...field.seasons.map((one) => h("button", {
+        type: "button", class: "season", "aria-pressed": String(one === field.season), onclick: () => this.#turnTo(one) }, own(one)))),
       pick("hand", [["left", say("left")], ["right", say("right")]]),
       pick("theme", [["auto", say("auto")], ["sun", say("sun")], ["dark", say("dark")]]),
       pick("language", Object.entries(LANGUAGES)),
@@ -368,6 +397,21 @@ export class Page {
 
   planRest() { return this.#network(() => this.field.planRest()); }
 
+  async #turnTo(season) {
+    this.menu.close();
+    await this.field.turnTo(season);
+    await this.refresh();
+    this.#look();
+    if (this.field.day) this.onTold?.();
+    else await this.load();
+  }
+
+  #look() {
+    if (!this.field.day) return;
+    this.map.fit();
+    if (this.field.plant >= 0) this.map.look(this.field.plant);
+  }
+
   async #network(work) {
     if (this.menu.open) this.menu.close();
     this.#say(say("loading"));
@@ -375,12 +419,11 @@ export class Page {
       await work();
       this.#say("");
     } catch (error) {
-      const known = { KeyEnded: "state_ended", NotNow: "no_network" }[error?.constructor?.name];
+      const known = error instanceof KeyEnded ? "state_ended" : error instanceof NotNow ? "no_network" : null;
       this.#say(known ? say(known) : error.message, true);
     }
     await this.refresh();
-    this.map.fit();
-    if (this.field.plant >= 0) this.map.look(this.field.plant);
+    this.#look();
     this.onTold?.();
   }
 

@@ -54,7 +54,7 @@ export function withAsked(plot, day, at, ahead, asked, left) {
 }
 
 /** What is left of the working day; it begins with the first record. */
-export const secondsLeft = (day, begun, now) => Math.max(0, day.seconds_left - (begun ? (now - begun) / 1000 : 0));
+export const secondsLeft = (day, begun, now) => Math.max(0, day.seconds_left - (begun ? Math.max(0, now - begun) / 1000 : 0));
 
 /**
  * The plants ahead after a find: its neighbours come next, the nearest first, as far as the hours

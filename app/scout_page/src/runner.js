@@ -9,6 +9,7 @@ export class Runner {
   constructor(sync, field, tell) {
     Object.assign(this, { sync, field, tell, wait: SOON_MS, state: "idle", news: 0 });
     addEventListener("online", () => this.now());
+    addEventListener("offline", () => { if (!this.running) this.#say("offline"); });
     document.addEventListener("visibilitychange", () => { if (!document.hidden) this.now(); });
   }
 
@@ -43,10 +44,12 @@ export class Runner {
 
   async #news() {
     await this.field.reread();
+    // a code was scanned without a network
+    if (this.field.access && !this.field.day) return this.field.load();
     if (Date.now() - this.news < NEWS_MS) return;
     this.news = Date.now();
     await this.field.refresh();
   }
 
-  #say(state) { this.state = state; this.tell(state); }
+  #say(state) { this.state = state; this.tell(state, this.sync.stranded); }
 }

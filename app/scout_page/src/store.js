@@ -122,22 +122,27 @@ export class Store {
     await change.done;
   }
 
+  /** The seasons that somebody scanned a code of. */
+  seasons() { return this.db.getAllKeys("access"); }
+
   access(season) { return this.db.get("access", season); }
   async allow(access) { await this.db.put("access", access); }
 
-  /** Everything that the server does not have, for a file. */
+  /** Everything that the server does not have, for a file: without the keys. */
   async unsent() {
     const all = await Promise.all(["records", "photos"].map((kind) => this.db.getAll(kind)));
-    const [records, photos] = all.map((some) => some.filter((one) => one.state !== KEPT));
+    const [records, photos] = all.map((some) => some.filter((one) => one.state !== KEPT).sort((a, b) => a.order - b.order));
+    const people = (await this.get("people")) ?? {}, of = (one) => ({ season: one.season, who: people[one.key] ?? "" });
     return {
-      findings: records.map(asSent),
-      photos: photos.map((one) => ({ ...one, bytes: undefined, base64: base64(one.bytes) })),
+      kind: "fieldmon findings",
+      findings: records.map((one) => ({ ...asSent(one), ...of(one) })),
+      photos: photos.map(({ key, bytes, state, order, problem, ...one }) => ({ ...one, ...of({ key, ...one }), base64: base64(bytes) })),
     };
   }
 }
 
 const SENT = ["id", "at", "plant", "result", "count", "stage", "leaves", "notes", "lon", "lat",
-  "accuracy_m", "on", "off_route", "undoes"];
+  "accuracy_m", "on", "after", "off_route", "undoes"];
 
 /** A record as the interface describes a finding. */
 export function asSent(record) {

@@ -6,6 +6,11 @@ import { asSent, base64 } from "./store.js";
 const AT_ONCE = 100, PATIENCE_MS = 30000;
 
 export class KeyEnded extends Error {}
+/** What waits under the key of another person than the one who has the phone now. */
+class Stranded extends Error {}
+
+/** Whether two keys are the same person's. */
+export const isOf = (people, one, other) => one === other || (people[one] !== undefined && people[one] === people[other]);
 export class NotNow extends Error {}
 
 export class Sync {
@@ -14,10 +19,16 @@ export class Sync {
     this.store = store;
     this.ask = ask;
     this.clock = clock;
+    this.stranded = new Map();
   }
 
-  /** Send what waits; return whether all went. Throws `KeyEnded`, or `NotNow` where it may be tried again. */
+  /**
+   * Send what waits. Throws `KeyEnded`, or `NotNow` where it may be tried again. What cannot go as its person's
+   * key was taken back, and another one has the phone, waits here: `stranded` has how much, by the persons' names.
+   */
   async send() {
+    this.people = (await this.store.get("people")) ?? {};
+    const stranded = new Map();
     const records = await this.store.waiting("records");
     const seasons = new Map();
     for (const one of records) {
@@ -27,18 +38,24 @@ export class Sync {
     let ended = null;
     for (const some of seasons.values()) {
       for (let k = 0; k < some.length; k += AT_ONCE) {
-        ended = (await this.#unlessEnded(() => this.#records(some.slice(k, k + AT_ONCE)))) ?? ended;
+        const part = some.slice(k, k + AT_ONCE);
+        ended = (await this.#unlessEnded(() => this.#records(part), stranded, part.length)) ?? ended;
       }
     }
     for (const { id } of await this.#photosWaiting()) {
-      ended = (await this.#unlessEnded(() => this.#photo(id))) ?? ended;
+      ended = (await this.#unlessEnded(() => this.#photo(id), stranded, 1)) ?? ended;
     }
+    this.stranded = stranded;
     if (ended) throw ended;
   }
 
   // one season whose key was taken back does not hold up another
-  async #unlessEnded(work) {
-    try { await work(); } catch (error) { if (error instanceof KeyEnded) return error; throw error; }
+  async #unlessEnded(work, stranded, n) {
+    try { await work(); } catch (error) {
+      if (error instanceof KeyEnded) return error;
+      if (!(error instanceof Stranded)) throw error;
+      stranded.set(error.message, (stranded.get(error.message) ?? 0) + n);
+    }
     return null;
   }
 
@@ -79,15 +96,14 @@ export class Sync {
     }
   }
 
-  /** Ask with the key by which a record was made, or with a newer one of that season. */
+  /** Ask with the key by which a record was made, or with a newer one of the same person; never as another. */
   async #asked(one, path, request) {
-    const now = await this.store.access(one.season);
-    for (const key of new Set([one.key, now?.key])) {
-      if (!key) continue;
+    const now = (await this.store.access(one.season))?.key, isOwn = isOf(this.people, one.key, now);
+    for (const key of new Set([one.key, isOwn ? now : one.key])) {
       const answer = await call(this.ask, { season: one.season, key }, path, request);
       if (answer.status !== 401) return answer;
     }
-    throw new KeyEnded(one.season);
+    throw isOwn ? new KeyEnded(one.season) : new Stranded(this.people[one.key] ?? "?");
   }
 }
 

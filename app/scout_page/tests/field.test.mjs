@@ -10,11 +10,11 @@ let stores = 0;
 const ACCESS = { season: "Gate", key: "k1", on: null };
 const PICTURE = () => ({ bytes: Uint8Array.from({ length: 5000 }, (_, k) => (k * 7) % 256).buffer, type: "image/jpeg" });
 
-async function aField(season = new ASeason()) {
+async function aField(season = new ASeason(), access = ACCESS) {
   const name = `test ${stores++}`, store = await openStore(name);
   const options = { ask: season.ask, clock: () => new Date("2026-11-22T08:00:00Z") };
   const field = new Field(store, options);
-  await field.open(ACCESS);
+  await field.open(access);
   await field.load();
   return { season, store, field, sync: new Sync(store, season.ask),
     again: async () => { const other = new Field(await openStore(name), options); await other.open(); return other; } };
@@ -113,9 +113,66 @@ test("a key taken back keeps everything here until there is a new one", async ()
   season.keys = ["k2"];
   await assert.rejects(sync.send(), KeyEnded);
   assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [1, 1]);
-  await store.allow({ season: "Gate", key: "k2" });
+  await field.open({ season: "Gate", key: "k2", on: null });
+  await field.load();
+  assert.equal(field.records.length, 1, "the same person's");
   await sync.send();
-  assert.deepEqual([season.taken.size, season.photos.size], [1, 1]);
+  assert.deepEqual([season.taken.size, season.photos.size, sync.stranded.size], [1, 1, 0]);
+});
+
+test("another person's code brings another day, and what the first one told goes in as theirs or waits", async () => {
+  const { season, store, field, sync } = await aField();
+  await field.tell("clean");
+  await field.addPhoto(field.photoOf(), PICTURE());
+  await field.tell("found");
+  season.day = aDay([7, 8], { scout: "Gil" });
+  await field.open({ season: "Gate", key: "k2", on: null });
+  assert.equal(field.day, null, "it is to be loaded");
+  await field.load();
+  assert.deepEqual([field.day.scout, field.records.length, field.lastRecord()], ["Gil", 0, undefined]);
+  await field.tell("clean");
+  season.keys = ["k2"];
+  await sync.send();
+  assert.deepEqual([[...season.taken.values()].map((one) => one.plant), [...sync.stranded]], [[7], [["Ann", 3]]]);
+  assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [2, 1]);
+  season.keys = ["k1", "k2"];
+  await sync.send();
+  assert.deepEqual([season.by.get("k1"), season.by.get("k2"), sync.stranded.size], [2, 1, 0]);
+});
+
+test("the same code again, as an iPhone's home screen says it, changes nothing", async () => {
+  const { season, field } = await aField(new ASeason(aDay([0, 1], { live: false, past: false, day: "2026-11-23" })), { ...ACCESS, on: "2026-11-23" });
+  field.clock = () => new Date("2026-11-24T08:00:00Z");
+  season.day = aDay([3, 4], { day: "2026-11-24" });
+  await field.load();
+  await field.open({ ...ACCESS, on: "2026-11-23" });
+  assert.deepEqual([field.day.day, field.access.on], ["2026-11-24", null]);
+});
+
+test("a file of what is not sent says whose it is and of which season, and holds no key", async () => {
+  const { store, field } = await aField();
+  await field.addPhoto(field.photoOf(), PICTURE());
+  await field.tell("found");
+  const file = await store.unsent(), [one] = file.findings, [photo] = file.photos;
+  assert.deepEqual([file.kind, one.season, one.who, one.id], ["fieldmon findings", "Gate", "Ann", photo.finding]);
+  assert.deepEqual([photo.season, photo.who, Buffer.from(photo.base64, "base64").length], ["Gate", "Ann", 5000]);
+  assert.ok(!("key" in one) && !("key" in photo));
+});
+
+test("two seasons on one phone: each goes on where it was left", async () => {
+  const { season, field, again } = await aField();
+  await field.tell("clean");
+  await field.note({ open: true, count: 2 });
+  season.day = aDay([7, 8], { season: "Other", scout: "Bea" });
+  await field.open({ season: "Other", key: "k9", on: null });
+  await field.load();
+  await field.tell("found");
+  const other = await again();
+  assert.deepEqual([other.season, other.seasons, other.records.length], ["Other", ["Gate", "Other"], 1]);
+  await other.turnTo("Gate");
+  assert.deepEqual([other.day.scout, other.plant, other.draft.count, other.access.key, other.records.length], ["Ann", 1, 2, "k1", 1]);
+  await other.turnTo("Other");
+  assert.deepEqual([other.day.scout, other.access.key, other.records[0].plant], ["Bea", "k9", 7]);
 });
 
 test("what others found is seen, and not inspected twice; the way stays", async () => {
@@ -125,6 +182,19 @@ test("what others found is seen, and not inspected twice; the way stays", async 
   await field.refresh();
   assert.deepEqual(field.ahead, [1, 2, 11]);
   assert.ok(field.known().found.has(10));
+});
+
+test("the plant in large print stays when another records it: a tap is of what is shown", async () => {
+  const { season, field } = await aField();
+  season.day = aDay([1, 2], { today: [{ plant: 0, result: "clean", who: "Ben", count: null, second: 1 }], clean: [0] });
+  await field.refresh();
+  assert.equal(field.plant, 0);
+  assert.deepEqual(field.ahead, [1, 2, 10, 11]);
+  await field.goBack();
+  assert.equal(field.plant, 1);
+  await field.goTo(0);
+  await field.tell("found");
+  assert.deepEqual(field.records.map((one) => [one.plant, one.result]), [[0, "found"]]);
 });
 
 test("the full planner plans the rest when the network is there", async () => {
@@ -138,6 +208,50 @@ test("a route of yesterday is called so", async () => {
   assert.equal(field.isOld(), false);
   field.clock = () => new Date("2026-11-22T22:30:00Z"); // past midnight on the plot
   assert.equal(field.isOld(), true);
+});
+
+test("a code for a day ahead is of that day until it is over, and with times on the day itself", async () => {
+  const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-23", live: false, past: false }));
+  const { field } = await aField(season, { ...ACCESS, on: "2026-11-23" });
+  await field.tell("clean"); // the evening before
+  field.clock = () => new Date("2026-11-23T06:00:00Z");
+  assert.deepEqual([field.meant(), field.isOld(), field.secondsLeft()], [null, false, 14400]);
+  await field.tell("clean");
+  field.clock = () => new Date("2026-11-24T06:00:00Z");
+  assert.equal(field.isOld(), true);
+  await field.tell("clean");
+  assert.deepEqual(field.records.map((one) => one.on), ["2026-11-23", null, null]);
+  season.day = aDay([3], { day: "2026-11-24" });
+  await field.load();
+  assert.ok(season.asked.at(-1).endsWith("/day"), "today's, whatever the code was made for");
+  assert.equal(field.isOld(), false);
+});
+
+test("a day that was over when it was loaded stays the day meant", async () => {
+  const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-01", live: false, past: true }));
+  const { field } = await aField(season, { ...ACCESS, on: "2026-11-01" });
+  await field.tell("clean");
+  assert.deepEqual([field.records[0].on, field.isOld()], ["2026-11-01", false]);
+  await field.load();
+  assert.ok(season.asked.at(-1).endsWith("?on=2026-11-01"));
+});
+
+test("each record says the least that the time can be, over a kill too", async () => {
+  const { season, store, field, sync, again } = await aField();
+  await field.tell("clean");
+  assert.equal("after" in field.records[0], false, "nothing was heard");
+  season.date = "Sun, 22 Nov 2026 08:00:00 GMT";
+  await field.refresh();
+  await field.tell("clean");
+  const other = await again();
+  other.clock = () => new Date("1970-01-01T00:00:09Z");
+  assert.equal(other.time.isWrong(), true);
+  await other.tell("clean");
+  await sync.send();
+  const [, second, third] = [...season.taken.values()];
+  assert.ok(second.after >= "2026-11-22T08:00:00" && third.after >= second.after, `${second.after} ${third.after}`);
+  assert.equal(third.at, "1970-01-01T00:00:09.000Z");
+  assert.equal((await store.left()).records, 0);
 });
 
 test("another season on the same phone does not mix with the first, whose records still go in", async () => {

@@ -24,7 +24,7 @@ export function aDay(plants = [0, 1, 2, 10, 11], more = {}) {
 
 /** A season that takes what it is sent, and breaks as it is told. */
 export class ASeason {
-  constructor(day = aDay()) { Object.assign(this, { day, taken: new Map(), photos: new Map(), asked: [], breaks: [] }); }
+  constructor(day = aDay()) { Object.assign(this, { day, taken: new Map(), photos: new Map(), by: new Map(), asked: [], breaks: [] }); }
 
   ask = async (address, request = {}) => {
     this.asked.push(address);
@@ -38,7 +38,7 @@ export class ASeason {
   };
 
   async #answer(address, { method = "GET", body, headers = {} }) {
-    const said = (value, status = 200) => new Response(JSON.stringify(value), { status });
+    const said = (value, status = 200) => new Response(JSON.stringify(value), { status, headers: this.date ? { date: this.date } : {} });
     if (this.keys && !this.keys.includes(headers.authorization?.slice(7))) return said({ error: "no key" }, 401);
     const path = address.split("/").slice(5).join("/").split("?")[0];
     if (path === "plot") return said(aPlot());
@@ -49,7 +49,8 @@ export class ASeason {
       if (findings.some((one) => one.notes === "poison")) return said({ error: "not as described" }, 422);
       return said({ taken: findings.map((one) => {
         const isNew = !this.taken.has(one.id);
-        if (isNew) this.taken.set(one.id, one);
+        const key = headers.authorization?.slice(7);
+        if (isNew) { this.taken.set(one.id, one); this.by.set(key, (this.by.get(key) ?? 0) + 1); }
         return { id: one.id, new: isNew, problem: "" };
       }) });
     }

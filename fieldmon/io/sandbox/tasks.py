@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.io.readers.places import NamedPlaces, Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
     from fieldmon.io.readers.weather_options import WeatherOptions
@@ -109,6 +110,13 @@ def inspection_rows(
 ) -> Imported[InspectionRows]:
     """Return what a file says of plants that were inspected."""
     return rows_of(source, options, Workroom(Path(folder)))
+
+
+def phone_file(folder: str, source: Source) -> Imported[PhoneFile]:
+    """Return what a phone saved."""
+    from fieldmon.io.readers.phone_file import phone_file_of  # noqa: PLC0415
+
+    return phone_file_of(source, Workroom(Path(folder)))
 
 
 def weather(folder: str, source: Source, options: WeatherOptions) -> Imported[Weather]:

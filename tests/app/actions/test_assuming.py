@@ -39,6 +39,7 @@ def test_a_season_keeps_what_was_assumed_and_is_told_otherwise(season_app, seaso
     assert [one.setting for one in season().assumed()] == [
         *(one.setting for one in season().plot.assumed),
         "background_chance", "speed_m_s", "row_change_s", "stop_s", "detects", "rate_per_day",
+        "treated",
     ]  # fmt: skip
     go(season_app, "season")
     before = metric(season_app, texts.EXPECTED_LEFT)
@@ -52,3 +53,14 @@ def test_a_season_keeps_what_was_assumed_and_is_told_otherwise(season_app, seaso
     assert season().settings.belief.spread.rate_per_day == 0.05
     assert season().verify() == ()
     assert "where nothing is known" not in texts_of(season_app)
+
+
+def test_whether_finds_are_treated_is_assumed_and_told_otherwise(season_app, season):
+    go(season_app, "season")
+    assert "plants found infested are treated at once" in texts_of(season_app)
+    season_app.radio(key="season_finds").set_value(False)
+    press(season_app, texts.ASSUMED_USE)
+    assert not season_app.exception
+    assert not season().settings.belief.treated
+    assert "treated" not in {one.setting for one in season().assumed()}
+    assert "plants found infested are treated at once" not in texts_of(season_app)

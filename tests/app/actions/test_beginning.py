@@ -61,3 +61,12 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
     assert Season(kept.path.parent / "Next year.gpkg").settings.belief.earlier == kept.as_earlier()
     go(season_app, "season")
     assert "Begun with what was learnt on Gate" in texts_of(season_app)
+
+
+@pytest.mark.parametrize("button", ["Begin the season", "Begin a season"])
+def test_a_season_begins_with_finds_that_are_only_flagged(season, button):
+    app = opened()
+    app.radio(key="begin_finds").set_value(False).run()
+    press(app, button)
+    assert not app.exception
+    assert not season().settings.belief.treated

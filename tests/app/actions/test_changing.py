@@ -1,10 +1,15 @@
 """Who works in a season is changed from now on, and back."""
 
 from dataclasses import replace
+from datetime import timedelta
+
+import numpy as np
+import pytest
 
 from app.words import texts
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.plot.robot import Robot, scout
-from tests.app.driving import PAGES, go, metric, press, until
+from tests.app.driving import PAGES, go, metric, opened, press, texts_of, until
 
 
 def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(season_app, season):
@@ -125,3 +130,20 @@ def test_the_hours_of_a_plot_without_a_season_stand_there_too_and_are_kept_elsew
     assert hours_box(app).value == 3.0
     go(app, "today")
     assert hours_box(app).value == 3.0
+
+
+@pytest.mark.usefixtures("season_app")
+def test_an_earlier_day_goes_by_what_counted_then_and_says_so(season):
+    kept = season()
+    settings, days = kept.settings, [kept.settings.begins + timedelta(days=k) for k in range(2)]
+    clean = np.zeros(3, np.int8)
+    kept.record(Inspections.of(np.arange(3), clean, np.datetime64(days[0])))
+    kept.change(replace(settings, robot=settings.robot.with_hours(4.0)), settings)
+    kept.record(Inspections.of(np.arange(3), clean, np.datetime64(days[1])))
+    app = opened("Gate 2026", day=str(days[1]))
+    assert hours_box(app).value == 4.0
+    few = metric(app, texts.PLANTS_TO_INSPECT)
+    app = opened("Gate 2026", day=str(days[0]))
+    assert not [one for one in app.slider if one.key.startswith("hours ")]
+    assert "what counted then: Adaptive · 12 h · 40 s, from 06:00" in texts_of(app)
+    assert metric(app, texts.PLANTS_TO_INSPECT) != few

@@ -2,9 +2,11 @@
 
 from datetime import date
 
+import numpy as np
 import pytest
 
 from app.words import texts
+from fieldmon.infestation.inspections import Inspections
 from tests.app.driving import go, opened, press, tap, texts_of
 
 
@@ -47,3 +49,19 @@ def test_to_look_at_the_ways_to_a_phone_is_not_yet_to_take_the_day_along(season_
     season_app.text_input(key="invite_name").set_value("Ann")
     press(season_app, texts.INVITE_BUTTON)
     assert sent() == [True]
+
+
+def test_a_ticked_plan_is_the_one_kept_with_what_is_left_of_it(season_app, season):
+    def plan():
+        (said,) = [one.value for one in season_app.markdown if texts.STEPS["plan"] in one.value]
+        return said
+
+    kept, first = season(), date(2026, 11, 16)
+    tap(season_app, "do_plan")
+    n = len(kept.kept_route(first))
+    assert f"{n:,} plants" in plan()
+    done = kept.kept_route(first)[:5]
+    kept.record(Inspections.of(done, np.zeros(5, np.int8), np.datetime64(first)))
+    season_app.run()
+    assert f"{n:,} plants, " in plan()
+    assert f"; {n - 5:,} left" in plan()

@@ -1,6 +1,8 @@
 """What was found is recorded once, and undone."""
 
+import json
 import shutil
+import uuid
 from datetime import date
 from pathlib import Path
 
@@ -235,3 +237,16 @@ def test_what_two_people_said_otherwise_is_shown_with_who_said_it(season_app, se
     assert "Ann" in shown
     assert "Ben" in shown
     assert "plant 8" in shown
+
+
+def test_what_a_phone_saved_as_not_sent_is_recorded_by_uploading_it(season_app, season):
+    on = season().settings.begins
+    one = {"id": str(uuid.UUID(int=1)), "at": f"{on}T06:00:00Z", "plant": 3, "result": "found"}
+    name = {"season": season().path.stem, "who": "Ann"}
+    data = json.dumps({"kind": "fieldmon findings", "findings": [one | name], "photos": []})
+    go(season_app, "record")
+    season_app.file_uploader(key="findings_file").upload("rescue.json", data.encode()).run()
+    season_app.button(key="record_file").click().run()
+    assert "1 recorded" in season_app.success[0].value
+    seen = season().history.inspections
+    assert (seen.plant.tolist(), seen.who.tolist()) == ([3], ["Ann"])

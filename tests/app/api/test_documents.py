@@ -59,6 +59,7 @@ def test_the_day_is_what_the_season_says(served, scout):
     assert [one["result"] for one in day["today"]].count("found") == 1
     assert {*day["found"]} >= {one["plant"] for one in day["today"] if one["result"] == "found"}
     assert (day["day"], day["live"], day["scout"]) == ("2026-04-06", False, "Ann")
+    assert day["past"]
     line = np.array(day["route"]["line"])
     assert np.abs(line - route.line_lonlat()).max() < 1e-7
 

@@ -1,0 +1,92 @@
+"""A sampler of one's own, in a Python file: `my_sampler.py:Mine`.
+
+Only who asks for it by hand gets it: the name of a sampler in a season's file runs no code.
+"""
+
+from __future__ import annotations
+
+import sys
+from hashlib import blake2b
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fieldmon.compute.arguments import shown
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.samplers.base import Sampler
+
+
+def is_own(name: str) -> bool:
+    """Tell whether a name is that of a file and a class.
+
+    Examples
+    --------
+    >>> from fieldmon.samplers.own import is_own
+    >>> is_own("samplers/mine.py:Mine"), is_own("naive")
+    (True, False)
+    """
+    return name.rpartition(":")[0].endswith(".py")
+
+
+def own_class(name: str) -> type[Sampler]:
+    """Return the class of a name such as ``my_sampler.py:Mine``; the file is run once.
+
+    Raise `SettingError` if there is no such file, it does not run, or has no such sampler.
+    """
+    file, _, called = name.rpartition(":")
+    found = getattr(_module(Path(file).resolve()), called, None)
+    if not isinstance(found, type) or not callable(getattr(found, "walk", None)):
+        raise SettingError(
+            f"{file} must have a class {called} with a method walk, but it has none. Derive it "
+            "from fieldmon.Sampler."
+        )
+    return found
+
+
+def label_of(name: str) -> str:
+    """Return what a sampler is called in tables: a name as it is, of an own one its class.
+
+    Examples
+    --------
+    >>> from fieldmon.samplers.own import label_of
+    >>> label_of("samplers/mine.py:Mine"), label_of("naive")
+    ('Mine', 'naive')
+    """
+    return name.rpartition(":")[2] if is_own(name) else name
+
+
+def own_digest(name: str) -> bytes:
+    """Return what stands for the file of an own sampler: another text is another sampler."""
+    return blake2b(_text(Path(name.rpartition(":")[0]).resolve())).digest()
+
+
+def _text(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        raise SettingError(
+            f"{file} must be a Python file with a sampler, but it cannot be read "
+            f"({error.strerror}). Name it as my_sampler.py:Mine."
+        ) from error
+
+
+def _module(file: Path) -> Any:  # noqa: ANN401 - any module
+    text = _text(file)
+    name = f"own_{blake2b(bytes(file) + text, digest_size=8).hexdigest()}"
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = spec_from_file_location(name, file)
+    if spec is None or spec.loader is None:
+        raise SettingError(f"{file} must be a Python file, but it is none. Name it my_sampler.py.")
+    module = module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses look for their own module there
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        raise SettingError(
+            f"{file} must run, but it ends in {type(error).__name__}: {shown(str(error))}."
+        ) from error
+    return module

@@ -21,6 +21,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
+from fieldmon.cli.settings_words import telling_anew, worker_in_words
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import CHANCE
@@ -30,6 +31,7 @@ from fieldmon.samplers import EVERY
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
     from fieldmon.monitoring.history import BeliefSettings
+    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.field import Field
 
 
@@ -86,11 +88,7 @@ class ChangeOptions:
         """Return a season's settings as they are to be."""
         from dataclasses import replace
 
-        worker = WorkerOptions(self.hours, self.look, self.speed, robot_times=self.robot_times)
-        team = tuple(replace(one, robot=worker.said_of(one.robot)) for one in settings.team)
-        new = replace(settings, robot=worker.said_of(settings.robot), team=team)
-        if self.robots is not None:
-            new = self._of_several(new)
+        new = self._of_who_inspects(settings)
         if self.sampler is not None:
             new = replace(new, sampler=self.sampler, sampler_settings={})
         if self.every is not None:
@@ -106,6 +104,39 @@ class ChangeOptions:
         if self.language is not None:
             new = replace(new, language=checked_language(self.language))
         return self._of_pest(new, plot)
+
+    @property
+    def of_worker(self) -> bool:
+        """Whether anything is said of who inspects."""
+        return bool(self._worker().given()) or self.robot_times is not None
+
+    def _worker(self) -> WorkerOptions:
+        return WorkerOptions(self.hours, self.look, self.speed, robot_times=self.robot_times)
+
+    def _of_who_inspects(self, settings: MonitoringSettings) -> MonitoringSettings:
+        """Return settings with the robot or the team told."""
+        from dataclasses import replace
+
+        worker = self._worker()
+        new = replace(settings, robot=worker.said_of(settings.robot))
+        if self.robots is not None:
+            return self._of_several(new)
+        if settings.team and self.of_worker:
+            self._must_be_alike(settings.team)
+        team = tuple(replace(one, robot=worker.said_of(one.robot)) for one in settings.team)
+        return replace(new, team=team)
+
+    def _must_be_alike(self, team: tuple[TeamMember, ...]) -> None:
+        """Refuse what is said of everybody where members of a team differ, or find by a table."""
+        told = self.look is not None and any(one.robot.detection is not None for one in team)
+        if len({one.robot for one in team}) == 1 and not told:
+            return
+        each = "; ".join(worker_in_words(one) for one in team)
+        raise SettingError(
+            "--hours, --look, --speed and --robot-times are of one robot, or of members that are "
+            f"alike, but this season's team is {each}. Give all of it anew with: fieldmon change "
+            "--robots TEAM.csv"
+        )
 
     def _believed(self, belief: BeliefSettings) -> BeliefSettings:
         from dataclasses import replace
@@ -157,7 +188,7 @@ class ChangeOptions:
         if robots.isdecimal():
             n = int(robots)
             return replace(settings, team=() if n == 1 else team_of(n, settings.robot))
-        team, first = members_of(robots, settings.starts, WorkerOptions())
+        team, first = members_of(robots, settings.starts, self._worker())
         return replace(settings, team=team, starts=first)
 
 
@@ -178,5 +209,7 @@ def change(options: ChangeOptions) -> None:
     if new == seen:
         typer.echo("Nothing was changed.")
         return
-    season.change(new, seen, options.who)
-    typer.echo("Changed; fieldmon plan uses it from now on.")
+    with telling_anew(season, seen, new):
+        season.change(new, seen, options.who)
+        whom = f" for {', '.join(m.name for m in new.team)}" if options.of_worker else ""
+        typer.echo(f"Changed{whom if new.team else ''}; fieldmon plan uses it from now on.")

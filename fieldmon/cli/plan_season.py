@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
+from functools import cache
 from typing import TYPE_CHECKING
 
 import typer
@@ -55,29 +56,36 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
         )
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
-    typer.echo(f"{on}: {done}{day_in_words(route)}")
+    chance = season.evening(on)
+    typer.echo(f"{on}: {done}{day_in_words(route, float(chance[route.plant].sum()))}")
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
-    write_chance_map(options.chance_map, season.plot, today.chance)
+    write_chance_map(options.chance_map, season.plot, chance)
 
 
 def _tell_detection(season: Season, on: date) -> None:
     """Print what the season learnt that inspections find, where routes go by another value."""
     from fieldmon.compute.wording import written
 
-    told = written(season.planned_by(on).robot.detects, ".0%")
-    for one in season.learnt(on):
-        if one.name == "detection" and (learnt := written(one.value, ".0%")) != told:
-            typer.echo(
-                f"seen: Inspections find {learnt} of what is there, as this season learnt. Chances "
-                f"go by that; routes and their finds go by the {told} of who inspects.",
-                err=True,
-            )
+    settings = season.planned_by(on)
+    names: dict[float, list[str]] = {}
+    for member in settings.team:
+        names.setdefault(member.robot.detects, []).append(member.name)
+    for detects, whose in (names or {settings.robot.detects: []}).items():
+        told, by = written(detects, ".0%"), f" by {', '.join(whose)}" * (len(names) > 1)
+        for one in season.learnt(on, detects):
+            if one.name == "detection" and (learnt := written(one.value, ".0%")) != told:
+                typer.echo(
+                    f"seen: Inspections{by} find {learnt} of what is there, as this season learnt. "
+                    f"Chances go by that; routes and their finds go by the {told} of who inspects.",
+                    err=True,
+                )
 
 
 def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
+    from fieldmon.planning.route import with_forecast
     from fieldmon.planning.team import bound_of_days
 
     team = season.settings.team
@@ -98,6 +106,7 @@ def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
         typer.echo(said)
     tell_assumed(season.assumed())
     _tell_detection(season, on)
+    ahead = cache(lambda: season.forecast(on))
     for member, today, paths in zip(team, days, files, strict=True):
-        write_member(member.name, today.route, paths)
-    write_chance_map(options.chance_map, season.plot, days[0].chance)
+        write_member(member.name, with_forecast(today.route, ahead), paths)
+    write_chance_map(options.chance_map, season.plot, season.evening(on))

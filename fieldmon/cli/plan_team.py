@@ -31,7 +31,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
 
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.planning import team
-    from fieldmon.planning.assumptions import assumed_by
+    from fieldmon.planning.assumptions import assumed_by_team
 
     for name in ("sampler", "every", "every_plot"):
         source = context.get_parameter_source(name)
@@ -53,8 +53,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
             plot, chance, members, progress=count, passing_m=options.passing or 0.0
         )
     _tell(planned, begins)
-    assumed = (one for member in members for one in assumed_by((), prior, member.robot, plot.grid))
-    tell_assumed({str(one): one for one in assumed}.values())
+    tell_assumed(assumed_by_team((), prior, members, plot.grid))
     _write(planned, begins, plot.field.name, files)
     write_chance_map(options.chance_map, plot, chance)
 

@@ -8,6 +8,7 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.settings_words import taken_back, telling_anew
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError
 
@@ -42,10 +43,9 @@ def undo(
     from fieldmon.monitoring import Season
 
     if change:
-        settings = Season(season).undo_change(who)
-        typer.echo(
-            f"The last change was taken back: {settings.sampler}, {settings.robot.hours:g} h from "
-            f"{settings.starts:%H:%M}, {settings.robot.look_s:g} s at a plant."
-        )
+        kept = Season(season)
+        settings = kept.settings
+        with telling_anew(kept, settings, kept.before_change() or settings):
+            typer.echo(taken_back(settings, kept.undo_change(who)))
         return
     typer.echo(Season(season).undo(batch, inspection, who))

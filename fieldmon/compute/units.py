@@ -64,8 +64,9 @@ class Units:
         return tuple(round(value_m / LENGTHS[self.length], 1) for value_m in values_m)
 
     def square(self, value_m2: float) -> str:
-        """Return an area."""
-        return in_unit(value_m2 / AREAS_M2[self.area], ",.2f", self.area)
+        """Return an area; a small one in as many digits as say anything."""
+        value = value_m2 / AREAS_M2[self.area]
+        return in_unit(value, ",.2f" if value >= 0.01 or value <= 0 else ".2g", self.area)
 
     @property
     def one_area(self) -> Worded:

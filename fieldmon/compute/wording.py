@@ -119,6 +119,28 @@ def estimate(value: float) -> Worded:
     return figure(value, f",.{digits_of_estimate(value)}f")
 
 
+def share_figure(share: float) -> Worded:
+    """Return a share as whole percents; a small one in as many digits as say anything.
+
+    Examples
+    --------
+    >>> share_figure(0.156), share_figure(0.00234), share_figure(0)
+    ('16 %', '0.23 %', '0 %')
+    """
+    return figure(100 * share, ".2g", " %") if 0 < share < 0.01 else figure(share, ".0%")
+
+
+def litres_figure(litres: float, after: str = "") -> Worded:
+    """Return litres as whole ones; few in as many digits as say anything; `after` as in `figure`.
+
+    Examples
+    --------
+    >>> litres_figure(1234.5), litres_figure(1.44), litres_figure(0.0312, " l")
+    ('1,234', '1.4', '0.031 l')
+    """
+    return figure(litres, ",.0f" if litres >= 10 or litres <= 0 else ".2g", after)
+
+
 def hours_figure(value_h: float) -> Worded:
     """Return hours to the tenth, whole ones without; what takes time takes a tenth or more.
 

@@ -19,7 +19,8 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.wording import counted, estimate, worded
+from fieldmon.compute.units import Units
+from fieldmon.compute.wording import counted, estimate, share_figure, worded
 from fieldmon.decisions.rings import best_rings, rings_bound
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.switching import strips_of, switch
@@ -96,11 +97,11 @@ class Zones:
                 outside=estimate(self.outside),
             )
         return worded(
-            "Treat {area:.2f} ha in {zones}, {share:.0%} of the {of:.2f} ha under plants: {inside} "
-            "infested plants are expected there and {outside} elsewhere. It costs {cost:,.2f} and "
-            "saves {saved:,.2f}.",
-            area=self.m2 / 10_000, zones=counted(len(self), "zone"), share=self.m2 / self.plot_m2,
-            of=self.plot_m2 / 10_000,
+            "Treat {area} in {zones}, {share} of the {of} under plants: {inside} infested plants "
+            "are expected there and {outside} elsewhere. It costs {cost:,.2f} and saves "
+            "{saved:,.2f}, in your currency.",
+            area=Units().square(self.m2), zones=counted(len(self), "zone"),
+            share=share_figure(self.m2 / self.plot_m2), of=Units().square(self.plot_m2),
             inside=estimate(self.inside), outside=estimate(self.outside), cost=self.cost,
             saved=self.saved,
         )  # fmt: skip

@@ -151,6 +151,19 @@ class EarlierSeason:
         counts, stands = OriginCounts(found, expected), np.array(self.stands)
         return replace(first, counts=counts, evidence=stands)
 
+    def must_end_before(self, begins: date) -> None:
+        """Raise `SettingError` unless it ended before the day on which another one begins."""
+        if self.until >= begins:
+            raise SettingError(
+                worded(
+                    "An earlier season must end before the new one begins on {begins}, but that on "
+                    "{plot} goes on until {until}. Begin later, or without it.",
+                    begins=begins,
+                    plot=self.plot,
+                    until=self.until,
+                )
+            )
+
     def is_of(self, pest: str) -> bool:
         """Tell whether it was learnt of this pest; empty: of one that nobody named."""
         return self.believed.pest == pest

@@ -10,7 +10,14 @@ import numpy as np
 
 from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.compute.wording import (
+    counted,
+    figure,
+    joined,
+    litres_figure,
+    share_figure,
+    worded,
+)
 from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
@@ -24,6 +31,7 @@ if TYPE_CHECKING:
 
     from shapely import MultiPolygon
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.decisions.map_verdict import MapVerdict, ZoneVerdicts
     from fieldmon.decisions.sequential import Verdict
     from fieldmon.decisions.zones import Zones
@@ -67,15 +75,31 @@ class AdviceSettings:
     def __post_init__(self) -> None:
         must_be_rate(self.rate_l_ha)
 
-    def assumed(self, units: Units | None = None) -> str:
-        """Return in words what nobody measured here; `units` says of which area costs are."""
-        costs, known = self.costs, units or Units()
-        return worded(
-            "Assumed: to treat {area} costs {per_area:g} and a zone {per_zone:g}, {loss:g} lost a "
-            "day by an infested plant over {days:g} days, treating cleans {works:.0%}.",
-            area=known.one_area, per_area=known.by_area(costs.per_ha), per_zone=costs.per_zone,
-            loss=costs.infested_plant_day, days=costs.days, works=costs.works,
-        )  # fmt: skip
+    def assumed(self, units: Units | None = None) -> Worded:
+        """Return in words what nobody measured here or set, and what was set.
+
+        `units` says of which area costs are.
+        """
+        costs, usual, known = self.costs, TreatmentCosts(), units or Units()
+        said = {
+            "per_ha": worded(
+                "to treat {area} costs {cost:g}",
+                area=known.one_area, cost=known.by_area(costs.per_ha),
+            ),
+            "per_zone": worded("a zone costs {cost:g}", cost=costs.per_zone),
+            "infested_plant_day": worded(
+                "an infested plant loses {loss:g} a day", loss=costs.infested_plant_day
+            ),
+            "days": worded("it stays infested for {days:g} days", days=costs.days),
+            "works": worded("treating cleans {works:.0%}", works=costs.works),
+        }  # fmt: skip
+        left = {name for name in said if getattr(costs, name) == getattr(usual, name)}
+        assumed, told = (
+            joined(", ", [one for name, one in said.items() if (name in left) == is_left])
+            for is_left in (True, False)
+        )
+        both = [worded("Assumed: {what}.", what=assumed)] * bool(assumed)
+        return joined(" ", [*both, *[worded("As you said: {what}.", what=told)] * bool(told)])
 
 
 @dataclass(frozen=True)
@@ -165,18 +189,18 @@ class Advice:
         area = {
             "area": written.square(self.zones.m2),
             "zones": counted(len(self.zones), "zone"),
-            "share": self.zones.m2 / self.zones.plot_m2,
+            "share": share_figure(self.zones.m2 / self.zones.plot_m2),
             "of": written.square(self.zones.plot_m2),
         }  # fmt: skip
         if self.verdict == TREAT and self.zones.m2 >= _WHOLE * self.zones.plot_m2:
             return worded("Treat the whole plot, {area} under plants.", area=area["area"])
         if self.verdict == TREAT and len(self.zones):
-            return worded("Treat {area} in {zones}, {share:.0%} of the {of} under plants.", **area)
+            return worded("Treat {area} in {zones}, {share} of the {of} under plants.", **area)
         if self.verdict == TREAT:
             return self._pays_nowhere()
         if self.above:
             return worded(
-                "Do not treat the whole plot, but {area} of it in {zones}, {share:.0%} of the {of} "
+                "Do not treat the whole plot, but {area} of it in {zones}, {share} of the {of} "
                 "under plants.",
                 **area,
             )
@@ -293,8 +317,8 @@ class Advice:
 
     def _worth_said(self) -> str:
         return worded(
-            "It takes {litres:,.0f} l and costs {saved} less than treating the whole plot.",
-            litres=self.litres, saved=self.saved,
+            "It takes {litres} l and costs {saved} less than treating the whole plot.",
+            litres=litres_figure(self.litres), saved=self.saved,
         )  # fmt: skip
 
     def _enough_said(self) -> str:

@@ -32,7 +32,7 @@ from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from datetime import date
 
     from numpy.typing import NDArray
@@ -216,12 +216,11 @@ class History:
     belief
         What is made of it.
     detection
-        Chance that an inspection finds what is there.
+        Chance that an inspection finds what is there, as it was told when it was made: one for
+        all, or ``(k,)`` of each.
     recorded
         ``(n,)`` what the records say from which the season began: 1 infested, 0 clean, -1 nothing;
         None: there are none.
-    detection_of
-        The same chance for those of a team, by their names without capitals.
     pest_in_weather
         The pest, in the weather of the season's days; None: nobody named it, and nights are as
         `belief` says.
@@ -233,9 +232,8 @@ class History:
     inspections: Inspections = field(default_factory=Inspections.none)
     treatments: tuple[Treatment, ...] = ()
     belief: BeliefSettings = field(default_factory=BeliefSettings)
-    detection: float = 0.84
+    detection: float | NDArray[np.float64] = 0.84
     recorded: NDArray[np.int8] | None = None
-    detection_of: Mapping[str, float] = field(default_factory=dict)
     pest_in_weather: PestInWeather | None = None
 
     def __post_init__(self) -> None:
@@ -248,13 +246,21 @@ class History:
         since = self.inspections.date - np.datetime64(self.begins, "D")
         return since.astype(np.int32)
 
+    @cached_property
+    def detections(self) -> NDArray[np.float64]:
+        """Chance that each inspection finds what is there, as it was told, ``(k,)``."""
+        return np.broadcast_to(np.asarray(self.detection, np.float64), self.days.shape)
+
     def date_of(self, day: int) -> date:
         """Return the date of a day."""
         return self.begins + timedelta(days=day)
 
     def on(self, day: int) -> Inspections:
         """Return the inspections of a day."""
-        return self.inspections.take(slice(*np.searchsorted(self.days, [day, day + 1])))
+        return self.inspections.take(self._rows_of(day))
+
+    def _rows_of(self, day: int) -> slice:
+        return slice(*np.searchsorted(self.days, [day, day + 1]))
 
     def until(self, day: int) -> Inspections:
         """Return the inspections up to the evening of a day."""
@@ -309,9 +315,10 @@ class History:
         return _Last()
 
     def _evening(self, morning: Belief, day: int) -> Belief:
-        done = self.on(day).inspected
-        found = done.result == FOUND
-        believed = self.belief.evening(morning, done.plant, found, self._detection(done))
+        done, detection = self.on(day), self.detections[self._rows_of(day)]
+        inspected = done.result != SKIPPED
+        done, detection = done.take(inspected), detection[inspected]
+        believed = self.belief.evening(morning, done.plant, done.result == FOUND, detection)
         for treatment in self.treatments:
             if treatment.day == day:
                 # who infested whom ends here: what it says of today's finds counts before
@@ -320,11 +327,16 @@ class History:
                 )
         return believed
 
-    def _detection(self, done: Inspections) -> float | NDArray[np.float64]:
-        if not self.detection_of:
-            return self.detection
-        names = [str(who).casefold() for who in done.who]
-        return np.array([self.detection_of.get(name, self.detection) for name in names], float)
+    def told(self, day: int) -> float:
+        """Return what the inspections up to the evening of a day were told to find, on average.
+
+        If there are none, what the first one after it was.
+        """
+        until = self.detections[: np.searchsorted(self.days, day + 1)]
+        looked = self.inspections.result[: len(until)] != SKIPPED
+        told = until[looked] if looked.any() else np.append(self.detections, self.detection)[:1]
+        # the mean of equal numbers may be off in the last digit
+        return float(told[0] if (told == told[0]).all() else told.mean())
 
     def estimate(self, morning: Belief, day: int) -> PlotEstimate:
         """Return how many plants are infested and not found yet, after a day's work."""
@@ -368,9 +380,15 @@ class History:
         # what was found is known: it is not out there any more
         return evening.treated(np.where(self.states(day) == PRESENT, 0.0, 1.0))
 
-    def learnt(self, morning: Belief, day: int) -> tuple[Learnt, ...]:
-        """Return what the inspections up to the evening of a day tell of the insects."""
-        return learnt_from(self.in_hindsight(morning, day), self.detection)
+    def learnt(
+        self, morning: Belief, day: int, detection: float | None = None
+    ) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of a day tell of the insects.
+
+        And of inspections that are told to have a `detection`; None: of those made until then.
+        """
+        told = self.told(day) if detection is None else detection
+        return learnt_from(self.in_hindsight(morning, day), told)
 
     def first_find(self, on: date) -> date | None:
         """Return the day of the first find up to a date; None: there is none yet."""

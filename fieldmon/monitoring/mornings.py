@@ -170,16 +170,22 @@ def is_behind(db: sqlite3.Connection, mornings: Mornings, newest: int) -> bool:
 def _causes(history: History, day: int) -> str:
     """Return a name for all from which the morning of a day follows, our own rules among it."""
     done = history.until(day - 1)
-    first = history.first_morning
-    said = history.belief, history.detection, dict(history.detection_of), history.begins
+    first, told = history.first_morning, history.detections[: len(done)]
+    said = history.belief, history.begins
     treated = [
         digest(one.day, one.plants, one.efficacy) for one in history.treatments if one.day < day
     ]
-    who = "\n".join(map(str, done.who)) if history.detection_of else ""
     return digest(
-        *(_rules(), first.chance, first.pair_chance, said, day, treated),
-        *(done.plant, done.result, done.date, who),
+        *(_rules(), first.chance, first.pair_chance, _learnt_before(first), said, day, treated),
+        *(done.plant, done.result, done.date, told),
     )
+
+
+def _learnt_before(first: Belief) -> bytes:
+    """Return what an earlier season taught, which the settings tell only in part."""
+    if not isinstance(first, TracedPairs):
+        return b""
+    return np.concatenate([first.counts.found, first.counts.expected, first.evidence]).tobytes()
 
 
 @cache

@@ -33,6 +33,7 @@ from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
 from fieldmon.monitoring.mornings import take as take_mornings
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
 from fieldmon.plot.grid import RowLabel, row_label
 
@@ -151,7 +152,7 @@ class OpenSeason:
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
 
         As when the day was planned last or, if it never was, first recorded. What is believed is
-        of now, for all days; so is a team.
+        of now, for all days (but see `fieldmon.monitoring.told_detection`); so is a team.
         """
         return self._counted_on(on)
 
@@ -307,10 +308,13 @@ class OpenSeason:
                 inspections = before.history.inspections
             else:
                 inspections = inspection_lots.load(db, settings.begins)
+            begun = nothing_yet(self.plot, settings, prior, self.observations, told_at_first(db))
+            told = told_detection(db, inspections, settings.begins)
             history = replace(
-                nothing_yet(self.plot, settings, prior, self.observations),
+                begun,
                 inspections=inspections,
                 treatments=treated,
+                detection=told if len(told) else _mean_told(settings),
             )
             if before is None:
                 mornings = Mornings(history)
@@ -370,21 +374,29 @@ class OpenSeason:
 
 
 def nothing_yet(
-    plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations
+    plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations, told: float
 ) -> History:
-    """Return the history of a season in which nothing was found or treated."""
-    belief = settings.belief.first_morning(plot.grid, prior, settings.pest, settings.robot.detects)
+    """Return the history of a season in which nothing was found or treated.
+
+    `told` is what inspections were told to find when it began.
+    """
+    belief = settings.belief.first_morning(plot.grid, prior, settings.pest, told)
     known = usable(records, np.datetime64(settings.begins, "D")).observations
     return History(
         plot.grid,
         settings.begins,
         belief,
         belief=settings.belief,
-        detection=settings.robot.detects,
+        detection=_mean_told(settings),
         recorded=record_states(plot.grid, known) if len(known) else None,
-        detection_of={one.name.casefold(): one.robot.detects for one in settings.team},
         pest_in_weather=settings.pest_in_weather(),
     )
+
+
+def _mean_told(settings: MonitoringSettings) -> float:
+    """Return what inspections are told to find; of a team that all find alike, that exactly."""
+    told = [one.robot.detects for one in settings.team] or [settings.robot.detects]
+    return told[0] if len({*told}) == 1 else float(np.mean(told))
 
 
 def settings_of(db: sqlite3.Connection) -> MonitoringSettings:

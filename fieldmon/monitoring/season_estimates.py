@@ -19,6 +19,7 @@ from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status
+from fieldmon.monitoring.told_detection import told_at_first
 from fieldmon.pests.development import development
 
 if TYPE_CHECKING:
@@ -141,10 +142,13 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             return contents.history.flagged(morning, day)
 
-    def learnt(self, on: date) -> tuple[Learnt, ...]:
-        """Return what the inspections up to the evening of `on` tell of the insects."""
+    def learnt(self, on: date, detection: float | None = None) -> tuple[Learnt, ...]:
+        """Return what the inspections up to the evening of `on` tell of the insects.
+
+        And of inspections that are told to have a `detection`; None: of those made until then.
+        """
         with self._asked(on) as (contents, morning, day):
-            return contents.history.learnt(morning, day)
+            return contents.history.learnt(morning, day, detection)
 
     def taught(self) -> Worded | None:
         """Return what of an earlier season counts in this one; None: it began without one."""
@@ -152,8 +156,9 @@ class SeasonEstimates(OpenSeason):
         belief, settings = now.settings.belief, now.settings
         if belief.earlier is None or not belief.traces:
             return None
-        detects = settings.robot.detects
-        return belief.earlier.sentence(belief.believed(self.plot.grid, settings.pest, detects))
+        with self.store.reading() as db:
+            told = told_at_first(db)
+        return belief.earlier.sentence(belief.believed(self.plot.grid, settings.pest, told))
 
     def as_earlier(self) -> EarlierSeason:
         """Return what the season learnt until its last day, as a next one may begin with it.
@@ -176,7 +181,8 @@ class SeasonEstimates(OpenSeason):
                 )
             )
         settings, plot = contents.settings, self.plot
-        believed = settings.belief.believed(plot.grid, settings.pest, settings.robot.detects)
+        told = settings.robot.detects if settings.team else contents.history.told(day)
+        believed = settings.belief.believed(plot.grid, settings.pest, told)
         return EarlierSeason.of(evening, believed, plot.field.name, on)
 
     def progress(self, on: date) -> Progress:

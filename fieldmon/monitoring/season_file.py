@@ -39,7 +39,7 @@ from fieldmon.monitoring.season_records import SeasonRecords
 from fieldmon.monitoring.season_treatments import SeasonTreatments
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, settings_from
 from fieldmon.monitoring.transactions import Store, set_meta
-from fieldmon.planning.assumptions import assumed_by
+from fieldmon.planning.assumptions import assumed_by, assumed_by_team
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import local_clock
 
@@ -152,7 +152,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         FileProblem
             If the file exists, or cannot be written.
         SettingError
-            If what is handed over is something else.
+            If what is handed over is something else, or an earlier season did not end before.
         """
         if settings is None:
             today = local_clock(plot.field).today()
@@ -160,13 +160,16 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         if observations is None:
             observations = Observations.none()
         settings.must_detect()
+        if settings.belief.earlier is not None:
+            settings.belief.earlier.must_end_before(settings.begins)
         begins = np.datetime64(settings.begins, "D")
         if messages is None:
             warn_of_left_out(observations, begins)
         if risk is not None:
             risk = array_of(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
-        history = nothing_yet(plot, settings, prior, observations)
+        told = settings.robot.detects
+        history = nothing_yet(plot, settings, prior, observations, told)
         first = SeasonContents(FileRevision(0, 0), settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
@@ -189,7 +192,11 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         `settings` are those that count, as of an earlier day; None: those of now.
         """
         settings = settings or self.settings
-        made = assumed_by(self.plot.assumed, settings.prior, settings.robot, self.plot.grid)
+        laid, prior = self.plot.assumed, settings.prior
+        if settings.team:
+            made = assumed_by_team(laid, prior, settings.team, self.plot.grid)
+        else:
+            made = assumed_by(laid, prior, settings.robot, self.plot.grid)
         rate, usual = settings.belief.spread.rate_per_day, BeliefSettings()
         if settings.pest is None and rate == usual.spread.rate_per_day:
             made = (*made, Assumed("rate_per_day", rate))

@@ -86,7 +86,7 @@ _SAID = {
     "begins": "the log begins: {why}",
     "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
     "batch {batch}",
-    "planned": "{date}: {stops} stops by {sampler}, about {expected} of them infested",
+    "planned": "{date}: {stops} stops by {sampler}, about {expected} of them visibly infested",
     "advised": "{date}: {said}",
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",
@@ -249,21 +249,33 @@ def entries(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
     return tuple(made)
 
 
+# entries of other copies that were merged are among them
+_PLANNED_AND_SEEN = (
+    "WITH said (entry) AS (SELECT entry FROM log UNION ALL SELECT json_extract(value, '$.entry') "
+    "FROM log, json_each(log.entry, '$.what.theirs')) "
+    "SELECT json_extract(entry, '$.kind') AS kind, json_extract(entry, '$.at'),"
+    " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.from')) AS low,"
+    " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.to')) AS high"
+    " FROM said WHERE kind IN ('planned', 'seen') AND low NOTNULL AND high NOTNULL"
+)
+
+
+def planned_and_seen(db: sqlite3.Connection) -> list[tuple[str, str, str, str]]:
+    """Return what was planned and recorded: ``"planned"`` or ``"seen"``, when, and of which days.
+
+    When is UTC, as the log has it; the days (ISO) are the first and the last.
+    """
+    return db.execute(_PLANNED_AND_SEEN).fetchall()
+
+
 def planned_last(db: sqlite3.Connection, on: str) -> str | None:
     """Return when a day (ISO) was planned last or, if it never was, when it was first recorded.
 
     UTC, as the log has it; None where the log says nothing of the day.
     """
-    (planned, seen) = db.execute(
-        "SELECT max(iif(kind = 'planned', at, NULL)), min(iif(kind = 'seen', at, NULL)) FROM ("
-        " SELECT json_extract(entry, '$.kind') AS kind, json_extract(entry, '$.at') AS at,"
-        " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.from')) AS low,"
-        " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.to')) AS high"
-        " FROM log) WHERE ? BETWEEN low AND high",
-        (on,),
-    ).fetchone()
-    moment: str | None = planned or seen
-    return moment
+    of_day = [(kind, at) for kind, at, low, high in planned_and_seen(db) if low <= on <= high]
+    planned, seen = ([at for kind, at in of_day if kind == one] for one in ("planned", "seen"))
+    return max(planned, default=None) or min(seen, default=None)
 
 
 def refuse_changed(

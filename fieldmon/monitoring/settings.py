@@ -302,9 +302,25 @@ _TIMES_OF_OLD = ROBOT_TIMES["thesis"]._asdict()
 
 
 def _robot(plain: dict[str, Any]) -> Robot:
+    return Robot(**{**_TIMES_OF_OLD, **plain, "viewpoints": _viewpoints(plain)})
+
+
+def told_to_detect(plain: dict[str, Any], pest: Pest | None = None) -> float:
+    """Return what a robot of earlier settings is told to find of what is there.
+
+    Of a `pest` it sees what can be seen of that. It need not be a robot that may be chosen now.
+    """
+    given, seen_by = plain["detection"], _viewpoints(plain)
+    if pest is not None and pest.viewpoints is not None:
+        given, seen_by = None, pest.viewpoints
+    if pest is not None and pest.detection is not None:
+        given = pest.detection
+    return float(seen_by.detection(plain["look_s"]) if given is None else given)
+
+
+def _viewpoints(plain: dict[str, Any]) -> Viewpoints:
     steps = tuple((float(s), float(p)) for s, p in plain["viewpoints"]["steps"])
-    viewpoints = Viewpoints(steps, plain["viewpoints"]["longer"])
-    return Robot(**{**_TIMES_OF_OLD, **plain, "viewpoints": viewpoints})
+    return Viewpoints(steps, plain["viewpoints"]["longer"])
 
 
 def _member(plain: dict[str, Any]) -> TeamMember:

@@ -106,6 +106,8 @@ def before_now(db: sqlite3.Connection) -> Parts | None:
     rows = db.execute("SELECT name, value, changed FROM settings ORDER BY fid").fetchall()
     for number, (name, value, at) in enumerate(rows):
         parts = {**parts, name: value}
+        if value == "null":  # as if it had never been chosen
+            del parts[name]
         if number + 1 < len(rows) and rows[number + 1][2] == at:
             continue  # of the same change
         if parts in counted[-2:-1]:

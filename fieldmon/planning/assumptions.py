@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.prior_settings import PriorSettings
@@ -10,8 +11,9 @@ from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.robot import USUAL_TIMES, Robot, scout
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
+    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.grid import PlantGrid
 
 
@@ -47,3 +49,22 @@ def assumed_by(
     if robot.width_m is not None and (grid is None or grid.half_canopy_m is None):
         made.append(Assumed("half_canopy_m", USUAL_HALF_CANOPY_M))
     return tuple(made)
+
+
+def assumed_by_team(
+    planting: Iterable[Assumed],
+    prior: PriorSettings,
+    team: Sequence[TeamMember],
+    grid: PlantGrid | None = None,
+) -> tuple[Assumed, ...]:
+    """Return everything assumed of a day of a team: what is not of all, with the names of whom."""
+    laid = tuple(planting)
+    names: dict[Assumed, list[str]] = {}
+    for member in team:
+        for one in assumed_by(laid, prior, member.robot, grid):
+            names.setdefault(one, []).append(member.name)
+    order = [*dict.fromkeys(one.setting for one in names)]
+    return tuple(
+        one if len(whose) == len(team) else replace(one, of=", ".join(whose))
+        for one, whose in sorted(names.items(), key=lambda item: order.index(item[0].setting))
+    )

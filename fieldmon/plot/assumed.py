@@ -31,12 +31,18 @@ class Assumed:
         `BeliefSettings`.
     value
         What was taken: metres, metres a second, seconds, or a chance; 1: it is so.
+    of
+        Names of those of a team of whom it was taken; empty: of all.
     """
 
     setting: str
     value: float
+    of: str = ""
 
     def __str__(self) -> str:
+        return f"{self._said()} ({self.of})" if self.of else self._said()
+
+    def _said(self) -> str:
         words = self.setting.removesuffix("_m").replace("_", " ")
         words = _WORDS.get(self.setting, words)
         if self.setting == "treated":

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, worded
+from fieldmon.compute.wording import estimate, figure, litres_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.plot.grid import row_label
@@ -59,7 +59,7 @@ def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
         (
             KeyFigure(words.AREA_SPRAYED, units.square(zones.m2), share),
             KeyFigure(words.PRODUCT, product or words.PRODUCT_OPEN, rate),
-            KeyFigure(words.LIQUID, figure(advice.litres, ",.0f", " l")),
+            KeyFigure(words.LIQUID, litres_figure(advice.litres, " l")),
             KeyFigure(words.INFESTED_INSIDE, estimate(zones.inside),
                       worded(words.AND_ELSEWHERE, n=estimate(zones.outside))),
             KeyFigure(words.ENOUGH, figure(advice.said.enough, ".0%")),

@@ -1,6 +1,9 @@
 """`fieldmon change`: a season goes on otherwise."""
 
+from datetime import timedelta
+
 from fieldmon.cli.status import lines
+from fieldmon.compute.wording import estimate
 from fieldmon.monitoring import Season
 
 
@@ -16,7 +19,8 @@ def test_choices_can_be_changed(run, season):
     assert "Nothing" in run("change", season)[1]
     code, out, err, _ = run("undo", season, "--change")
     assert code == 0, err
-    assert "adaptive, 1 h" in out
+    said = "sampler snake 2 (now adaptive again), hours 0.5 (now 1 again)"
+    assert out == f"The last change was taken back: {said}.\n"
     assert Season(season).settings.robot.hours == 1.0
     code, _, err, _ = run("undo", season, "--change")
     assert (code, "there is none" in err) == (2, True)
@@ -39,6 +43,54 @@ def test_finds_are_traced_or_not_as_is_chosen(run, season):
     said = "\n".join(lines(kept, kept.status(kept.last_date())))
     assert "to neighbours only" in said
     assert "detection" not in said
+
+
+def test_a_change_that_reaches_into_the_past_says_what_it_makes_of_the_last_day(run, season):
+    on = Season(season).last_date() + timedelta(days=2)
+    Season(season).plan(on)
+    before = Season(season).status(on).estimate
+    out = run("change", season, "--spread", "0.1")[1]
+    after = Season(season).status(on).estimate
+    assert f"after {on} {estimate(after.expected)} ({after.low:,} to {after.high:,})" in out
+    assert f"it was {estimate(before.expected)} ({before.low:,} to {before.high:,})." in out
+    assert f"it was {estimate(after.expected)}" in run("undo", season, "--change")[1]
+    assert "past" not in run("change", season, "--look", "20")[1]
+    assert "past" not in run("change", season, "--robots", "2", "--start", "07:00")[1]
+
+
+def test_what_is_said_of_everybody_is_refused_where_members_of_a_team_differ(run, season, tmp_path):
+    team = tmp_path / "team.csv"
+    team.write_text("name,who,hours,detection\nR1,robot,3,\nAnn,scout,2,0.6\n")
+    assert run("change", season, "--robots", team)[0] == 0
+    for said in (("--hours", "5"), ("--look", "30"), ("--robot-times", "thesis")):
+        code, _, err, _ = run("change", season, *said)
+        assert (code, "team is R1 3 h, 40 s a plant" in err, "--robots TEAM.csv" in err) == (
+            2,
+            1,
+            1,
+        )
+    assert [one.robot.hours for one in Season(season).settings.team] == [3.0, 2.0]
+    assert run("change", season, "--start", "07:00")[0] == 0
+    # what the table leaves open is as told beside it
+    team.write_text("name,hours\nR1,3\nR2,\n")
+    run("change", season, "--robots", team, "--hours", "5")
+    assert [one.robot.hours for one in Season(season).settings.team] == [3.0, 5.0]
+
+
+def test_what_is_said_of_a_team_of_a_kind_is_said_of_each_by_name(run, season):
+    run("change", season, "--robots", "2")
+    out = run("change", season, "--hours", "5", "--look", "30")[1]
+    assert "Changed for robot-1, robot-2;" in out
+    assert {one.robot.hours for one in Season(season).settings.team} == {5.0}
+    assert run("change", season, "--robots", "1")[1].startswith("Changed;")
+
+
+def test_seconds_do_not_go_with_a_detection_that_a_table_gives(run, season, tmp_path):
+    team = tmp_path / "team.csv"
+    team.write_text("name,who,detection\nAnn,scout,0.6\nBen,scout,0.6\n")
+    run("change", season, "--robots", team)
+    assert "finds 60 %" in run("change", season, "--look", "30")[2]
+    assert run("change", season, "--hours", "3")[0] == 0
 
 
 def test_whether_finds_are_treated_or_only_flagged_is_chosen(run, season):

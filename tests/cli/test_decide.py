@@ -26,7 +26,7 @@ def test_the_answer_is_the_headline_of_the_app_and_what_is_assumed_is_said(run, 
         advice.plot.believed(),
     ]
     assert advice.headline() == "Do not treat today."
-    assert "Assumed: to treat 1 ha costs 100 and" in out
+    assert "Assumed: to treat 1 ha costs 100, a zone costs 0.5, an infested plant" in out
     assert kept.log()[-1].what["said"] == advice.in_short()
 
 

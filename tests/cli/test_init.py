@@ -1,6 +1,6 @@
 """`fieldmon init`: a season begins."""
 
-from datetime import date, time
+from datetime import date, time, timedelta
 
 import pandas as pd
 import pytest
@@ -52,7 +52,8 @@ def test_what_cannot_begin_is_a_sentence_and_no_file(run, words, says):
 
 def test_a_season_begins_with_what_an_earlier_one_learnt(run, tmp_path):
     last = ["init", "last.gpkg", ZIP, "--feature", "Nursery", "--begins", BEGINS]
-    begin = ["init", "s.gpkg", ZIP, "--feature", "Nursery", "--begins", BEGINS]
+    later = str(date.fromisoformat(BEGINS) + timedelta(days=1))
+    begin = ["init", "s.gpkg", ZIP, "--feature", "Nursery", "--begins", later]
     assert run(*last)[0] == 0
     code, _, err, made = run(*begin, "--earlier", "last.gpkg")
     assert (code, made) == (2, set())
@@ -69,6 +70,10 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(run, tmp_path):
     said = f"Begun with what was learnt on Nursery until {BEGINS}, which counts little"
     assert said in out
     assert said in run("status", "s.gpkg")[1]
+    # it must have ended, though it is the same plot
+    _, _, err, made = run("init", "early.gpkg", *begin[2:-1], BEGINS, "--earlier", "last.gpkg")
+    assert f"begins on {BEGINS}, but that on Nursery goes on until {BEGINS}" in err
+    assert not made
     # another pest teaches nothing of this one, and that is said
     begin[1] = "mites.gpkg"
     _, out, _, _ = run(*begin, "--earlier", "last.gpkg", "--pest", "spider-mite")

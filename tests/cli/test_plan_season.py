@@ -81,3 +81,31 @@ def test_a_plan_says_which_detection_counts_for_what_once_the_season_learnt_anot
     assert code == 0, err
     assert f"find {written(learnt.value, '.0%')} of what is there, as this season learnt" in err
     assert "routes and their finds go by the 84 %" in err
+
+
+def test_of_a_team_it_is_said_of_whom_something_is_assumed_and_who_finds_otherwise(
+    run, season, tmp_path
+):
+    team = tmp_path / "team.csv"
+    team.write_text("name,who,look_s,detection\nAnn,scout,20,\nBen,scout,20,\nR1,robot,,0.9\n")
+    assert run("change", season, "--robots", team)[0] == 0
+    kept, on = Season(season), date.fromisoformat(BEGINS)
+    plants = kept.plan(on, keep=False).route.plant[:40]
+    for day in range(2):
+        today, found = on + timedelta(days=day), np.full(40, day, np.int8)
+        kept.record(Inspections.of(plants, found, np.datetime64(today)), f"{day}")
+    asked = ("--date", today + timedelta(days=1), "--no-bound", "-o", "day.geojson")
+    code, _, err, _ = run("plan", season, *asked)
+    assert code == 0, err
+    for said in ("speed 4 km/h (Ann, Ben);", "speed 2.5 km/h (R1)", "there 50 % (Ann, Ben)"):
+        assert said in err
+    assert "there 84 %" not in err
+    for who, told in (("Ann, Ben", 0.5), ("R1", 0.9)):
+        (learnt,) = [one for one in kept.learnt(today, told) if one.name == "detection"]
+        assert f"by {who} find {written(learnt.value, '.0%')} of what is there" in err
+        assert f"go by the {written(told, '.0%')} of who inspects" in err
+    routes = [tmp_path / f"day-{name}.geojson" for name in ("Ann", "Ben", "R1")]
+    ahead = kept.forecast(today + timedelta(days=1))
+    for route in routes:
+        said = json.loads(route.read_text())["features"][0]["properties"]["forecast"]
+        assert said["expected"][0] == round(ahead.expected[0], 1)

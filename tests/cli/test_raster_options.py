@@ -3,12 +3,15 @@
 import json
 import re
 import warnings
+from datetime import date
+from pathlib import Path
 
 import numpy as np
 import pytest
 import rasterio
 from rasterio.transform import from_origin
 
+from fieldmon.io.writers.chance_raster import write_chance_raster
 from tests.paths import SAMPLE_DATA
 
 ESTATE = SAMPLE_DATA
@@ -132,6 +135,13 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
     assert east > plain_east + 0.2
     from fieldmon.monitoring import Season
 
+    # as the season has them, also those that hide
+    kept, tomorrow = Season("season.gpkg"), date(2026, 11, 19)
+    run("plan", "season.gpkg", "--date", tomorrow, "--chance-map", "season.tif")
+    for which, same in ((kept.evening, True), (kept.morning_in_sight, False)):
+        write_chance_raster(kept.plot.grid, which(tomorrow), Path("own.tif"))
+        with rasterio.open("season.tif") as season, rasterio.open("own.tif") as own:
+            assert np.array_equal(season.read(1), own.read(1)) is same
     said = [remark.sentence for remark in Season("season.gpkg").messages()]
     assert any("Risk by chance" in sentence for sentence in said)
     code, _, err, _ = run("plan", "season.gpkg", *day, "--risk", risk)

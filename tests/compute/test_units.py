@@ -12,6 +12,12 @@ def test_units_say_what_they_measure():
     assert feet.square(4046.8564224) == "1.00 acre"
     assert feet.day("2026-11-16") == "11/16/2026"
     assert Units(area="dunam").square(1000.0) == "1.00 dunam"
+    assert [Units().square(m2) for m2 in (0, 12.34, 99, 903)] == [
+        "0.00 ha",
+        "0.0012 ha",
+        "0.0099 ha",
+        "0.09 ha",
+    ]
     assert Units().metres(1500.0) == "1.50 km"
     assert {Units(date_like=like).day("2026-11-16") for like in DATES} == set(DATES)
 

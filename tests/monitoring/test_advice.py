@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted
 from fieldmon.decisions.map_verdict import map_verdict
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
@@ -188,10 +189,34 @@ def test_zones_that_the_threshold_does_not_ask_for_are_said_to_pay_only(
     assert advice.is_below == ("below" in said)
 
 
+def test_what_was_set_is_not_called_assumed():
+    usual = AdviceSettings().assumed()
+    assert usual.startswith("Assumed: to treat 1 ha costs 100, a zone costs 0.5, ")
+    assert "As you said" not in usual
+    some = AdviceSettings(costs=TreatmentCosts(per_ha=50.0, days=10.0)).assumed()
+    assert some == (
+        "Assumed: a zone costs 0.5, an infested plant loses 0.1 a day, treating cleans 90 %. "
+        "As you said: to treat 1 ha costs 50, it stays infested for 10 days."
+    )
+    everything = TreatmentCosts(50.0, 1.0, 0.2, 10.0, 0.8)
+    said = AdviceSettings(costs=everything).assumed(Units(area="dunam"))
+    assert said.startswith("As you said: to treat 1 dunam costs 5, a zone costs 1, ")
+
+
+def test_a_small_zone_is_not_nothing(season):
+    zones = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).zones
+    small = replace(zones, m2=12.3)
+    assert small.sentence().startswith("Treat 0.0012 ha in ")
+    advice = replace(season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)), zones=small)
+    said = " ".join(advice.said_of_zones())
+    assert "0.23 % of the 0.53 ha" in said
+    assert "It takes 0.37 l and" in said
+
+
 def test_thousands_are_parted_in_what_zones_take_and_cost(season):
     zones = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).zones
     many = replace(zones, cost=21379.5, saved=130457.0)
-    assert many.sentence().endswith("It costs 21,379.50 and saves 130,457.00.")
+    assert many.sentence().endswith("It costs 21,379.50 and saves 130,457.00, in your currency.")
     asked = AdviceSettings(0.01, costs=CHEAP, rate_l_ha=50_000.0)
     said = " ".join(season.advice(BEGINS, asked).said_of_zones())
     assert re.search(r"It takes \d{1,2},\d{3} l ", said)

@@ -201,11 +201,16 @@ def test_a_day_and_all_before_it_are_what_going_through_the_looks_says(seed, who
         assert early.seconds_left == stays.robot.day_s
 
 
-def test_each_of_a_team_is_learnt_from_by_what_they_find():
-    who = np.array(["Ann", "BOB", "", "ann"], object)
-    done = Inspections.of(np.arange(4), np.array([CLEAN] * 4), np.datetime64(BEGINS), who=who)
-    team = History(PLOT.grid, BEGINS, MORNING, done, detection_of={"ann": 0.9, "bob": 0.5})
-    known = MORNING.learn(
-        done.plant, np.zeros(4, bool), Learning(np.array([0.9, 0.5, team.detection, 0.9]))
-    )
-    assert team.evening(MORNING, 0).chance.tolist() == known.chance.tolist()
+def test_each_inspection_is_learnt_from_by_what_it_was_told_to_find():
+    told, result = np.array([0.9, 0.5, 0.84, 0.9]), np.array([CLEAN, CLEAN, SKIPPED, CLEAN])
+    done = Inspections.of(np.arange(4), result, np.datetime64(BEGINS))
+    history = History(PLOT.grid, BEGINS, MORNING, done, detection=told)
+    looked = done.plant[[0, 1, 3]]
+    known = MORNING.learn(looked, np.zeros(3, bool), Learning(told[[0, 1, 3]]))
+    assert history.evening(MORNING, 0).chance.tolist() == known.chance.tolist()
+    assert history.told(0) == pytest.approx((0.9 + 0.5 + 0.9) / 3)
+
+
+def test_inspections_that_are_told_to_find_alike_are_told_exactly_that():
+    assert History(PLOT.grid, BEGINS, MORNING, DONE, detection=0.7).told(5) == 0.7
+    assert History(PLOT.grid, BEGINS, MORNING, detection=0.7).told(0) == 0.7

@@ -204,7 +204,9 @@ def test_who_inspected_matters_where_they_find_as_much_as_they_are_said_to(path)
         for name in ("Ann", "Ben")
     ]
     assert _causes(by[0], LAST) == _causes(by[1], LAST)
-    team = [replace(one, detection_of={"ann": 0.9, "ben": 0.5}) for one in by]
+    team = [
+        replace(one, detection=np.full(n, told)) for one, told in zip(by, (0.9, 0.5), strict=True)
+    ]
     assert _causes(team[0], LAST) != _causes(team[1], LAST)
 
 
@@ -233,7 +235,7 @@ def test_a_kept_morning_goes_on_as_the_one_that_was_worked_out(treated):
 
 
 def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(path):
-    history, day = Season(path).history, 9
+    history, day = replace(Season(path).history, detection=0.84), 9
     own = _causes(history, day)
     n = len(history.grid)
     assert own == _causes(replace(history), day)
@@ -253,7 +255,7 @@ def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(
     causes = [
         treated(8), treated(8, plants=6), treated(8, efficacy=0.7), treated(7), looked(8),
         looked(8, plant=np.array([2])), looked(8, result=np.array([1])), looked(7),
-        replace(history, detection=0.7), replace(history, detection_of={"ann": 0.7}),
+        replace(history, detection=0.7),
         replace(history, belief=replace(history.belief, treated=False)),
         replace(history, belief=replace(history.belief, spread=Spread(0.3))),
         replace(history, first_morning=TracedPairs.of(history.grid, another)),

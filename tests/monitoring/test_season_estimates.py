@@ -1,5 +1,7 @@
 """What a season knows follows from what was recorded."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -88,6 +90,10 @@ def test_a_season_begins_with_what_an_earlier_one_learnt_and_keeps_it(tmp_path):
     last = a_season(tmp_path / "last.gpkg")
     last.record(some_results(last, n=40, found=range(12)), "x")
     earlier = last.as_earlier()
+    with pytest.raises(SettingError, match=f"begins on {BEGINS}, but that on .* until {BEGINS}"):
+        a_season(tmp_path / "s.gpkg", belief=BeliefSettings(earlier=earlier))
+    assert not (tmp_path / "s.gpkg").exists()
+    earlier = replace(earlier, until=on(-1))
     alone = a_season(tmp_path / "alone.gpkg")
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(earlier=earlier))
     again = Season(season.path)

@@ -141,7 +141,8 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     said = [one.sentence() for one in log]
     stops = log[1].what["stops"]
     assert re.fullmatch(
-        rf"2026-04-06: {stops} stops by adaptive, about \d(\.\d|\d+) of them infested", said[1]
+        rf"2026-04-06: {stops} stops by adaptive, about \d(\.\d|\d+) of them visibly infested",
+        said[1],
     )
     assert said[2] == "monday.csv: 3 found, 9 clean, 0 could not be inspected, batch 1"
     assert said[4].startswith("2026-04-06: soap on ")
@@ -293,7 +294,7 @@ def test_what_was_planned_is_told_as_the_plan_told_it(path):
     for k in range(1, 6):
         route = season.plan(on(k)).route
         said = season.log()[-1].sentence()
-        assert said.endswith(f"about {estimate(route.expected_finds)} of them infested")
+        assert said.endswith(f"about {estimate(route.expected_finds)} of them visibly infested")
     # half a plant is not rounded twice
     entry = replace(season.log()[-1], what={**season.log()[-1].what, "expected": 14.509})
     assert "about 15 of them" in entry.sentence()

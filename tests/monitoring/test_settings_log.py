@@ -50,6 +50,15 @@ def test_whoever_goes_back_by_hand_has_taken_the_change_back(db):
     assert settings_log.before_now(db) is None
 
 
+def test_a_choice_that_is_taken_back_counts_as_never_made(db):
+    pest = {**FIRST, "pest": '{"name": "mite"}'}
+    for parts in (FIRST, LONGER, {**LONGER, "pest": pest["pest"]}):
+        settings_log.write(db, parts)
+    settings_log.undo(db)
+    assert settings_log.before_now(db) == FIRST
+    assert as_json(settings_log.undo(db)) == FIRST
+
+
 def test_what_counted_at_a_moment_is_told(db):
     settings_log.write(db, FIRST)
     between = utc_now()

@@ -7,7 +7,8 @@ import numpy as np
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
-from fieldmon.planning.assumptions import assumed_by
+from fieldmon.planning.assumptions import assumed_by, assumed_by_team
+from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot, scout
@@ -55,3 +56,15 @@ def test_a_plot_carries_what_was_assumed_of_its_rows():
     plot = lay(field).plot
     missing = np.arange(len(plot.grid)) < 3
     assert plot.without(missing).assumed == plot.assumed
+
+
+def test_of_a_team_it_is_said_of_whom_something_is_assumed():
+    team = (TeamMember("Ann", scout()), TeamMember("R1", Robot(detection=0.9)))
+    made = assumed_by_team((), PriorSettings(), team)
+    assert [(one.setting, one.of) for one in made] == [
+        ("background_chance", ""), ("speed_m_s", "Ann"), ("speed_m_s", "R1"),
+        ("detects", "Ann"), ("row_change_s", "R1"), ("stop_s", "R1"),
+    ]  # fmt: skip
+    assert str(made[3]) == "guessed: chance to find what is there 69 % (Ann)"
+    alike = assumed_by((), PriorSettings(), Robot())
+    assert assumed_by_team((), PriorSettings(), team_of(2)) == alike

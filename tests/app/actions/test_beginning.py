@@ -1,6 +1,6 @@
 """A season begins, and is found again."""
 
-from datetime import date
+from datetime import date, timedelta
 
 import numpy as np
 import pytest
@@ -53,8 +53,10 @@ def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(s
 def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
     kept = season()
 
-    def begin_after_it():
+    def begin_after_it(days=1):
         season_app.selectbox(key="season").set_value("Sample estate").run()
+        (day,) = [one for one in season_app.date_input if one.key.startswith("day ")]
+        day.set_value(kept.settings.begins + timedelta(days=days)).run()
         go(season_app, "today")
         season_app.selectbox(key="season_earlier").set_value(kept.path.stem)
         boxed(season_app.text_input, "season_name").set_value("Next year")
@@ -64,6 +66,8 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
     assert "nothing was inspected" in season_app.error[0].value
     plants, results = np.arange(3, dtype=np.int32), np.array([1, 0, 0], np.int8)
     kept.record(Inspections.of(plants, results, np.datetime64(kept.settings.begins)), "x")
+    begin_after_it(days=0)
+    assert "must end before the new one begins" in season_app.error[0].value
     begin_after_it()
     assert not season_app.error
     assert Season(kept.path.parent / "Next year.gpkg").settings.belief.earlier == kept.as_earlier()

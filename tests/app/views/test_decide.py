@@ -41,10 +41,10 @@ def test_the_answer_stands_at_the_top_and_the_zones_on_the_map(recorded):
 def test_costs_are_of_the_area_in_which_the_plot_is_said(recorded):
     go(recorded, "decide")
     area = metric(recorded, texts.DECIDE_AREA)
-    assert "to treat 1 ha costs 1 and" in texts_of(recorded)
+    assert "to treat 1 ha costs 1, a zone" in texts_of(recorded)
     recorded.selectbox(key="area").set_value("dunam").run()
     assert not recorded.exception
-    assert "to treat 1 dunam costs 0.1 and" in texts_of(recorded)
+    assert "to treat 1 dunam costs 0.1, a zone" in texts_of(recorded)
     box = recorded.number_input(key="decide per_ha")
     assert (box.label, box.value) == ("1 dunam: product, water, work", 0.1)
     assert recorded.number_input(key="decide rate").value == 30.0

@@ -8,34 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring.settings import seconds
 
 from ..show import recorded_batches
 from ..state import chosen_day, notices
 from ..words import texts
-from ..words.language import in_words, number, of_error
+from ..words.language import in_words, number
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
 
 SOURCE = "scout mode"
-
-
-def give_out(choices: Choices) -> None:
-    """Keep the day's route with the season when the scouting begins.
-
-    Where it cannot be kept, as on a full disk, that is said, and the map is there all the same.
-    """
-    if len(chosen_day.given_out(choices)):
-        return
-    try:
-        choices.season.plan(choices.on, wishes=choices.wishes)
-    except FileProblem as problem:
-        st.error(of_error(problem))
-        # a press runs the page again, and that is trying again
-        st.button(texts.TRY_AGAIN, key="scout_again", type="primary")
 
 
 def _second(choices: Choices) -> float:
@@ -53,6 +37,8 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
         np.array([plant]), np.array([result]), np.datetime64(choices.day),
         second=np.array([second]), count=np.array([counted]),
     )  # fmt: skip
+    if not len(chosen_day.given_out(choices)):  # from the first tap on it is the day's route
+        choices.season.plan(choices.on, wishes=choices.wishes)
     choices.season.record(results, SOURCE, choices.who or "")
     return ""
 

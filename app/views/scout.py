@@ -30,7 +30,6 @@ def show(choices: Choices) -> None:
         st.markdown(texts.SCOUT_NEEDS)
         return
     st.html(_STYLE)
-    scouting.give_out(choices)
     with st.container():  # empty or not: buttons that move are there twice for a moment
         scouting.ask_start(choices)
     choosing.whose_day(choices)

@@ -19,9 +19,9 @@ def place(app):
 
 def test_each_tap_of_the_scout_is_kept_at_once_and_the_route_goes_on(season_app, season):
     go(season_app, "scout")
+    tap(season_app, "scout_clean")
     route = season().kept_route(date(2026, 11, 16))
     assert len(route) > 100
-    tap(season_app, "scout_clean")
     season_app.number_input(key="scout_count").set_value(7)
     tap(season_app, "scout_found")
     tap(season_app, "scout_skip")
@@ -92,19 +92,31 @@ def test_one_hour_more_is_one_however_late_it_is(season_app, season):
     tap(season_app, "scout_clean")
 
 
-def test_on_a_full_disk_the_map_is_there_and_a_button_tries_again(season_app, season, monkeypatch):
+def test_to_look_at_the_next_plant_keeps_no_plan_and_the_first_tap_does(season_app, season):
+    go(season_app, "scout")
+    assert not len(season().kept_route(date(2026, 11, 16)))
+    tap(season_app, "scout_clean")
+    kept = season()
+    assert (
+        kept.history.inspections.plant.tolist() == kept.kept_route(date(2026, 11, 16))[:1].tolist()
+    )
+
+
+def test_on_a_full_disk_a_tap_says_so_and_counts_for_nothing(season_app, season, monkeypatch):
     def full(self, *_, **more):
         if more.get("keep", True):
             raise FileProblem("There must be room on the disk.")
         return plan(self, *_, **more)
 
     plan = Season.plan
+    go(season_app, "scout")
     with monkeypatch.context() as patch:
         patch.setattr(Season, "plan", full)
-        go(season_app, "scout")
+        season_app.button(key="scout_found").click().run()
         assert "room on the disk" in season_app.error[0].value
         assert map_of(season_app)["layers"]
-        assert season_app.button(key="scout_found")
-    tap(season_app, "scout_again")
+    assert not len(season().history.inspections)
+    tap(season_app, "scout_found")
     assert not season_app.error
+    assert len(season().history.inspections) == 1
     assert len(season().kept_route(date(2026, 11, 16)))

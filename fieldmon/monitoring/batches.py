@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import replaced, schema
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.tables import utc_now
 
@@ -167,8 +167,11 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     return {number: BatchContents(*said) for number, *said in [*rows, *treated]}
 
 
-def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
-    """Mark a batch (None: the last one that counts) as undone; return which, and what was done."""
+def undo(db: sqlite3.Connection, number: int | None) -> tuple[set[int], str]:
+    """Mark a batch (None: the last one that counts) as undone; say what was done.
+
+    What another batch says, too, counts there. Return the batches that changed.
+    """
     waiting = [batch for batch in all_of(db) if not batch.undone]
     if number is not None:
         waiting = [batch for batch in waiting if batch.number == number]
@@ -185,8 +188,10 @@ def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
     table = _TABLE_OF[batch.kind]
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
+    again = replaced.count_again(db, table)
     touch(db, table)
-    return batch.number, _undone(batch, contents(db, [batch.number]).get(batch.number))
+    said = _undone(batch, contents(db, [batch.number]).get(batch.number))
+    return {batch.number, *again}, _still(said, replaced.n_elsewhere(db, batch.number, table))
 
 
 def _undone(batch: Batch, said: BatchContents | None) -> str:
@@ -208,6 +213,18 @@ def _undone(batch: Batch, said: BatchContents | None) -> str:
     return worded("Batch {batch} was undone: {what}.", batch=batch.number, what=what)
 
 
+def _still(said: str, n: int) -> str:
+    """Return what was taken back, and how many of it count all the same."""
+    if not n:
+        return said
+    still = worded(
+        "{n} of the same {n:results counts|results count} still: another recording holds "
+        "{n:it|them}, too.",
+        n=n,
+    )
+    return joined(" ", (said, still))
+
+
 def _undone_one(row: int, plant: int, on: str, result: str) -> str:
     return worded(
         "Undone: row {row}, plant {plant} on {date} ({result}).",
@@ -227,8 +244,8 @@ def first_day(db: sqlite3.Connection, number: int) -> int:
     return max(int(day or 0), 0)
 
 
-def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[int, str]:
-    """Mark one inspection as undone; return the batch it was of, and what was done."""
+def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[set[int], str]:
+    """Mark one inspection as undone; return the batches that changed, and what was done."""
     row = db.execute(
         "SELECT line, number, date, result, batch FROM inspections WHERE fid = ? AND undone = 0",
         (inspection,),
@@ -243,15 +260,16 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[int, str]:
             )
         )
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
+    again = replaced.count_again(db)
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
-    return row[4], _undone_one(*row[:4])
+    return {row[4], *again}, _still(_undone_one(*row[:4]), len(again))
 
 
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:
-    """Mark a batch of findings as undone if none of them counts any more."""
+    """Mark a batch of findings as undone if all of them were taken back."""
     db.execute(
         "UPDATE batches SET undone = 1 WHERE fid = ? AND NOT EXISTS "
-        "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone = 0)",
+        "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone <> 1)",
         (batch,),
     )

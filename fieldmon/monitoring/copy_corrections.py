@@ -62,7 +62,7 @@ def take(
 
 def _is_taken(db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideChange) -> bool:
     if one.what == "delete":
-        gone = "SELECT 1 FROM inspections WHERE fid = ? AND undone = 1"
+        gone = "SELECT 1 FROM inspections WHERE fid = ? AND undone <> 0"
         return db.execute(gone, (one.row,)).fetchone() is not None
     names = ", ".join(outside_changes.SEEN)
     row = theirs.execute(f"SELECT {names} FROM inspections WHERE fid = ?", (one.row,)).fetchone()  # noqa: S608 - ours

@@ -40,7 +40,7 @@ def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Pa
     copy = folder / season.name
     copy_season(season, copy)
     with closing(sqlite3.connect(copy)) as db:
-        db.execute("DELETE FROM inspections WHERE undone = 1")
+        db.execute("DELETE FROM inspections WHERE undone <> 0")
         db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
         db.commit()
     return copy

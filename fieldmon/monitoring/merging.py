@@ -2,9 +2,9 @@
 
 A row is known again by what it says and by the batch it came with, never by its number. What was
 taken back in one copy is taken back. What both recorded for themselves counts once; the later one
-stays as a row that does not count. Everything is put in the order in which it was recorded, so
-that it does not matter which copy takes in the other. Inspections that both copies begin with, and
-that come out where they are, are left there: of a long season these are nearly all.
+stands back for the first until that one is taken back. Everything is put in the order in which it
+was recorded, so that it does not matter which copy takes in the other. Inspections that both copies
+begin with, and that come out where they are, are left there: of a long season these are nearly all.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import phone_tables, schema, settings_log
 from fieldmon.monitoring.geopackage import touch
+from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 
 if TYPE_CHECKING:
     import sqlite3
@@ -280,7 +281,7 @@ def _merged_findings(
             else:
                 key = row["digest"], row["batch"]
             known = found.setdefault(key, row)
-            known["undone"] = max(known["undone"] or 0, row["undone"] or 0)
+            known["undone"] = _worse(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])
             for free in ("notes", "who"):  # what is no part of what makes it the same
                 if free in row:
@@ -290,21 +291,26 @@ def _merged_findings(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
     )
     for row in rows:
-        if row["digest"] is not None and not row["undone"]:
-            row["undone"] = int(row["digest"] in counting)
+        if row["digest"] is not None and row["undone"] != TAKEN_BACK:
+            row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS
             counting.add(row["digest"])
     return rows
 
 
+def _worse(one: int, other: int) -> int:
+    """Return what became of a row in either copy: taken back, if it was so in one."""
+    return TAKEN_BACK if TAKEN_BACK in (one, other) else max(one, other)
+
+
 def _count(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
-    """Note in the batches how many rows they have; one of which nothing counts is undone."""
+    """Note in the batches how many rows they have; one that was all taken back is undone."""
     by_number = {row["fid"]: row for row in batches.values()}
     for name in ("inspections", "treatments"):
-        counted = f"SELECT batch, count(*), min(undone) FROM {name} GROUP BY batch"  # noqa: S608 - ours
+        counted = f"SELECT batch, count(*), min(undone = 1) FROM {name} GROUP BY batch"  # noqa: S608 - ours
         for number, n, undone in db.execute(counted):
             if number is not None:
                 by_number[number]["rows"] += n
-                by_number[number]["undone"] = int(undone > 0)
+                by_number[number]["undone"] = int(undone)
 
 
 def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:

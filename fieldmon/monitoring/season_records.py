@@ -184,12 +184,12 @@ class SeasonRecords(OpenSeason):
         """
         with self._lock, self.store.writing() as db:
             if inspection is None:
-                number, said = batches.undo(db, batch)
+                changed, said = batches.undo(db, batch)
             else:
-                number, said = batches.undo_one(db, inspection)
-            states = season_log.states(db, [number])
-            season_log.append(db, "undone", who, states=states, batch=number, said=said)
-            self._refresh(db, batches.first_day(db, number))
+                changed, said = batches.undo_one(db, inspection)
+            states = season_log.states(db, changed)
+            season_log.append(db, "undone", who, states=states, said=said)
+            self._refresh(db, min(batches.first_day(db, one) for one in changed))
         return said
 
     def correct(self, who: str) -> int:

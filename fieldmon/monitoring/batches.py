@@ -150,6 +150,15 @@ def numbers(db: sqlite3.Connection) -> dict[tuple[str, str, str, str], int]:
     return {(one.at, one.kind, one.source, one.who): one.number for one in all_of(db)}
 
 
+def corrected_by(db: sqlite3.Connection) -> dict[tuple[int, str, str], str]:
+    """Return who corrected inspections that count, by plant, day (ISO) and result."""
+    rows = db.execute(
+        "SELECT plant, date, result, coalesce(batches.who, '') FROM inspections "
+        "JOIN batches ON batches.fid = batch WHERE kind = 'corrections' AND inspections.undone = 0"
+    )
+    return {(plant, day, result): who for plant, day, result, who in rows}
+
+
 def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchContents]:
     """Return what batches of inspections and treatments say, by their numbers."""
     asked = ", ".join("?" * len(numbers))
@@ -188,6 +197,7 @@ def undo(db: sqlite3.Connection, number: int | None) -> tuple[set[int], str]:
     table = _TABLE_OF[batch.kind]
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
+    replaced.undo_corrections(db, batch.number)
     again = replaced.count_again(db, table)
     touch(db, table)
     said = _undone(batch, contents(db, [batch.number]).get(batch.number))
@@ -247,7 +257,8 @@ def first_day(db: sqlite3.Connection, number: int) -> int:
 def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[set[int], str]:
     """Mark one inspection as undone; return the batches that changed, and what was done."""
     row = db.execute(
-        "SELECT line, number, date, result, batch FROM inspections WHERE fid = ? AND undone = 0",
+        "SELECT line, number, date, result, batch, digest FROM inspections "
+        "WHERE fid = ? AND undone = 0",
         (inspection,),
     ).fetchone()
     if row is None:
@@ -260,16 +271,19 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[set[int], str]:
             )
         )
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
+    replaced.undo_corrections(db, *row[4:])
     again = replaced.count_again(db)
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
-    return {row[4], *again}, _still(_undone_one(*row[:4]), len(again))
+    return {row[4], *again}, _still(_undone_one(*row[:4]), replaced.n_counting(db, row[5]))
 
 
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:
     """Mark a batch of findings as undone if all of them were taken back."""
     db.execute(
         "UPDATE batches SET undone = 1 WHERE fid = ? AND NOT EXISTS "
-        "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone <> 1)",
+        "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone <> 1) "
+        "AND NOT EXISTS (SELECT 1 FROM outside_changes WHERE batch = batches.fid "
+        "AND before NOTNULL AND undone = 0)",
         (batch,),
     )

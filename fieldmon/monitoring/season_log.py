@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 #: in `fieldmon`: how many entries the log has, and the last one's digest
 _HEAD = "log"
 _NOTHING = "0" * 64
+#: corrections that an entry's sentence names
+_MOST_NAMED = 5
 #: what a log does not hold but is held to: by name, and how it is read
 _PLOT = ("arrays", "plots", "places", "observations")
 
@@ -67,6 +69,9 @@ class LogEntry:
         what = _Blank(self.what)
         if isinstance(number := what.get("expected"), int | float):
             what["expected"] = estimate(number)
+        if self.kind == "corrected" and (said := what.get("said")):
+            more = ["..."] if len(said) > _MOST_NAMED else []
+            what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
         return _SAID[self.kind].format_map(what) + anew
 

@@ -60,6 +60,7 @@ class _PlotRecord:
     log: tuple[LogEntry, ...]
     wrong: str
     done: Inspections
+    corrected: dict[str, set[str]]
 
     @classmethod
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
@@ -73,7 +74,10 @@ class _PlotRecord:
             log, wrong = (), str(changed)
         seen = season.inspections
         seen = seen.take(seen.date <= np.datetime64(on, "D")).inspected
-        return cls(season, on, units, done, beware, told, log, wrong, seen)
+        corrected: dict[str, set[str]] = {}
+        for (_, day, _), who in season.corrected_by().items():
+            corrected.setdefault(day, set()).add(who)
+        return cls(season, on, units, done, beware, told, log, wrong, seen, corrected)
 
     @property
     def name(self) -> str:
@@ -360,7 +364,10 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
         of = done.take(slice(a, b))
         who = sorted({*map(str, {*of.who.tolist()})} - {""})
         found = int(np.count_nonzero(of.result == FOUND))
-        rows.append((one.units.day(day), figure(len(of)), figure(found), ", ".join(who)))
+        by = joined(", ", who)
+        if authors := ", ".join(sorted(one.corrected.get(str(day), set()) - {""})):
+            by = joined(", ", [*who, worded(words.CERT_CORRECTED, who=authors)])
+        rows.append((one.units.day(day), figure(len(of)), figure(found), by))
     title = worded(words.CERT_OF_PLOT, plot=one.name)
     if not rows:
         rows = [(words.CERT_NONE, "", "", "")]

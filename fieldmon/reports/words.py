@@ -193,6 +193,7 @@ CERT_FIELDS = {
     "reason": "Reason",
     "advised": "Advised",
 }
+CERT_CORRECTED = "corrected by {who}"
 CERT_OF_PLOT, CERT_NONE = "Inspections on {plot}", "none"
 CERT_DAY_COLUMNS = ("day", "inspected", "found", "by")
 

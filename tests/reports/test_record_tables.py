@@ -7,10 +7,12 @@ from datetime import date, time
 import numpy as np
 import pytest
 
+from fieldmon.compute.units import Units
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Application
+from fieldmon.monitoring import Application, Season
+from fieldmon.reports.certification import _inspections, _PlotRecord
 from fieldmon.reports.record_tables import (
     csv_bytes,
     inspections_table,
@@ -18,6 +20,7 @@ from fieldmon.reports.record_tables import (
     treatments_table,
 )
 from tests.monitoring.seasons import BEGINS, a_season, some_results
+from tests.monitoring.test_outside_changes import outside
 
 FULL = Application("Acarol", Dose(0.4, "l/ha"), 800.0, "Ann", '=1+1 "mites"\nseen', ended=time(9))
 
@@ -66,6 +69,19 @@ def test_inspections_and_log_are_there_line_by_line(season):
     assert [line["what"] for line in log] == ["begins", "seen", "labels", "treated"]
     assert log[-1]["digest"] == season.log()[-1].digest
     assert read(log_table(season), log_table(season)) == [*log, *log]
+
+
+def test_a_correction_names_who_inspected_and_who_corrected(tmp_path):
+    made = a_season(tmp_path / "season.gpkg")
+    made.record(some_results(made, n=3), "monday.csv", "Ben")
+    outside(made.path, "UPDATE inspections SET result = 'found', count = 99 WHERE fid = 2")
+    season = Season(made.path)
+    season.correct("Eve")
+    said = [(line["result"], line["who"], line["corrected_by"])
+            for line in read(inspections_table(season))]  # fmt: skip
+    assert said == [("clean", "Ben", ""), ("found", "Ben", "Eve"), ("clean", "Ben", "")]
+    table = next(_inspections(_PlotRecord.of(season, None, Units())))
+    assert table.rows[0][3] == "Ben, corrected by Eve"
 
 
 def test_of_nothing_no_table_is_made():

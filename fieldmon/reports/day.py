@@ -88,12 +88,15 @@ class DayFacts:
     results: dict[int, int] = field(default_factory=dict)
 
     @classmethod
-    def of_season(cls, season: Season, on: date) -> DayFacts:
-        """Return what a season knows of a day; nothing is kept by it."""
+    def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
+        """Return what a season knows of a day; nothing is kept by it.
+
+        `today` as in `day_was_worked`.
+        """
         with season.one_moment():
             plan = season.plan(on, keep=False)
             route = plan.route
-            worked = day_was_worked(season, on, route)
+            worked = day_was_worked(season, on, route, today)
             settings = season.settings_on(on) if worked else season.settings
             day = settings.day(on)
             gone = timedelta(seconds=settings.robot.day_s - plan.scene.seconds_left)

@@ -151,3 +151,12 @@ def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
     season.record(looked, "finds")
     lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
     assert "About 20 more plants, which were found and only flagged, are still infested." in lead
+
+
+def test_the_maps_show_as_many_plants_found_as_the_figures_say(worked, last):
+    assert (worked.history.known(5) != worked.history.states(5)).any()  # records of before
+    report, found = season_report(worked, last, Units()), worked.status(last).found
+    maps = [block.alt for sheet in report.sheets for block in sheet.blocks
+            if isinstance(block, Illustration) and "plants found." in block.alt]  # fmt: skip
+    assert len(maps) == 2
+    assert all(one.endswith(f" {found} plants found.") for one in maps)

@@ -54,12 +54,14 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchContents:
-    """What the inspections or the treatment of a batch say.
+    """What the inspections or the treatment of a batch say: those that count, or else all.
 
     Parameters
     ----------
     n, found
         How many inspections there are, and how many found something; plants treated, and 0.
+    counting
+        How many of them count: all or none.
     first, last
         The days of the first and the last of them, as ``2026-11-18``.
     row, plant, result
@@ -69,6 +71,7 @@ class BatchContents:
 
     n: int
     found: int
+    counting: int
     first: str
     last: str
     row: int
@@ -163,14 +166,18 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     """Return what batches of inspections and treatments say, by their numbers."""
     asked = ", ".join("?" * len(numbers))
     treated = db.execute(
-        "SELECT batch, sum(plants), 0, min(date), max(date), 0, 0, '' FROM treatments "  # noqa: S608 - ours
-        f"WHERE batch IN ({asked}) AND date NOTNULL GROUP BY batch",
+        "SELECT batch, sum(plants), 0, sum(plants * (undone = 0)), min(date), max(date), 0, 0, '' "  # noqa: S608 - ours
+        f"FROM treatments WHERE batch IN ({asked}) AND date NOTNULL GROUP BY batch",
         tuple(numbers),
     ).fetchall()
+    # what was taken back, or another batch says too, is left out where others of the batch count
     rows = db.execute(
-        "SELECT batch, count(*), sum(result = 'found'), min(date), max(date), min(line), "  # noqa: S608 - ours
-        f"min(number), min(result) FROM inspections WHERE batch IN ({asked}) "
-        "AND date NOTNULL AND result NOTNULL GROUP BY batch",
+        f"WITH own AS (SELECT * FROM inspections WHERE batch IN ({asked}) "  # noqa: S608 - ours
+        "AND date NOTNULL AND result NOTNULL), "
+        "counting AS (SELECT DISTINCT batch FROM own WHERE undone = 0) "
+        "SELECT batch, count(*), sum(result = 'found'), sum(undone = 0), min(date), max(date), "
+        "min(line), min(number), min(result) FROM own "
+        "WHERE undone = 0 OR batch NOT IN counting GROUP BY batch",
         tuple(numbers),
     )
     return {number: BatchContents(*said) for number, *said in [*rows, *treated]}

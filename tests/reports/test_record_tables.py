@@ -44,7 +44,7 @@ def test_a_treatment_has_what_a_certifier_asks_and_the_labels_wait(season):
     assert (one["dose"], one["unit"], one["operator"]) == ("0.4", "l/ha", "Ann")
     assert (one["waiting_days"], one["harvest_from"]) == ("3", "2026-04-10")
     assert one["entry_from"] == "2026-04-06 21:00"
-    assert float(one["area_ha"]) == pytest.approx(0.5862, abs=1e-3)
+    assert float(one["area_ha"]) == pytest.approx(438 * 12.0 / 1e4, abs=1e-3)
     assert int(one["plants"]) == len(season.plot.grid)
     assert one["machinery"] == ""
 

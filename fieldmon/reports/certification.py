@@ -11,7 +11,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -88,12 +88,21 @@ class _PlotRecord:
         return len(self.done), int(np.count_nonzero(self.done.result == FOUND))
 
     def advised(self, one: KeptTreatment) -> str:
-        """Return what was advised last, up to a treatment's day; empty: nothing."""
-        said = [
-            entry.what
-            for entry in self.log
-            if entry.kind == "advised" and entry.what["date"] <= str(one.on)
-        ]
+        """Return what was advised last, up to a treatment's day; empty: nothing.
+
+        What was advised before an earlier treatment was for that one, and what was advised after
+        it on its day is for the next.
+        """
+        day, treated = str(one.on), False
+        before = max((str(other.on) for other in self.treatments if other.on < one.on), default="")
+        said: list[dict[str, Any]] = []
+        for entry in self.log:
+            on = entry.what.get("date", "")
+            if entry.kind == "treated":
+                treated |= on == day
+                said = [what for what in said if on != before or what["date"] > before]
+            if entry.kind == "advised" and before <= on <= day and not (treated and on == day):
+                said.append(entry.what)
         return f"{said[-1]['said']} ({said[-1]['date']})" if said else ""
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.spread import Spread
     from fieldmon.monitoring import Season
+    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.assumed import Assumed
     from fieldmon.reports.content import Block
 
@@ -53,6 +54,8 @@ class WorkSettings:
         The pest in its weather, by which nights go; None: as `belief` has them.
     learnt_detection
         What inspections detect, as the season learnt; None: it learnt nothing.
+    team
+        Those who work together; empty: `robot` alone.
     """
 
     robot: Robot
@@ -64,6 +67,7 @@ class WorkSettings:
     guessed: tuple[str, ...] = ()
     pest_in_weather: PestInWeather | None = None
     learnt_detection: float | None = None
+    team: tuple[TeamMember, ...] = ()
 
     @classmethod
     def of_season(
@@ -88,6 +92,7 @@ class WorkSettings:
             (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(settings),
             settings.belief, tuple(one.sentence for one in guessed), settings.pest_in_weather(),
             next((one.value for one in learnt if one.name == "detection"), None),
+            team=settings.team,
         )  # fmt: skip
 
     def origin(self, setting: str) -> str:
@@ -139,8 +144,21 @@ def _told(settings: WorkSettings, setting: str) -> str:
 
 def _of_work(settings: WorkSettings) -> Iterator[Row]:
     robot = settings.robot
-    usual = scout() if robot.on_foot else Robot()
     yield words.SAMPLER, Worded(kind_of(settings.sampler).title), _from(settings.sampler == USUAL)
+    yield from _of_team(settings.team) if settings.team else _of_robot(settings, robot)
+
+
+def _of_team(team: tuple[TeamMember, ...]) -> Iterator[Row]:
+    for one in team:
+        name, robot = words.isolated(one.name), one.robot
+        value = worded(words.MEMBER_VALUE, hours=robot.hours, look=robot.look_s)
+        yield worded(words.MEMBER, name=name), value, words.FROM_CHOSEN
+        detects = figure(robot.detects, ".0%")
+        yield worded(words.MEMBER_DETECTS, name=name), detects, words.FROM_CHOSEN
+
+
+def _of_robot(settings: WorkSettings, robot: Robot) -> Iterator[Row]:
+    usual = scout() if robot.on_foot else Robot()
     yield words.HOURS, figure(robot.hours, "g"), _from(robot.hours == usual.hours)
     yield words.LOOK, figure(robot.look_s, "g"), _from(robot.look_s == usual.look_s)
     yield words.SPEED, worded("{n:.1f} km/h", n=robot.speed_m_s * 3.6), settings.origin("speed_m_s")

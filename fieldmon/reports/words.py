@@ -95,7 +95,7 @@ FINDS_BY_ROW = "Plants found infested, by row"
 FINDS_COLUMNS = ("row", "finds", "plants")
 FINDS_NONE = "No plant was found infested yet."
 BATCHES = "What was recorded"
-BATCH_COLUMNS = ("recorded", "what", "from", "by", "rows")
+BATCH_COLUMNS = ("recorded", "what", "from", "by", "how many")
 BATCH_KINDS = {
     "findings": "inspections",
     "treatment": "treatment",

@@ -50,6 +50,7 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
         None if season is None else season.planned_and_done(choices.on),
+        who=choices.who or "" if season is not None and season.settings.team else "",
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     return lambda: day_report(facts, units).said_in(of_paper)

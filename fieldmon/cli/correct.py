@@ -16,8 +16,8 @@ def correct(
 ) -> None:
     """Accept inspections that QGIS or another program changed, as somebody's corrections.
 
-    Until then the season refuses to go on, and names the rows. fieldmon undo takes the corrected
-    rows out again.
+    Until then the season refuses to go on, and names the rows. fieldmon undo brings back what
+    stood there before.
 
     Example: fieldmon correct season.gpkg --who Ann
     """

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.report_languages import Language, spoken
-from fieldmon.cli.times import day
+from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -104,6 +104,7 @@ def _made(season: Season, on: str | None, until: str | None, units: Units) -> Re
 
     asked = day(on)
     if asked is not None:
-        return day_report(DayFacts.of_season(season, asked), units)
+        today = day_on(season.plot.field, None)
+        return day_report(DayFacts.of_season(season, asked, today), units)
     told = day(until, "--until")
     return season_report(season, season.last_date() if told is None else told, units)

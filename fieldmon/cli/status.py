@@ -119,10 +119,13 @@ def _show_batches(kept: Season) -> None:
         who = f" by {batch.by(said)}" if batch.by(said) else ""
         if said is not None and batch.kind == "treatment":
             what = f"  {counted(said.n, 'plant')}, {said.first}"
-        elif said is not None and said.n == 1:
+        elif said is not None and said.n == batch.rows == 1:
             what = f"  row {said.row}, plant {said.plant}: {said.result}"
-        elif said is not None:
+        elif said is not None and (batch.undone or said.counting == batch.rows):
             what = f"  {said.found} found"
+        elif said is not None:
+            of = f", {said.found} found" if said.counting else ""
+            what = f"  {said.counting} {'counts' if said.counting == 1 else 'count'}{of}"
         if said is not None and batch.kind == "findings":
             what += _other_days(said, at.date())
         kind = batch.kind.removesuffix("s") + "s" * (batch.rows != 1)

@@ -308,6 +308,15 @@ def _touching(grid: PlantGrid, treated: NDArray[np.bool_]) -> Ints:
     return zone
 
 
+def ground_m2(grid: PlantGrid, plants: NDArray[np.bool_]) -> float:
+    """Return the ground of some plants ``(n,)``: as far as rows and plants stand apart, each.
+
+    That is what is sprayed, however the plants were named. Two faces of a plant are one.
+    """
+    each_m2 = grid.row_spacing_m * grid.plant_spacing_m
+    return len(np.unique(grid.vine[plants])) * each_m2
+
+
 def outlines(grid: PlantGrid, zones: Zones) -> list[shapely.MultiPolygon]:
     """Return the area of each zone, lon/lat, that the plants of its rows fill.
 

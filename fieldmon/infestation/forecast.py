@@ -134,7 +134,8 @@ def forecast(
         grid, evening.chance, evening.pair_chance, doubt=evening.doubt, named=named
     )
     if now is not None and expected[0] > 0.0:
-        inside[0] *= now.expected / expected[0]
+        # rounding must not let it be more than all
+        inside[0] = min(inside[0] * (now.expected / expected[0]), now.expected)
         expected[0] = now.expected
     doubts = _deviation(tonight), _OF_A_PEST if named else _LEVEL_DOUBT
     low, high = _interval(inside, expected - inside, doubts, found)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import replaced, schema
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.tables import utc_now
 
@@ -59,12 +59,14 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchContents:
-    """What the inspections or the treatment of a batch say.
+    """What the inspections or the treatment of a batch say: those that count, or else all.
 
     Parameters
     ----------
     n, found
         How many inspections there are, and how many found something; plants treated, and 0.
+    counting
+        How many of them count: all or none.
     first, last
         The days of the first and the last of them, as ``2026-11-18``.
     row, plant, result, count
@@ -76,6 +78,7 @@ class BatchContents:
 
     n: int
     found: int
+    counting: int
     first: str
     last: str
     row: int
@@ -159,18 +162,31 @@ def numbers(db: sqlite3.Connection) -> dict[tuple[str, str, str, str], int]:
     return {(one.at, one.kind, one.source, one.who): one.number for one in all_of(db)}
 
 
+def corrected_by(db: sqlite3.Connection) -> dict[tuple[int, str, str], str]:
+    """Return who corrected inspections that count, by plant, day (ISO) and result."""
+    rows = db.execute(
+        "SELECT plant, date, result, coalesce(batches.who, '') FROM inspections "
+        "JOIN batches ON batches.fid = batch WHERE kind = 'corrections' AND inspections.undone = 0"
+    )
+    return {(plant, day, result): who for plant, day, result, who in rows}
+
+
 def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchContents]:
     """Return what batches of inspections and treatments say, by their numbers."""
     asked = ", ".join("?" * len(numbers))
     treated = db.execute(
-        "SELECT batch, sum(plants), 0, min(date), max(date), 0, 0, '' FROM treatments "  # noqa: S608 - ours
-        f"WHERE batch IN ({asked}) AND date NOTNULL GROUP BY batch",
+        "SELECT batch, sum(plants), 0, sum(plants * (undone = 0)), min(date), max(date), 0, 0, '' "  # noqa: S608 - ours
+        f"FROM treatments WHERE batch IN ({asked}) AND date NOTNULL GROUP BY batch",
         tuple(numbers),
     ).fetchall()
+    # what was taken back, or another batch says too, is left out where others of the batch count
     rows = db.execute(
-        "SELECT batch, count(*), sum(result = 'found'), min(date), max(date), min(line), "  # noqa: S608 - ours
-        f"min(number), min(result), min(count) FROM inspections WHERE batch IN ({asked}) "
-        "AND date NOTNULL AND result NOTNULL GROUP BY batch",
+        f"WITH own AS (SELECT * FROM inspections WHERE batch IN ({asked}) "  # noqa: S608 - ours
+        "AND date NOTNULL AND result NOTNULL), "
+        "counting AS (SELECT DISTINCT batch FROM own WHERE undone = 0) "
+        "SELECT batch, count(*), sum(result = 'found'), sum(undone = 0), min(date), max(date), "
+        "min(line), min(number), min(result), min(count) FROM own "
+        "WHERE undone = 0 OR batch NOT IN counting GROUP BY batch",
         tuple(numbers),
     )
     named = db.execute(
@@ -187,8 +203,11 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     }
 
 
-def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
-    """Mark a batch (None: the last one that counts) as undone; return which, and what was done."""
+def undo(db: sqlite3.Connection, number: int | None) -> tuple[set[int], str]:
+    """Mark a batch (None: the last one that counts) as undone; say what was done.
+
+    What another batch says, too, counts there. Return the batches that changed.
+    """
     waiting = [batch for batch in all_of(db) if not batch.undone]
     if number is not None:
         waiting = [batch for batch in waiting if batch.number == number]
@@ -205,8 +224,11 @@ def undo(db: sqlite3.Connection, number: int | None) -> tuple[int, str]:
     table = _TABLE_OF[batch.kind]
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
+    replaced.undo_corrections(db, batch.number)
+    again = replaced.count_again(db, table)
     touch(db, table)
-    return batch.number, _undone(batch, contents(db, [batch.number]).get(batch.number))
+    said = _undone(batch, contents(db, [batch.number]).get(batch.number))
+    return {batch.number, *again}, _still(said, replaced.n_elsewhere(db, batch.number, table))
 
 
 def _undone(batch: Batch, said: BatchContents | None) -> str:
@@ -228,6 +250,18 @@ def _undone(batch: Batch, said: BatchContents | None) -> str:
     return worded("Batch {batch} was undone: {what}.", batch=batch.number, what=what)
 
 
+def _still(said: str, n: int) -> str:
+    """Return what was taken back, and how many of it count all the same."""
+    if not n:
+        return said
+    still = worded(
+        "{n} of the same {n:results counts|results count} still: another recording holds "
+        "{n:it|them}, too.",
+        n=n,
+    )
+    return joined(" ", (said, still))
+
+
 def _undone_one(row: int, plant: int, on: str, result: str) -> str:
     return worded(
         "Undone: row {row}, plant {plant} on {date} ({result}).",
@@ -247,10 +281,11 @@ def first_day(db: sqlite3.Connection, number: int) -> int:
     return max(int(day or 0), 0)
 
 
-def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[int, str]:
-    """Mark one inspection as undone; return the batch it was of, and what was done."""
+def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[set[int], str]:
+    """Mark one inspection as undone; return the batches that changed, and what was done."""
     row = db.execute(
-        "SELECT line, number, date, result, batch FROM inspections WHERE fid = ? AND undone = 0",
+        "SELECT line, number, date, result, batch, digest FROM inspections "
+        "WHERE fid = ? AND undone = 0",
         (inspection,),
     ).fetchone()
     if row is None:
@@ -263,15 +298,19 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[int, str]:
             )
         )
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
+    replaced.undo_corrections(db, *row[4:])
+    again = replaced.count_again(db)
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
-    return row[4], _undone_one(*row[:4])
+    return {row[4], *again}, _still(_undone_one(*row[:4]), replaced.n_counting(db, row[5]))
 
 
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:
-    """Mark a batch of findings as undone if none of them counts any more."""
+    """Mark a batch of findings as undone if all of them were taken back."""
     db.execute(
         "UPDATE batches SET undone = 1 WHERE fid = ? AND NOT EXISTS "
-        "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone = 0)",
+        "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone <> 1) "
+        "AND NOT EXISTS (SELECT 1 FROM outside_changes WHERE batch = batches.fid "
+        "AND before NOTNULL AND undone = 0)",
         (batch,),
     )

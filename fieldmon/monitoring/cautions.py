@@ -199,9 +199,7 @@ def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
             row[group] = np.where(used, before + 1, np.where(any_group, 0, before))
         for one in today:
             for group in of[one.batch]:
-                plants = row[group][one.place.plants]
-                if (uses := int(plants.max(initial=0))) > MOST_IN_A_ROW:
-                    n = int(np.count_nonzero(plants > MOST_IN_A_ROW))
+                for uses, n in _beyond(row[group][one.place.plants], MOST_IN_A_ROW):
                     sentence = worded(
                         "Use {n} of mode-of-action group {group} in a row on {plants}: {product} "
                         "on {day}. Take another group, or mites become resistant.",
@@ -226,14 +224,20 @@ def _uses(said: list[_Said], units: Units) -> Iterator[Caution]:
         day = last.setdefault(name, np.full(len(plants), -1))
         count += plants & (day != one.day)  # two zones of one day are one use
         day[plants] = one.day
-        most, n = label.max_uses, int(count[plants].max(initial=0))
-        if most is not None and n > most:
+        if (most := label.max_uses) is None:
+            continue
+        for use, n in _beyond(count[plants], most):
             sentence = worded(
                 "Use {n} in this season on {plants}: {product} on {day}. Its label allows {most}.",
-                n=n, plants=counted(int(np.count_nonzero(count[plants] > most)), "plant"),
-                most=figure(most), **_named(one, units),
+                n=use, plants=counted(n, "plant"), most=figure(most), **_named(one, units),
             )  # fmt: skip
             yield Caution("uses", sentence, one.batch)
+
+
+def _beyond(uses: NDArray[np.int64], most: int) -> list[tuple[int, int]]:
+    """Return numbers of uses beyond the most, and on how many plants there were so many each."""
+    numbers, plants = np.unique(uses[uses > most], return_counts=True)
+    return list(zip(numbers.tolist(), plants.tolist(), strict=True))
 
 
 def _of_dose(

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import batches, outside_changes
-from fieldmon.monitoring.geopackage import touch
-from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
+from fieldmon.monitoring import batches, outside_changes, replaced
+from fieldmon.monitoring.geopackage import insert, touch
+from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS, OUTSIDE_CHANGES
+from fieldmon.monitoring.tables import utc_now
 
 if TYPE_CHECKING:
     import sqlite3
@@ -33,11 +36,11 @@ def take(
     plot: tuple[PlantGrid, RowLabel],
     settings: MonitoringSettings,
     said: tuple[str, str],
-) -> int:
-    """Take a copy's corrections as a batch of their own; return how many were new.
+) -> tuple[str, ...]:
+    """Take a copy's corrections as a batch of their own; say those that were new, one by one.
 
-    What was deleted there is marked as undone here. `said` is the copy's name, and whose
-    corrections these are. Taken twice they change nothing.
+    What stood here before stands back, until they are taken back. `said` is the copy's name, and
+    whose corrections these are. Taken twice they change nothing.
 
     Raises
     ------
@@ -46,23 +49,25 @@ def take(
     """
     changes = [one for one in waiting(theirs) if not _is_taken(db, theirs, one)]
     if not changes:
-        return 0
+        return ()
     name, who = said
     batch = batches.begin(db, "corrections", f"changed in {name}", who)
+    taken = []
     for one in changes:
         if one.what == "delete":
-            _undo(db, one)
+            _stand_back(db, one, batch)
+            taken.append(one)
         else:
-            _rewrite(db, theirs, one, (plot, settings, batch))
+            taken.append(_rewrite(db, theirs, one, (plot, settings, batch)))
     batches.count_findings(db)
     batches.end(db, batch, len(changes))
     touch(db, INSPECTIONS.name)
-    return len(changes)
+    return tuple(outside_changes.in_words(db, one) for one in taken)
 
 
 def _is_taken(db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideChange) -> bool:
     if one.what == "delete":
-        gone = "SELECT 1 FROM inspections WHERE fid = ? AND undone = 1"
+        gone = "SELECT 1 FROM inspections WHERE fid = ? AND undone <> 0"
         return db.execute(gone, (one.row,)).fetchone() is not None
     names = ", ".join(outside_changes.SEEN)
     row = theirs.execute(f"SELECT {names} FROM inspections WHERE fid = ?", (one.row,)).fetchone()  # noqa: S608 - ours
@@ -71,13 +76,28 @@ def _is_taken(db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideCh
     return held.fetchone() is not None
 
 
-def _undo(db: sqlite3.Connection, one: OutsideChange) -> None:
+def _stand_back(db: sqlite3.Connection, one: OutsideChange, batch: int) -> None:
     row = db.execute(f"SELECT {INSPECTED}, batch FROM inspections AS old WHERE fid = ?", (one.row,))  # noqa: S608 - ours
     held = row.fetchone()
     if held is None or held[0] != one.was:
         raise _not_here(one)
-    db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (one.row,))
-    batches.close_if_empty(db, held[1])
+    _note(db, replace(one, before=_as_it_is(db, one.row)), batch, None)
+    stands_back = "UPDATE inspections SET undone = ? WHERE fid = ? AND undone = 0"
+    db.execute(stands_back, (replaced.STANDS_BACK, one.row))
+
+
+def _as_it_is(db: sqlite3.Connection, row: int) -> str:
+    """Return an inspection as it is kept where it is corrected, see `OutsideChange`."""
+    names = [name for name in INSPECTIONS.names if name != "geom"]
+    said = db.execute(f"SELECT {', '.join(names)} FROM inspections WHERE fid = ?", (row,))  # noqa: S608 - ours
+    return json.dumps(dict(zip(names, said.fetchone(), strict=True)), ensure_ascii=False)
+
+
+def _note(db: sqlite3.Connection, one: OutsideChange, batch: int, now: str | None) -> None:
+    """Note a correction as those of other programs are, with the digest it came to."""
+    change = {"at": utc_now(), "layer": one.layer, "row": one.row, "what": one.what, "was": one.was}
+    values = {**change, "batch": batch, "before": one.before, "now": now, "undone": 0}
+    insert(db, OUTSIDE_CHANGES, [tuple(values[name] for name in OUTSIDE_CHANGES.names)])
 
 
 def _rewrite(
@@ -85,7 +105,8 @@ def _rewrite(
     theirs: sqlite3.Connection,
     one: OutsideChange,
     how: tuple[tuple[PlantGrid, RowLabel], MonitoringSettings, int],
-) -> None:
+) -> OutsideChange:
+    """Correct what a row says, and return what was done to which one of ours."""
     names = ", ".join(outside_changes.SEEN)
     digest, *values = theirs.execute(
         f"SELECT digest, {names} FROM inspections WHERE fid = ?",  # noqa: S608 - ours
@@ -96,9 +117,14 @@ def _rewrite(
     ).fetchone()
     if held is None:
         raise _not_here(one)
+    before = _as_it_is(db, held[0])
     sets = ", ".join(f"{name} = ?" for name in outside_changes.SEEN)
     db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*values, held[0]))  # noqa: S608 - ours
-    outside_changes.take_row(db, one.at_row(held[0]), *how)
+    here = replace(one, row=held[0], before=before)
+    now = outside_changes.take_row(db, here, *how)
+    outside_changes.keep_before(db, here, how[0][0])
+    _note(db, here, how[2], now)
+    return here
 
 
 def _not_here(one: OutsideChange) -> FileProblem:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
 
+#: of this season: what records from before say is in the layer of the observations
 STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
 _DIGITS = 9  # of a chance; a digest must not hang on the last bit of another processor
 
@@ -146,7 +147,7 @@ def _write_states(
     name = {day: str(history.date_of(day)) for day in np.unique(history.days).tolist()}
     rows = zip(
         range(1, len(history.grid) + 1),
-        [STATES[state] for state in history.known(day).tolist()],
+        [STATES[state] for state in history.states(day).tolist()],
         [name.get(last) for last in history.last_inspected(day).tolist()],
         [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],
         strict=True,

@@ -15,6 +15,7 @@ from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
+from fieldmon.monitoring.replaced import as_it_was
 from fieldmon.monitoring.transactions import copy_season
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Pa
     copy = folder / season.name
     copy_season(season, copy)
     with closing(sqlite3.connect(copy)) as db:
-        db.execute("DELETE FROM inspections WHERE undone = 1")
+        db.execute("DELETE FROM inspections WHERE undone <> 0")
         db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
         db.commit()
     return copy
@@ -185,7 +186,8 @@ def in_words(result: NDArray[np.int8], on: NDArray[np.datetime64]) -> dict[str, 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:
     """Return rows whose digest is not that of what they say.
 
-    Of two that a phone told alike, the second has a digest with its finding's id in it.
+    Of two that a phone told alike, the second has a digest with its finding's id in it, and keeps
+    it where it was corrected.
     """
     # most are as SQLite writes them; of others, as of counts of sixteen digits, Python is asked
     # the same as `digest` gives: it is called half a million times
@@ -202,6 +204,17 @@ def not_what_they_say(db: sqlite3.Connection) -> list[int]:
     for fid, mark in list(wrong.items()):
         own = _digest(*db.execute(said, (fid,)).fetchone())
         ids = [one for (one,) in db.execute(told, (fid,))]
-        if mark in {digest(own, one, length=_LENGTH) for one in ids}:
+        if mark in {digest(own, one, length=_LENGTH) for one in ids} or _was_corrected(db, fid):
             del wrong[fid]
     return sorted(wrong)
+
+
+def _was_corrected(db: sqlite3.Connection, inspection: int) -> bool:
+    """Tell whether a row is what the file itself kept of one before it was corrected."""
+    names = ("digest", "plant", "date", "time", "result", "count")
+    says = db.execute(f"SELECT {', '.join(names)} FROM inspections WHERE fid = ?", (inspection,))  # noqa: S608 - ours
+    row = says.fetchone()
+    corrected = db.execute(
+        "SELECT before FROM outside_changes WHERE before LIKE ?", (f'%"digest": "{row[0]}"%',)
+    )
+    return any(tuple(as_it_was(one).get(name) for name in names) == row for (one,) in corrected)

@@ -2,9 +2,9 @@
 
 A row is known again by what it says and by the batch it came with, never by its number. What was
 taken back in one copy is taken back. What both recorded for themselves counts once; the later one
-stays as a row that does not count. Everything is put in the order in which it was recorded, so
-that it does not matter which copy takes in the other. Inspections that both copies begin with, and
-that come out where they are, are left there: of a long season these are nearly all.
+stands back for the first until that one is taken back. Everything is put in the order in which it
+was recorded, so that it does not matter which copy takes in the other. Inspections that both copies
+begin with, and that come out where they are, are left there: of a long season these are nearly all.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import phone_tables, schema, settings_log
+from fieldmon.monitoring import phone_tables, replaced, schema, settings_log
 from fieldmon.monitoring.geopackage import touch
+from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 
 if TYPE_CHECKING:
     import sqlite3
@@ -99,9 +100,12 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         {row["fid"]: batches[_key(row, _BATCH)]["fid"] for row in copied["batches"]}
         for copied in copies
     ]
-    new, taken_back = _merge_inspections((db, other), numbers)
+    changes = _merged_changes(copies, batches)
+    _write(db, schema.OUTSIDE_CHANGES, changes)
+    gone = replaced.corrected([row for row in changes if row["batch"] is not None])
+    new, taken_back = _merge_inspections((db, other), numbers, gone)
     treated = [copied["treatments"] for copied in copies]
-    _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set()))
+    _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set(), set()))
     _count(db, batches)
     _write(db, schema.BATCHES, list(batches.values()))
     _write_routes(db, copies)
@@ -109,11 +113,6 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _write(db, schema.SETTINGS, _once(copies, "settings", ("changed", "name", "value")))
     _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, ("at",)))
     _write(db, schema.LABELS, _once(copies, "labels", schema.LABELS.names, ("product",)))
-    for copied in copies:
-        for row in copied["outside_changes"]:
-            row["batch"] = _number(batches, copied, row["batch"])
-    changes = _once(copies, "outside_changes", schema.OUTSIDE_CHANGES.names, ("at",))
-    _write(db, schema.OUTSIDE_CHANGES, changes)
     phone_tables.bring_together(db, phones)
     return MergedCopy(new, taken_back, said)
 
@@ -173,14 +172,32 @@ _BATCH = ("at", "source", "who", "kind")
 
 
 def _merged_batches(copies: list[dict[str, list[Row]]]) -> dict[Hashable, Row]:
-    """Return the batches of both by what they are known by, numbered as they were recorded."""
-    found = {
-        _key(row, _BATCH): {**row, "rows": 0, "undone": 0}
-        for copied in copies
-        for row in copied["batches"]
-    }
+    """Return the batches of both by what they are known by, numbered as they were recorded.
+
+    Of corrections it is known how many they were and whether they were taken back; others are
+    counted (`_count`).
+    """
+    found: dict[Hashable, Row] = {}
+    for copied in copies:
+        for row in copied["batches"]:
+            known = found.setdefault(_key(row, _BATCH), {**row, "rows": 0, "undone": 0})
+            if row["kind"] == "corrections":
+                known["rows"] = max(known["rows"], row["rows"])
+                known["undone"] = max(known["undone"], row["undone"])
     ordered = sorted(found.items(), key=lambda item: repr(item[0]))
     return {key: {**row, "fid": number} for number, (key, row) in enumerate(ordered, 1)}
+
+
+def _merged_changes(copies: list[dict[str, list[Row]]], batches: dict[Hashable, Row]) -> list[Row]:
+    """Return what other programs changed in either copy; what one of them took back is so."""
+    for copied in copies:
+        for row in copied["outside_changes"]:
+            row["batch"] = _number(batches, copied, row["batch"])
+    known_by = tuple(name for name in schema.OUTSIDE_CHANGES.names if name != "undone")
+    merged = _once(copies, "outside_changes", known_by, ("at",))
+    undone = {_key(row, known_by) for one in copies for row in one["outside_changes"]
+              if row["undone"]}  # fmt: skip
+    return [{**row, "undone": int(_key(row, known_by) in undone)} for row in merged]
 
 
 def _number(
@@ -192,18 +209,18 @@ def _number(
 
 
 def _merge_inspections(
-    both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]
+    both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers], gone: set[str]
 ) -> tuple[int, int]:
     """Let the first of both have the inspections of both; return how many are new, and gone.
 
-    `numbers` says how the batches of each are numbered now.
+    `numbers` says how the batches of each are numbered now, `gone` what was corrected.
     """
     db, stay = both[0], _n_staying(both, numbers)
     copies = [_rows(one, schema.INSPECTIONS, stay) for one in both]
     counts = "SELECT digest FROM inspections WHERE digest = ? AND undone = 0 AND fid <= ?"
     digests = {row["digest"] for rows in copies for row in rows}
     counting = {held for one in digests for (held,) in db.execute(counts, (one, stay))}
-    rows = _merged_findings(copies, numbers, counting)
+    rows = _merged_findings(copies, numbers, counting, gone)
     _write(db, schema.INSPECTIONS, rows, stay)
     before, now = (
         {row["digest"] for row in some if row["undone"] == 0} - {None} for some in (copies[0], rows)
@@ -265,11 +282,11 @@ def _spans(db: sqlite3.Connection) -> dict[int, tuple[int, int, int]]:
 
 
 def _merged_findings(
-    copies: list[list[Row]], numbers: list[Numbers], counting: set[str]
+    copies: list[list[Row]], numbers: list[Numbers], counting: set[str], gone: set[str]
 ) -> list[Row]:
     """Return inspections or treatments of both copies, once each, in the order of their batches.
 
-    Those `counting` already count once, before them.
+    Those `counting` already count once, before them; of those `gone` what stands back stays so.
     """
     found: dict[Hashable, Row] = {}
     for own_rows, batch_of in zip(copies, numbers, strict=True):
@@ -280,7 +297,7 @@ def _merged_findings(
             else:
                 key = row["digest"], row["batch"]
             known = found.setdefault(key, row)
-            known["undone"] = max(known["undone"] or 0, row["undone"] or 0)
+            known["undone"] = _worse(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])
             for free in ("notes", "who"):  # what is no part of what makes it the same
                 if free in row:
@@ -290,21 +307,28 @@ def _merged_findings(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
     )
     for row in rows:
-        if row["digest"] is not None and not row["undone"]:
-            row["undone"] = int(row["digest"] in counting)
+        if row["undone"] == STANDS_BACK and row["digest"] in gone:
+            continue
+        if row["digest"] is not None and row["undone"] != TAKEN_BACK:
+            row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS
             counting.add(row["digest"])
     return rows
 
 
+def _worse(one: int, other: int) -> int:
+    """Return what became of a row in either copy: taken back, if it was so in one."""
+    return TAKEN_BACK if TAKEN_BACK in (one, other) else max(one, other)
+
+
 def _count(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
-    """Note in the batches how many rows they have; one of which nothing counts is undone."""
+    """Note in the batches how many rows they have; one that was all taken back is undone."""
     by_number = {row["fid"]: row for row in batches.values()}
     for name in ("inspections", "treatments"):
-        counted = f"SELECT batch, count(*), min(undone) FROM {name} GROUP BY batch"  # noqa: S608 - ours
+        counted = f"SELECT batch, count(*), min(undone = 1) FROM {name} GROUP BY batch"  # noqa: S608 - ours
         for number, n, undone in db.execute(counted):
-            if number is not None:
+            if number is not None and by_number[number]["kind"] != "corrections":
                 by_number[number]["rows"] += n
-                by_number[number]["undone"] = int(undone > 0)
+                by_number[number]["undone"] = int(undone)
 
 
 def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:

@@ -50,6 +50,14 @@ def _long_seasons_come(db: sqlite3.Connection) -> None:
     schema.count_inspections(db)
 
 
+def _corrections_keep_what_was(db: sqlite3.Connection) -> None:
+    """Version 10 did not keep what stood there before a correction."""
+    there = {row[1] for row in db.execute("PRAGMA table_info(outside_changes)")}
+    for column in schema.CORRECTED:
+        if column.split()[0] not in there:  # as in a file in which that layer came just now
+            db.execute(f"ALTER TABLE outside_changes ADD COLUMN {column}")
+
+
 def _records_come(db: sqlite3.Connection) -> None:
     """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
     _applications_say_all(db)
@@ -78,4 +86,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     7: schema.add_photos_asked,
     8: _applications_say_all,
     9: _long_seasons_come,
+    10: _corrections_keep_what_was,
 }

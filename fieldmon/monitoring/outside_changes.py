@@ -14,8 +14,9 @@ import numpy as np
 from fieldmon.compute.wording import Worded, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
-from fieldmon.monitoring import batches, inspection_lots, inspection_table
-from fieldmon.monitoring.schema import INSPECTIONS
+from fieldmon.monitoring import batches, inspection_lots, inspection_table, replaced
+from fieldmon.monitoring.geopackage import point_blobs
+from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
@@ -46,12 +47,15 @@ class OutsideChange:
         ``"update"``, ``"delete"`` or ``"insert"``; of a row changed twice, what it came to.
     was
         What stood there first, for people.
+    before
+        The whole row as it stood there first, as JSON; empty: there was none, or nobody kept it.
     """
 
     layer: str
     row: int
     what: str
     was: str
+    before: str = ""
 
     def at_row(self, row: int) -> OutsideChange:
         """Return the same change of another row, as of another copy."""
@@ -77,18 +81,18 @@ def waiting(db: sqlite3.Connection) -> tuple[OutsideChange, ...]:
     """Return what other programs changed and nobody has taken yet, one for each row."""
     seen: dict[tuple[str, int], OutsideChange | None] = {}
     rows = db.execute(
-        "SELECT layer, row, what, was FROM outside_changes WHERE batch IS NULL ORDER BY fid"
+        "SELECT layer, row, what, was, before FROM outside_changes WHERE batch IS NULL ORDER BY fid"
     )
-    for layer, row, what, was in rows:
+    for layer, row, what, was, before in rows:
         key = layer, row
         first = seen.get(key)
         if what == "delete" and first is not None and first.what == "insert":
             seen[key] = None  # added and taken away again
         elif first is None:
-            seen[key] = OutsideChange(layer, row, what, was or "")
+            seen[key] = OutsideChange(layer, row, what, was or "", before or "")
         elif first.what == "delete" or what == "delete":  # replaced, or changed and then deleted
             ends = "update" if what == "insert" else what
-            seen[key] = OutsideChange(layer, row, ends, first.was)
+            seen[key] = replace(first, what=ends)
     return tuple(change for change in seen.values() if change is not None)
 
 
@@ -130,11 +134,12 @@ def correct(
     plot: tuple[PlantGrid, RowLabel],
     settings: MonitoringSettings,
     who: str,
-) -> int:
-    """Take what other programs changed of inspections as a batch of its own; return how many.
+) -> tuple[str, ...]:
+    """Take what other programs changed of inspections as a batch of its own; say what, one by one.
 
-    Place, row and number in the row follow the plant's number. A row added with a digest is a copy
-    of another, and counts once it has its own.
+    What stood there before stands back, until the correction is taken back. Place, row and number
+    in the row follow the plant's number. A row added with a digest is a copy of another, and counts
+    once it has its own.
 
     Raises
     ------
@@ -143,15 +148,70 @@ def correct(
     """
     found = waiting(db)
     if not found:
-        return 0
+        return ()
     batch = batches.begin(db, "corrections", "changed by another program", who)
+    first = (
+        "SELECT min(fid) FROM outside_changes WHERE batch IS NULL AND layer = ? AND row = ? "
+        "AND before NOTNULL"
+    )
+    kept, said = [], []
     for change in found:
+        now = None
         if change.what != "delete":
-            take_row(db, change, plot, settings, batch)
+            now = take_row(db, change, plot, settings, batch)
+        if is_kept(change):
+            keep_before(db, change, plot[0])
+            kept += [(now, *db.execute(first, (change.layer, change.row)).fetchone())]
+        said.append(in_words(db, change))
+    # of a row changed several times, what it was first is what comes back
+    spare = f"fid NOT IN ({', '.join('?' * len(kept))})"
+    db.execute(
+        f"UPDATE outside_changes SET before = NULL WHERE batch IS NULL AND {spare}",  # noqa: S608 - ours
+        [fid for _, fid in kept],
+    )
+    db.executemany("UPDATE outside_changes SET now = ? WHERE fid = ?", kept)
     batches.count_findings(db)
     db.execute("UPDATE batches SET rows = ? WHERE fid = ?", (len(found), batch))
     db.execute("UPDATE outside_changes SET batch = ? WHERE batch IS NULL", (batch,))
-    return len(found)
+    return tuple(said)
+
+
+def is_kept(change: OutsideChange) -> bool:
+    """Tell whether it is known what stood there before, and that it was recorded."""
+    return bool(change.before) and replaced.as_it_was(change.before)["digest"] is not None
+
+
+def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> None:
+    """Keep what stood there before a change, until the correction is taken back."""
+    before = replaced.as_it_was(change.before)
+    (before["geom"],) = point_blobs(grid.lonlat(np.array([before["plant"]])))
+    if before["undone"] == replaced.COUNTS:
+        before["undone"] = replaced.STANDS_BACK
+    # what was deleted leaves its number free
+    before["fid"] = change.row if change.what == "delete" else None
+    names = ("fid", *INSPECTIONS.names)
+    db.execute(
+        f"INSERT INTO inspections ({', '.join(names)}) VALUES ({', '.join('?' * len(names))})",  # noqa: S608 - ours
+        tuple(before[name] for name in names),
+    )
+
+
+def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
+    """Return what a correction made of a row, for the log."""
+    if change.what == "delete":
+        return f"{change.was} was deleted"
+    names = f"{INSPECTED}, {', '.join(SEEN)}"
+    row = db.execute(f"SELECT {names} FROM inspections AS old WHERE fid = ?", (change.row,))  # noqa: S608 - ours
+    says, *values = row.fetchone()
+    if change.what == "insert":
+        return f"{says} was added"
+    before = replaced.as_it_was(change.before) if change.before else {}
+    parts = [
+        f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
+        for name, value in zip(SEEN, values, strict=True)
+        if name in before and before[name] != value
+    ]
+    return f"{change.was} is now {', '.join(parts) or says}"
 
 
 def take_row(
@@ -160,8 +220,8 @@ def take_row(
     plot: tuple[PlantGrid, RowLabel],
     settings: MonitoringSettings,
     batch: int,
-) -> None:
-    """Make one row of inspections what it says now, in every column."""
+) -> str:
+    """Make one row of inspections what it says now, in every column; return its digest."""
     row = db.execute(
         f"SELECT {', '.join(SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
         (change.row,),
@@ -198,6 +258,7 @@ def take_row(
         f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
         (*values.values(), change.row),
     )
+    return str(values["digest"])
 
 
 def _inspection(row: tuple[object, ...]) -> Inspections:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.monitoring import replaced
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, insert, touch
 
 if TYPE_CHECKING:
@@ -203,15 +204,21 @@ def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> Non
 def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
     """Mark as undone what a finding of the same person takes back, whichever came first.
 
+    A finding that came to two copies of a season is taken back in both.
     Return the batch and the day of each.
     """
     rows = db.execute(
         "SELECT i.fid, i.batch, i.day FROM tellings u JOIN tellings f ON f.id = u.undoes AND "
         "f.scout = u.scout JOIN inspections i ON i.fid = f.inspection "
-        "WHERE u.undoes NOTNULL AND i.undone = 0"
+        "WHERE u.undoes NOTNULL AND i.undone <> 1"
     ).fetchall()
     db.executemany("UPDATE inspections SET undone = 1 WHERE fid = ?", [row[:1] for row in rows])
-    return [(batch, day) for _, batch, day in rows]
+    others = [
+        (batch, day)
+        for inspection, _, day in rows
+        for batch in replaced.take_back_others(db, inspection)
+    ]
+    return others + [(batch, day) for _, batch, day in rows]
 
 
 def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> Rows:

@@ -71,6 +71,13 @@ class Contradictions:
             )
         ]
 
+    def still(self, held: Inspections) -> Contradictions:
+        """Return those of which both results are held."""
+        results = _held(held, self)
+        stays = np.array([len(results.get(key, ())) > 1 for key in _keys(self)], bool)
+        columns = ("which", "plant", "date", "recorded", "brought")
+        return Contradictions(*(getattr(self, name)[stays] for name in columns))
+
     def refuse(self, label: RowLabel) -> None:
         """Raise `ContradictionError` if there are any, with the first few by name."""
         if not len(self):
@@ -152,7 +159,7 @@ def _told(inspections: Inspections) -> Iterator[tuple[Key, int, str | None]]:
     yield from zip(_keys(inspections), inspections.result.tolist(), times, strict=True)
 
 
-def _held(held: Inspections, brought: Inspections) -> dict[Key, set[int]]:
+def _held(held: Inspections, brought: Inspections | Contradictions) -> dict[Key, set[int]]:
     """Return the results held of the plants brought, by plant and day."""
     held = held.take(np.isin(held.plant, brought.plant))
     results: dict[Key, set[int]] = {}
@@ -161,7 +168,7 @@ def _held(held: Inspections, brought: Inspections) -> dict[Key, set[int]]:
     return results
 
 
-def _keys(inspections: Inspections) -> Iterator[Key]:
+def _keys(inspections: Inspections | Contradictions) -> Iterator[Key]:
     # a day that is no time is one number too
     days = inspections.date.astype(np.int64).tolist()
     return zip(inspections.plant.tolist(), days, strict=True)

@@ -11,7 +11,7 @@ from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, 
 if TYPE_CHECKING:
     import sqlite3
 
-VERSION = 10
+VERSION = 11
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -265,6 +265,9 @@ INSPECTION_LOTS = GeoPackageTable(
     None,
     "Inspections once more, many in a piece, so that those of a long season are read at once.",
 )
+#: of a changed inspection, since version 11: the row as it was, the digest of what a correction
+#: made of it (none: it was deleted), and whether that was taken back
+CORRECTED = ("before TEXT", "now TEXT", "undone INTEGER NOT NULL DEFAULT 0")
 OUTSIDE_CHANGES = GeoPackageTable(
     "outside_changes",
     (
@@ -274,6 +277,7 @@ OUTSIDE_CHANGES = GeoPackageTable(
         "what TEXT NOT NULL",
         "was TEXT",
         "batch INTEGER",
+        *CORRECTED,
     ),
     None,
     "What other programs changed of what was recorded; batch: the correction that took it.",
@@ -382,19 +386,36 @@ def watch(db: sqlite3.Connection) -> None:
         columns = [row[1] for row in db.execute(f"PRAGMA table_info({name})")]
         changed = " OR ".join(f"old.{c} IS NOT new.{c}" for c in columns if c not in free)
         added = "new.digest IS NOT NULL" if name == "inspections" else "1"
-        for event, row, said, when in (
-            ("update", "old", was, f"({changed})"),
-            ("delete", "old", was, "1"),
-            ("insert", "new", "NULL", added),
+        before = _as_json(INSPECTIONS) if name == "inspections" else "NULL"
+        for event, row, said, held, when in (
+            ("update", "old", was, before, f"({changed})"),
+            ("delete", "old", was, before, "1"),
+            ("insert", "new", "NULL", "NULL", added),
         ):
             db.execute(f"DROP TRIGGER IF EXISTS {name}_{event}_outside")
             db.execute(
                 f"CREATE TRIGGER {name}_{event}_outside AFTER {event} ON {name} "  # noqa: S608 - names of ours
                 f"WHEN {theirs} AND {when} BEGIN "
-                "INSERT INTO outside_changes (at, layer, row, what, was) "
+                "INSERT INTO outside_changes (at, layer, row, what, was, before) "
                 f"VALUES (strftime('%Y-%m-%dT%H:%M:%fZ', 'now'), '{name}', {row}.fid, "
-                f"'{event}', {said}); END"
+                f"'{event}', {said}, {held}); END"
             )
+
+
+def _as_json(table: GeoPackageTable) -> str:
+    """Return in SQL all that a trigger's row `old` says but its place, as JSON.
+
+    Other programs may refuse SQLite's own functions of JSON in a trigger. Control characters in a
+    text stay as they are: it is read with ``strict=False``.
+    """
+    said = [
+        f"""'"{c}": ' || CASE typeof(old.{c}) WHEN 'integer' THEN old.{c} """
+        f"""WHEN 'real' THEN printf('%!.17g', old.{c}) WHEN 'text' THEN """
+        rf"""'"' || replace(replace(old.{c}, '\', '\\'), '"', '\"') || '"' ELSE 'null' END"""
+        for c in table.names
+        if c != "geom"
+    ]
+    return "'{' || " + " || ', ' || ".join(said) + " || '}'"
 
 
 def count_inspections(db: sqlite3.Connection) -> None:

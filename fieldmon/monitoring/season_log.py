@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 #: in `fieldmon`: how many entries the log has, and the last one's digest
 _HEAD = "log"
 _NOTHING = "0" * 64
+#: corrections that an entry's sentence names
+_MOST_NAMED = 5
 #: what a log does not hold but is held to: by name, and how it is read
 _PLOT = ("arrays", "plots", "places", "observations")
 
@@ -69,6 +71,9 @@ class LogEntry:
             what["expected"] = estimate(number)
         if self.kind == "changed":  # earlier versions wrote the names of the parts alone
             what.setdefault("said", self.what.get("names", "?"))
+        if self.kind == "corrected" and (said := what.get("said")):
+            more = ["..."] if len(said) > _MOST_NAMED else []
+            what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
         return _SAID[self.kind].format_map(what) + anew
 

@@ -185,26 +185,26 @@ class SeasonRecords(OpenSeason):
         """
         with self._lock, self.store.writing() as db:
             if inspection is None:
-                number, said = batches.undo(db, batch)
+                changed, said = batches.undo(db, batch)
             else:
-                number, said = batches.undo_one(db, inspection)
-            states = season_log.states(db, [number])
-            season_log.append(db, "undone", who, states=states, batch=number, said=said)
-            self._refresh(db, batches.first_day(db, number))
+                changed, said = batches.undo_one(db, inspection)
+            states = season_log.states(db, changed)
+            season_log.append(db, "undone", who, states=states, said=said)
+            self._refresh(db, min(batches.first_day(db, one) for one in changed))
         return said
 
     def correct(self, who: str) -> int:
         """Take what another program changed of inspections as corrections; return how many.
 
-        They are a batch of their own, of `who` corrects; undoing it takes the corrected rows out.
+        They are a batch of their own, of `who` corrects; undoing it brings back what was before.
         Raise `FileProblem` if more than inspections was changed, or what makes no sense.
         """
         with self._lock, self.store.writing() as db:
             outside_changes.refuse_more(db)
             settings, plot = settings_of(db), (self.plot.grid, self.label)
-            n = outside_changes.correct(db, plot, settings, who)
-            self._corrected(db, n, who)
-        return n
+            taken = outside_changes.correct(db, plot, settings, who)
+            self._corrected(db, taken, who)
+        return len(taken)
 
     def take_drafts(self) -> tuple[str, ...]:
         """Let findings count that another program added to the file itself.
@@ -278,13 +278,14 @@ class SeasonRecords(OpenSeason):
             )
         with self._lock, self.store.writing() as db, Store(copy).reading() as theirs:
             plot = self.plot.grid, self.label
-            n = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who.strip()))
-            self._corrected(db, n, who.strip())
-        return n
+            taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who.strip()))
+            self._corrected(db, taken, who.strip())
+        return len(taken)
 
-    def _corrected(self, db: sqlite3.Connection, rows: int, who: str) -> None:
-        if rows:
-            season_log.append(db, "corrected", who, states=season_log.states(db), rows=rows)
+    def _corrected(self, db: sqlite3.Connection, taken: tuple[str, ...], who: str) -> None:
+        if taken:
+            states = season_log.states(db)
+            season_log.append(db, "corrected", who, states=states, rows=len(taken), said=taken)
             self._refresh(db)
 
     def merge(self, other: OpenSeason) -> Merged:
@@ -303,6 +304,8 @@ class SeasonRecords(OpenSeason):
                 contradict = contradictions(other.inspections, held)
                 taken = merging.merge(db, theirs)
             self._refresh(db)
+            # what either copy took back or corrected contradicts nothing
+            contradict = contradict.still(self._inspections(db))
             moved = not numbers.items() <= batches.numbers(db).items()
             states = season_log.states(db)
             if states != was:
@@ -322,6 +325,11 @@ class SeasonRecords(OpenSeason):
         """Return what batches of inspections and treatments say, by their numbers."""
         with self.store.reading() as db:
             return batches.contents(db, numbers)
+
+    def corrected_by(self) -> dict[tuple[int, str, str], str]:
+        """Return who corrected inspections that count, by plant, day (ISO) and result."""
+        with self.store.reading() as db:
+            return batches.corrected_by(db)
 
     def messages(self) -> tuple[KeptMessage, ...]:
         """Return what the imports had to say."""

@@ -6,13 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import shapely
 
 from fieldmon.compute.arguments import array_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.labels import label_for
-from fieldmon.decisions.zones import outline_of
+from fieldmon.decisions.zones import ground_m2, outline_of
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import (
     batches,
@@ -114,11 +113,9 @@ class SeasonTreatments(OpenSeason):
         return Recorded(batch if new else None, new, 1 - new)
 
     def _treated(self, area: MultiPolygon | None) -> TreatedPlace:
-        boundary = self.plot.field.boundary
-        ground = boundary if area is None else area
-        frame = self.plot.grid.frame
-        on_plot = shapely.intersection(frame.geometry_m(ground), frame.geometry_m(boundary))
-        return TreatedPlace(ground, self._inside(ground), float(on_plot.area) / 1e4)
+        ground = self.plot.field.boundary if area is None else area
+        plants = self._inside(ground)
+        return TreatedPlace(ground, plants, ground_m2(self.plot.grid, plants) / 1e4)
 
     def _treated_one_by_one(self, given: object) -> TreatedPlace:
         grid = self.plot.grid
@@ -135,9 +132,9 @@ class SeasonTreatments(OpenSeason):
                     size=plants.size,
                 )
             )
-        outline = outline_of(grid, np.asarray(plants, bool))
-        area_ha = float(grid.frame.geometry_m(outline).area) / 1e4
-        return TreatedPlace(outline, np.asarray(plants, bool), area_ha, by_plant=True)
+        plants = np.asarray(plants, bool)
+        area_ha = ground_m2(grid, plants) / 1e4
+        return TreatedPlace(outline_of(grid, plants), plants, area_ha, by_plant=True)
 
     def _efficacy(self, product: str) -> float:
         """Return how well a product works, as the season learnt it."""

@@ -24,11 +24,13 @@ if TYPE_CHECKING:
     from fieldmon.planning.route import Route
 
 
-def day_was_worked(season: Season, on: date, ahead: Route) -> bool:
-    """Tell whether a day is over, given what is left of its route: it is shown as it was worked."""
-    return (not len(ahead) or on < season.last_date()) and bool(
-        len(season.history.on(season.settings.day(on)))
-    )
+def day_was_worked(season: Season, on: date, ahead: Route, today: date | None = None) -> bool:
+    """Tell whether a day is over, given what is left of its route: it is shown as it was worked.
+
+    `today` by the calendar; None: somebody may still go on with a day that has passed.
+    """
+    passed = on < season.last_date() or (today is not None and on < today)
+    return (not len(ahead) or passed) and bool(len(season.history.on(season.settings.day(on))))
 
 
 def worked_route(season: Season, on: date, who: str | None = None) -> Route:

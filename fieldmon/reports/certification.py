@@ -11,7 +11,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -60,6 +60,7 @@ class _PlotRecord:
     log: tuple[LogEntry, ...]
     wrong: str
     done: Inspections
+    corrected: dict[str, set[str]]
 
     @classmethod
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
@@ -73,7 +74,10 @@ class _PlotRecord:
             log, wrong = (), str(changed)
         seen = season.inspections
         seen = seen.take(seen.date <= np.datetime64(on, "D")).inspected
-        return cls(season, on, units, done, beware, told, log, wrong, seen)
+        corrected: dict[str, set[str]] = {}
+        for (_, day, _), who in season.corrected_by().items():
+            corrected.setdefault(day, set()).add(who)
+        return cls(season, on, units, done, beware, told, log, wrong, seen, corrected)
 
     @property
     def name(self) -> str:
@@ -84,12 +88,21 @@ class _PlotRecord:
         return len(self.done), int(np.count_nonzero(self.done.result == FOUND))
 
     def advised(self, one: KeptTreatment) -> str:
-        """Return what was advised last, up to a treatment's day; empty: nothing."""
-        said = [
-            entry.what
-            for entry in self.log
-            if entry.kind == "advised" and entry.what["date"] <= str(one.on)
-        ]
+        """Return what was advised last, up to a treatment's day; empty: nothing.
+
+        What was advised before an earlier treatment was for that one, and what was advised after
+        it on its day is for the next.
+        """
+        day, treated = str(one.on), False
+        before = max((str(other.on) for other in self.treatments if other.on < one.on), default="")
+        said: list[dict[str, Any]] = []
+        for entry in self.log:
+            on = entry.what.get("date", "")
+            if entry.kind == "treated":
+                treated |= on == day
+                said = [what for what in said if on != before or what["date"] > before]
+            if entry.kind == "advised" and before <= on <= day and not (treated and on == day):
+                said.append(entry.what)
         return f"{said[-1]['said']} ({said[-1]['date']})" if said else ""
 
 
@@ -360,7 +373,10 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
         of = done.take(slice(a, b))
         who = sorted({*map(str, {*of.who.tolist()})} - {""})
         found = int(np.count_nonzero(of.result == FOUND))
-        rows.append((one.units.day(day), figure(len(of)), figure(found), ", ".join(who)))
+        by = joined(", ", who)
+        if authors := ", ".join(sorted(one.corrected.get(str(day), set()) - {""})):
+            by = joined(", ", [*who, worded(words.CERT_CORRECTED, who=authors)])
+        rows.append((one.units.day(day), figure(len(of)), figure(found), by))
     title = worded(words.CERT_OF_PLOT, plot=one.name)
     if not rows:
         rows = [(words.CERT_NONE, "", "", "")]

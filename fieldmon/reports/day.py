@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
@@ -76,6 +76,11 @@ class DayFacts:
         Result of each plant inspected that day, by its number.
     held
         The plan kept of the day, held to what was inspected; None: none was kept.
+    who
+        Whose route it is, of a team; empty: that of all who work.
+    team
+        Names of those of a team whose results are shown together. Nobody went from one to the
+        next: no times are said, and no way is drawn.
     """
 
     name: str
@@ -90,20 +95,27 @@ class DayFacts:
     worked: bool = False
     results: dict[int, int] = field(default_factory=dict)
     held: PlannedAndDone | None = None
+    who: str = ""
+    team: tuple[str, ...] = ()
 
     @classmethod
-    def of_season(cls, season: Season, on: date) -> DayFacts:
-        """Return what a season knows of a day; nothing is kept by it."""
+    def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
+        """Return what a season knows of a day; nothing is kept by it.
+
+        `today` as in `day_was_worked`.
+        """
         with season.one_moment():
             plan = season.plan(on, keep=False)
             route = plan.route
-            worked = day_was_worked(season, on, route)
+            worked = day_was_worked(season, on, route, today)
             settings = season.settings_on(on) if worked else season.planned_by(on)
             day = settings.day(on)
             begins = datetime.combine(on, settings.starts)
             if not worked and route.notes is not None and route.notes.start is not None:
                 begins = route.notes.start
+            names = tuple(one.name for one in settings.team)
             state, done = season.history.known(day), season.history.on(day).inspected
+            came = tuple(sorted({*map(str, done.who)} - {""}))
             return cls(
                 season.plot.field.name, begins,
                 worked_route(season, on) if worked else route, season.evening(on), state,
@@ -111,6 +123,8 @@ class DayFacts:
                 WorkSettings.of_season(season, on, worked=worked),
                 len(done), np.unique(done.plant[done.result == FOUND]),
                 worked, results_on(season, on), season.planned_and_done(on),
+                who="" if worked else "".join(names[:1]),
+                team=(came or names) if worked and names else (),
             )  # fmt: skip
 
 
@@ -148,7 +162,11 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         said.append(worded(words.WORKED, day=day, **numbers))
         if facts.held is not None:
             said.append(worded(words.PLANNED_DONE, **held_in_words([facts.held])))
-    return said if facts.worked and said else [*said, headline(facts.route, day)]
+    if not (facts.worked and said):
+        said.append(headline(facts.route, day))
+    if facts.who:
+        said.append(worded(words.DAY_OF, who=words.isolated(facts.who)))
+    return said
 
 
 def held_in_words(held: Sequence[PlannedAndDone]) -> dict[str, int]:
@@ -159,6 +177,10 @@ def held_in_words(held: Sequence[PlannedAndDone]) -> dict[str, int]:
 
 def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     route, n = facts.route, len(facts.chance)
+    inspected = KeyFigure(
+        words.INSPECTED if facts.worked else words.PLANTS_TO_INSPECT,
+        figure(len(route)), worded(words.OF_PLANTS, n=n),
+    )  # fmt: skip
     hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
     ahead = KeyFigure(
         words.FINDS, estimate(route.expected_found),
@@ -167,12 +189,14 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     done = KeyFigure(
         words.FOUND_TODAY, figure(len(facts.found)), worded(words.OF_INSPECTED, n=facts.inspected)
     )
+    if facts.team:
+        names = ", ".join(map(words.isolated, facts.team))
+        together = KeyFigure(words.TEAM, figure(len(facts.team)), names)
+        # a plant that two of them came to is one
+        return KeyFigures((replace(inspected, value=figure(facts.inspected)), together, done))
     return KeyFigures(
         (
-            KeyFigure(
-                words.INSPECTED if facts.worked else words.PLANTS_TO_INSPECT,
-                figure(len(route)), worded(words.OF_PLANTS, n=n),
-            ),
+            inspected,
             KeyFigure(words.TIME, hours_figure(route.end_s / 3600), hours if len(route) else ""),
             KeyFigure(words.DRIVE, units.metres(route.drive_m)),
             done if facts.worked else ahead,
@@ -182,10 +206,14 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
 
 def _map(facts: DayFacts, units: Units) -> list[Block]:
     grid = facts.route.aisles.grid
+    way = None if facts.team else facts.route
     what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
-                   facts.route)  # fmt: skip
+                   way)  # fmt: skip
     alt = map_alt(facts.name, facts.state, len(facts.route))
-    return [Illustration("", alt, what.draw, what.heights(80.0, 190.0)), legend_block(route=True)]
+    return [
+        Illustration("", alt, what.draw, what.heights(80.0, 190.0)),
+        legend_block(route=way is not None),
+    ]
 
 
 def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
@@ -207,7 +235,7 @@ def legend_block(
     )  # fmt: skip
 
 
-#: stands where plants have no row
+#: stands where plants have no row, or a stop has no time
 NO_ROW = "–"
 
 
@@ -278,4 +306,6 @@ def _every_stop(facts: DayFacts) -> TickList:
 
 
 def _clock(facts: DayFacts, seconds: float, form: str = "%H:%M") -> str:
+    if facts.team:
+        return NO_ROW
     return (facts.begins + timedelta(seconds=round(seconds))).strftime(form)

@@ -77,21 +77,27 @@ def _treatments(season: Season) -> Iterator[dict[str, object]]:
 
 def inspections_table(season: Season) -> Table:
     """Return a line for each inspection that counts: recorded again, they change nothing."""
-    done, label, plot = season.history.inspections, season.label, season.plot.field.name
-    grid = season.plot.grid
+    with season.one_moment():
+        done, corrected = season.history.inspections, season.corrected_by()
+    label, plot, grid = season.label, season.plot.field.name, season.plot.grid
     plants, of = np.unique(done.plant, return_inverse=True)
     lon, lat = np.round(grid.lonlat(plants), 7).T
+    blank = [""] * len(done)
+    results = [RESULT_NAMES[result] for result in done.result.tolist()]
+    dates = np.datetime_as_string(done.date).tolist()
+    which = zip(done.plant.tolist(), dates, results, strict=True)
     return {
         "plot": [plot] * len(done),
-        "date": np.datetime_as_string(done.date).tolist(),
+        "date": dates,
         "time": _each(done.second, clock),
         "row": label.line[done.plant].tolist(),
         "plant": label.number[done.plant].tolist(),
         "lon": lon[of].tolist(),
         "lat": lat[of].tolist(),
-        "result": [RESULT_NAMES[result] for result in done.result.tolist()],
+        "result": results,
         "count": _each(done.count, float),
         "who": done.who.tolist(),
+        "corrected_by": [corrected.get(one, "") for one in which] if corrected else blank,
         "notes": done.notes.tolist(),
         "face": [face or None for face in faces(grid, done.plant).tolist()],
     }

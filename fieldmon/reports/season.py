@@ -111,7 +111,7 @@ class _Facts:
 
     def plot_map(self, *, by_state: bool) -> Iterator[Block]:
         """Yield the map of plants by chance or by what was found there, and its legend."""
-        plot, state = self.season.plot, self.season.history.known(self.status.day)
+        plot, state = self.season.plot, self.state
         what = PlotMap(
             plot.grid, self.season.evening(self.on), state, self.status.hot_spots,
             plot.aisles.gate_m, self.units, by_state=by_state,

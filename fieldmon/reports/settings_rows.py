@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.spread import Spread
     from fieldmon.monitoring import Season
+    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.assumed import Assumed
     from fieldmon.reports.content import Block
 
@@ -55,6 +56,8 @@ class WorkSettings:
         What inspections detect, as the season learnt; None: it learnt nothing.
     chosen
         Which spacings somebody said by hand, by name (`Plot.chosen`).
+    team
+        Those who work together; empty: `robot` alone.
     """
 
     robot: Robot
@@ -67,6 +70,7 @@ class WorkSettings:
     pest_in_weather: PestInWeather | None = None
     learnt_detection: float | None = None
     chosen: tuple[str, ...] = ()
+    team: tuple[TeamMember, ...] = ()
 
     @classmethod
     def of_season(
@@ -92,6 +96,7 @@ class WorkSettings:
             settings.belief, tuple(one.sentence for one in guessed), settings.pest_in_weather(),
             next((one.value for one in learnt if one.name == "detection"), None),
             season.plot.chosen,
+            team=settings.team,
         )  # fmt: skip
 
     def origin(self, setting: str) -> str:
@@ -155,8 +160,21 @@ def _told(settings: WorkSettings, setting: str) -> str:
 
 def _of_work(settings: WorkSettings) -> Iterator[Row]:
     robot = settings.robot
-    usual = scout() if robot.on_foot else Robot()
     yield words.SAMPLER, Worded(kind_of(settings.sampler).title), _from(settings.sampler == USUAL)
+    yield from _of_team(settings.team) if settings.team else _of_robot(settings, robot)
+
+
+def _of_team(team: tuple[TeamMember, ...]) -> Iterator[Row]:
+    for one in team:
+        name, robot = words.isolated(one.name), one.robot
+        value = worded(words.MEMBER_VALUE, hours=robot.hours, look=robot.look_s)
+        yield worded(words.MEMBER, name=name), value, words.FROM_CHOSEN
+        detects = figure(robot.detects, ".0%")
+        yield worded(words.MEMBER_DETECTS, name=name), detects, words.FROM_CHOSEN
+
+
+def _of_robot(settings: WorkSettings, robot: Robot) -> Iterator[Row]:
+    usual = scout() if robot.on_foot else Robot()
     yield words.HOURS, figure(robot.hours, "g"), _from(robot.hours == usual.hours)
     yield words.LOOK, figure(robot.look_s, "g"), _from(robot.look_s == usual.look_s)
     yield words.SPEED, worded("{n:.1f} km/h", n=robot.speed_m_s * 3.6), settings.origin("speed_m_s")

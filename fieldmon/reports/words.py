@@ -40,6 +40,8 @@ SETTINGS, SETTING_COLUMNS = "Settings", ("what", "value", "where from")
 DAY_TITLE = "Day of {day}"
 DAY_SHEET = "The day's work"
 PLANTS_TO_INSPECT, OF_PLANTS = "Plants to inspect", "of {n:,}"
+TEAM = "Team"
+DAY_OF = "The route is that of {who}; the others of the team have their own."
 TIME, FROM_TO = "Hours", "{start} to {end}"
 DRIVE, FINDS, OF_INFESTED = "Drive", "Expected finds", "of {n} infested on the route"
 FOUND_TODAY, OF_INSPECTED = "Found that day", "of {n} inspected"
@@ -97,7 +99,7 @@ FINDS_BY_ROW = "Plants found infested, by row"
 FINDS_COLUMNS = ("row", "finds", "plants")
 FINDS_NONE = "No plant was found infested yet."
 BATCHES = "What was recorded"
-BATCH_COLUMNS = ("recorded", "what", "from", "by", "rows")
+BATCH_COLUMNS = ("recorded", "what", "from", "by", "how many")
 BATCH_KINDS = {
     "findings": "inspections",
     "treatment": "treatment",
@@ -115,6 +117,8 @@ ROWS_APART, PLANTS_APART = "From row to row", "From plant to plant"
 SAMPLER, HOURS = "Who chooses the plants", "Working hours"
 LOOK, SPEED = "Seconds at a plant", "Speed"
 DETECTS = "Finds what is there"
+MEMBER, MEMBER_DETECTS = "{name}: hours, seconds at a plant", "{name}: finds what is there"
+MEMBER_VALUE = "{hours:g} h, {look:g} s"
 DETECTS_LEARNT = "The same, as the season learnt"
 SPREAD, ARRIVALS = "Spread to a neighbour, a night", "Plants new from outside, a night"
 PEST, WEATHER, WEATHER_DAYS = "Pest, by which nights go", "Its weather", "{first} to {last}"
@@ -203,6 +207,7 @@ CERT_FIELDS = {
     "reason": "Reason",
     "advised": "Advised",
 }
+CERT_CORRECTED = "corrected by {who}"
 CERT_OF_PLOT, CERT_NONE = "Inspections on {plot}", "none"
 CERT_DAY_COLUMNS = ("day", "inspected", "found", "by")
 

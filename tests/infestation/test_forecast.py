@@ -43,6 +43,13 @@ def test_it_begins_with_what_is_known_of_the_evening():
     assert ahead.expected[1:] == pytest.approx(usual.expected[1:])
 
 
+def test_it_holds_where_nothing_comes_from_outside_whatever_the_evening_s_number_is():
+    belief, nights = TracedPairs.of(GRID, np.full(784, 0.05)), [Spread(0.02)]
+    for expected in np.linspace(10.0, 90.0, 60).tolist():
+        ahead = forecast(belief, GRID, nights, now=PlotEstimate(expected, 2, 200, 0.0))
+        assert ahead.expected[0] == expected
+
+
 def test_each_morning_is_that_of_the_chance_map():
     belief = TracedPairs.of(GRID, np.full(784, 0.02))
     ahead = forecast(belief, GRID, [Spread(0.1)] * 3)

@@ -67,6 +67,20 @@ def test_a_batch_says_how_many_of_its_plants_were_found_and_of_which_days(season
     assert season.undo() == f"Batch {several} was undone: 3 inspections from day.csv."
 
 
+def test_what_was_taken_back_of_a_batch_is_not_counted_unless_all_of_it_was(season):
+    results = Inspections.of(np.array([1, 2, 3]), np.array([0, 1, 1]), np.datetime64("2026-11-16"))
+    batch = season.record(results, "day.csv").batch
+    with season.store.reading() as db:
+        found = "SELECT max(fid) FROM inspections WHERE batch = ? AND result = 'found'"
+        (one,) = db.execute(found, (batch,)).fetchone()
+    season.undo(inspection=one)
+    said = season.contents([batch])[batch]
+    assert (said.n, said.found, said.counting) == (2, 1, 2)
+    season.undo(batch)
+    said = season.contents([batch])[batch]
+    assert (said.n, said.found, said.counting) == (3, 2, 0)
+
+
 def test_any_batch_is_undone_by_its_number_but_once(db):
     recorded(db, 2, "first")
     recorded(db, 1, "soap", kind="treatment")

@@ -45,7 +45,9 @@ def test_the_state_of_every_plant_is_that_of_the_season(season):
     chance, state, last = zip(*kept, strict=True)
     assert chance == pytest.approx(season.evening(BEGINS), abs=1e-6)
     states = season.history.states(0)
-    assert list(state) == [STATES[code] for code in season.history.known(0).tolist()]
+    assert list(state) == [STATES[code] for code in states.tolist()]
+    assert state.count(STATES[-1]) == len(states) - season.status(BEGINS).inspected
+    assert (season.history.known(0) != states).any()  # records of before are no inspection
     assert [on is not None for on in last] == (states >= 0).tolist()
     assert {on for on in last if on} == {"2026-04-06"}
 

@@ -112,6 +112,42 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
             db.close()
 
 
+def test_what_stood_back_for_something_undone_counts_again_and_merging_keeps_it_so():
+    came_back = 0
+    for seed in range(PAIRS):
+        one, other = apart(seed)
+        ours, theirs = copied(one), copied(other)
+        merging.merge(ours, other)
+        merging.merge(theirs, one)
+        for number in [one.number for one in batches.all_of(ours) if not one.undone]:
+            if number % 2 == seed % 2:
+                continue
+            own = {
+                row[0]
+                for row in ours.execute(
+                    "SELECT digest FROM inspections WHERE batch = ? AND undone = 0", (number,)
+                )
+            }
+            others = {
+                row[0]
+                for row in ours.execute(
+                    "SELECT digest FROM inspections WHERE batch <> ? AND undone <> 1", (number,)
+                )
+            }
+            before = {row[0] for row in that_count(ours)}
+            batches.undo(ours, number)
+            assert {row[0] for row in that_count(ours)} == before - (own - others)
+            came_back += len(own & others)
+        merging.merge(theirs, ours)  # to whom nobody said so yet
+        assert that_count(theirs) == that_count(ours)
+        again = copied(ours)
+        merging.merge(again, other)
+        assert that_count(again) == that_count(ours)
+        for db in (one, other, ours, theirs, again):
+            db.close()
+    assert came_back
+
+
 def test_what_both_copies_hold_stays_untouched_and_nothing_comes_out_otherwise(monkeypatch):
     """As if every row were written anew, which only the rows after the common ones are."""
     stayed = 0

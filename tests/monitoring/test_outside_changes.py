@@ -1,5 +1,6 @@
 """What other programs change of a season is refused by name or taken as a correction."""
 
+import shutil
 import sqlite3
 from contextlib import closing
 
@@ -7,7 +8,7 @@ import pyogrio
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season, outside_changes
 from tests.monitoring.seasons import BEGINS, state
 
@@ -59,9 +60,11 @@ def test_a_changed_inspection_is_refused_by_name_until_it_is_taken_as_a_correcti
     assert season.verify() == ()
 
 
-def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path):
+def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path, tmp_path):
+    other = shutil.copy(path, tmp_path / "other.gpkg")
     outside(path, "UPDATE inspections SET plant = 301, result = 'found' WHERE fid = 1")
     season = Season(path)
+    evening, plants = Season(other).evening(BEGINS), Season(other).history.inspections.plant
     season.correct("Ann")
     states = season.history.states(0)
     assert states[301] == FOUND
@@ -74,7 +77,59 @@ def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path):
     assert (batch, x, y) == (season.batches()[0].number, 1, 0)
     season.undo()
     assert season.history.states(0)[301] == -1
-    assert len(season.history.inspections) == 11
+    assert season.history.inspections.plant.tolist() == plants.tolist()
+    assert season.evening(BEGINS).tolist() == evening.tolist()  # all is as it was before
+    assert season.verify() == ()
+    assert season.held_to_log() == ()
+
+
+@pytest.mark.parametrize("edit", EDITS.values(), ids=EDITS)
+def test_undoing_a_correction_brings_back_what_stood_there_in_either_copy(path, tmp_path, edit):
+    other, was = (shutil.copy(path, tmp_path / name) for name in ("other.gpkg", "was.gpkg"))
+    season, there, before = Season(path), Season(other), Season(was)
+    outside(path, edit)
+    season.correct("Ann")
+    corrected = season.history.states(0).tolist()
+    done = season.merge(there)  # where it was not corrected
+    assert (done.new, done.taken_back, done.contradictions) == (0, 0, ())
+    there.merge(season)
+    for one in (season, there):
+        assert one.history.states(0).tolist() == corrected
+    assert season.verify() == there.verify() == ()
+    season.undo()
+    there.merge(season)
+    for one in (season, there):
+        assert one.evening(BEGINS).tolist() == before.evening(BEGINS).tolist()
+        assert one.held_to_log() == ()
+        assert one.batches()[0].undone
+
+
+def test_what_was_corrected_twice_goes_back_step_by_step(path):
+    season = Season(path)
+    plant = int(season.history.inspections.plant[0])
+    said = [season.history.states(0)[plant]]
+    for what in ("found", "clean"):
+        outside(path, f"UPDATE inspections SET result = '{what}', notes = 'a \"\\\n' WHERE fid = 1")  # noqa: S608 - above
+        season = Season(path)
+        season.correct("Ann")
+        said.append(season.history.states(0)[plant])
+    assert said == [CLEAN, FOUND, CLEAN]
+    season.undo()
+    assert season.history.states(0)[plant] == FOUND
+    season.undo()
+    assert season.history.states(0)[plant] == CLEAN
+    assert season.verify() == ()
+    assert len(season.history.inspections) == 12
+
+
+def test_the_log_says_what_was_corrected(path):
+    outside(path, "UPDATE inspections SET result = 'found', count = 99 WHERE fid = 1",
+            "DELETE FROM inspections WHERE fid = 3")  # fmt: skip
+    season = Season(path)
+    season.correct("Eve")
+    said = season.log()[-1].sentence()
+    assert "on 2026-04-06 is now result found, count 99; " in said
+    assert said.endswith(" was deleted")
 
 
 def test_a_correction_that_makes_no_sense_is_refused_and_nothing_is_taken(path):

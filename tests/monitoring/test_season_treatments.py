@@ -13,6 +13,7 @@ from shapely import MultiPolygon, box
 
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
+from fieldmon.decisions.zones import outlines, whole_plot
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Application
@@ -94,8 +95,7 @@ def test_each_field_of_a_treatment_is_read_by_a_gis_as_it_was_said(season):
     assert (made.new, made.known) == (1, 0)
     (row,) = read(season)
     assert row.pop("geometry").equals(area)
-    within = shapely.intersection(area, season.plot.field.boundary)
-    assert row.pop("area_ha") == pytest.approx(geodesic_ha(within), rel=1e-3)
+    sprayed_ha = row.pop("area_ha")
     assert str(row.pop("date"))[:10] == "2026-04-08"
     inside = shapely.contains_xy(area, season.plot.grid.lonlat())
     assert len(row.pop("digest")) == 24
@@ -114,7 +114,9 @@ def test_each_field_of_a_treatment_is_read_by_a_gis_as_it_was_said(season):
     )
     assert kept.place.plants.tolist() == inside.tolist()
     assert (kept.day, kept.on, kept.efficacy, kept.number) == (2, on(2), 0.75, 1)
-    assert kept.place.area_ha == pytest.approx(geodesic_ha(within), rel=1e-3)
+    grid = season.plot.grid
+    each_m2 = grid.row_spacing_m * grid.plant_spacing_m
+    assert kept.place.area_ha == sprayed_ha == pytest.approx(inside.sum() * each_m2 / 1e4, abs=1e-4)
     assert not kept.place.by_plant
     entry = season.log()[-1]
     assert (entry.kind, entry.who) == ("treated", "Ann")
@@ -127,6 +129,19 @@ def test_each_field_of_a_treatment_is_read_by_a_gis_as_it_was_said(season):
     assert (again.batch, again.new, again.known) == (None, 0, 1)
     assert season.log()[-1] == entry
     assert len(season.batches()) == 1
+
+
+def test_the_same_plants_are_the_same_area_whichever_way_they_were_named(season):
+    grid = season.plot.grid
+    every = np.ones(len(grid), bool)
+    zones = whole_plot(grid, np.full(len(grid), 0.1))
+    season.treat(on(0), 0.5)
+    season.treat(on(1), 0.5, outlines(grid, zones)[0])
+    season.treat(on(2), 0.5, plants=every)
+    (area_ha,) = {one.place.area_ha for one in season.treatments()}
+    assert area_ha == pytest.approx(zones.m2 / 1e4, abs=1e-4)
+    boundary_ha = geodesic_ha(season.plot.field.boundary)
+    assert area_ha < boundary_ha  # headlands are not sprayed
 
 
 def test_plants_treated_one_by_one_are_these_and_their_ground_is_the_outline(season):

@@ -59,7 +59,7 @@ def cards(report):
 def test_every_field_that_globalgap_asks_for_stands_there(made):
     first, *_, last = cards(made)
     assert first["Product"] == "Acarol"
-    assert (first["Dose"], first["Water"], first["Area"]) == ("0.6 l/ha", "800 l/ha", "0.59 ha")
+    assert (first["Dose"], first["Water"], first["Area"]) == ("0.6 l/ha", "800 l/ha", "0.53 ha")
     assert (first["Operator"], first["Authorised by"]) == ("Ann Cohen", "Dr Levi")
     assert (first["Began and ended"], first["Time zone"]) == ("07:00–09:30", "Asia/Jerusalem")
     assert (first["Machinery"], first["Crop"]) == ("boom sprayer 12 m", "tomato")
@@ -118,3 +118,15 @@ def test_a_file_that_does_not_hold_to_its_log_says_so_in_the_record(season, tmp_
 def test_a_record_is_of_a_season_or_more():
     with pytest.raises(SettingError, match="of a season or more"):
         certification_report([], Units())
+
+
+def test_what_was_advised_stands_with_the_first_treatment_after_it_and_with_no_later_one(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    season.advise(BEGINS, "Treat the zones.")
+    season.treat(BEGINS, 0.5, product="Acarol", application=FULL)
+    season.treat(BEGINS + timedelta(3), 0.5, product="Soap")
+    season.advise(BEGINS + timedelta(3), "Treat the rest.")
+    season.treat(BEGINS + timedelta(4), 0.5, product="Oil")
+    report = certification_report([season], Units())
+    said = [texts_of.get("Advised") for texts_of in cards(report)]
+    assert said == ["Treat the zones. (2026-04-06)", "not said", "Treat the rest. (2026-04-09)"]

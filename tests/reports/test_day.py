@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.units import Units
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import PlannedAndDone
+from fieldmon.planning.members import TeamMember
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.robot import Robot
 from fieldmon.reports.content import (
@@ -191,3 +192,37 @@ def test_a_worked_day_is_held_to_its_plan(done, of_worked_day):
     assert len(paragraphs(day_report(replace(done, held=None), Units()))) == (
         len(paragraphs(other)) - 1
     )
+
+
+@pytest.fixture
+def of_a_team(tmp_path):
+    """Return a season of two robots and a scout, and the day on which two of them worked."""
+    team = (TeamMember("R1", Robot(hours=1.0)), TeamMember("Ann", Robot(hours=0.5, look_s=20.0)))
+    season = a_season(tmp_path / "s.gpkg", team=team)
+    for plan, member in zip(season.plan_each(BEGINS), team, strict=True):
+        plants = plan.route.plant
+        clean = np.zeros(len(plants), np.int8)
+        who = np.array([member.name] * len(plants), object)
+        season.record(Inspections.of(plants, clean, np.datetime64(BEGINS), who=who), member.name)
+    return season
+
+
+def test_a_team_s_day_names_who_worked_and_how_and_says_no_times_that_nobody_drove(of_a_team):
+    facts = DayFacts.of_season(of_a_team, BEGINS, BEGINS + timedelta(days=1))
+    report = day_report(facts, Units())
+    said = figures(report)
+    assert (said["Team"].value, said["Team"].note) == ("2", "\u2068Ann\u2069, \u2068R1\u2069")
+    assert not {"Hours", "Drive"} & {*said}
+    assert {row[1] for row in table(report, "Stops by row, in order").rows} == {"–"}
+    assert {row[1] for row in one(report, TickList).rows} == {"–"}
+    rows = {row[0]: row[1] for row in table(report, "Settings").rows}
+    assert rows["\u2068R1\u2069: hours, seconds at a plant"] == "1 h, 40 s"
+    assert rows["\u2068Ann\u2069: hours, seconds at a plant"] == "0.5 h, 20 s"
+    assert "Working hours" not in rows
+
+
+def test_the_day_ahead_of_a_team_says_whose_route_it_is(of_a_team):
+    report = day_report(DayFacts.of_season(of_a_team, BEGINS + timedelta(days=1)), Units())
+    leads = [block.text for block in report.sheets[0].blocks if isinstance(block, Paragraph)]
+    assert "The route is that of \u2068R1\u2069; the others of the team have their own." in leads
+    assert "Hours" in figures(report)

@@ -7,11 +7,13 @@ from datetime import date, time
 import numpy as np
 import pytest
 
+from fieldmon.compute.units import Units
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.io.readers.inspections import read_inspections
-from fieldmon.monitoring import Application
+from fieldmon.monitoring import Application, Season
+from fieldmon.reports.certification import _inspections, _PlotRecord
 from fieldmon.reports.record_tables import (
     csv_bytes,
     inspections_table,
@@ -19,6 +21,7 @@ from fieldmon.reports.record_tables import (
     treatments_table,
 )
 from tests.monitoring.seasons import BEGINS, a_plot, a_season, some_results
+from tests.monitoring.test_outside_changes import outside
 
 FULL = Application("Acarol", Dose(0.4, "l/ha"), 800.0, "Ann", '=1+1 "mites"\nseen', ended=time(9))
 
@@ -42,7 +45,7 @@ def test_a_treatment_has_what_a_certifier_asks_and_the_labels_wait(season):
     assert (one["dose"], one["unit"], one["operator"]) == ("0.4", "l/ha", "Ann")
     assert (one["waiting_days"], one["harvest_from"]) == ("3", "2026-04-10")
     assert one["entry_from"] == "2026-04-06 21:00"
-    assert float(one["area_ha"]) == pytest.approx(0.5862, abs=1e-3)
+    assert float(one["area_ha"]) == pytest.approx(438 * 12.0 / 1e4, abs=1e-3)
     assert int(one["plants"]) == len(season.plot.grid)
     assert one["machinery"] == ""
 
@@ -91,6 +94,19 @@ def test_inspections_read_back_are_those_that_the_season_holds(tmp_path, faces):
     assert "its count is 0: taken as found" in " ".join(str(one) for one in back.messages)
     told = made.record(back.value, file.name, "Dan")
     assert (told.new, told.known) == (0, 3)
+
+
+def test_a_correction_names_who_inspected_and_who_corrected(tmp_path):
+    made = a_season(tmp_path / "season.gpkg")
+    made.record(some_results(made, n=3), "monday.csv", "Ben")
+    outside(made.path, "UPDATE inspections SET result = 'found', count = 99 WHERE fid = 2")
+    season = Season(made.path)
+    season.correct("Eve")
+    said = [(line["result"], line["who"], line["corrected_by"])
+            for line in read(inspections_table(season))]  # fmt: skip
+    assert said == [("clean", "Ben", ""), ("found", "Ben", "Eve"), ("clean", "Ben", "")]
+    table = next(_inspections(_PlotRecord.of(season, None, Units())))
+    assert table.rows[0][3] == "Ben, corrected by Eve"
 
 
 def test_of_nothing_no_table_is_made():

@@ -192,3 +192,12 @@ def test_a_period_goes_by_what_was_in_force_in_it_and_tells_of_a_change(tmp_path
             "then 1.5."
         )
     ]
+
+
+def test_the_maps_show_as_many_plants_found_as_the_figures_say(worked, last):
+    assert (worked.history.known(5) != worked.history.states(5)).any()  # records of before
+    report, found = season_report(worked, last, Units()), worked.status(last).found
+    maps = [block.alt for sheet in report.sheets for block in sheet.blocks
+            if isinstance(block, Illustration) and "plants found." in block.alt]  # fmt: skip
+    assert len(maps) == 2
+    assert all(one.endswith(f" {found} plants found.") for one in maps)

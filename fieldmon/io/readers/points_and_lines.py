@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -90,8 +91,10 @@ def _about_doubles(layer: Layer, kept: NDArray[np.intp]) -> ChoiceNeeded:
 
 
 def _called(layer: Layer) -> str:
-    first = next(iter(layer.columns.values()), None)
-    return repr(text(first[0])) if first is not None and len(first) else "one without a name"
+    """Return what the first plant is called: by no number with decimals, which is its position."""
+    said = (text(column[0]) for column in layer.columns.values() if len(column))
+    called = next((one for one in said if one and not re.fullmatch(r"-?\d+[.,]\d+", one)), None)
+    return "one without a name" if called is None else repr(called)
 
 
 def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:

@@ -96,3 +96,9 @@ def test_areas_are_no_plants_and_a_table_without_places_asks():
     with pytest.raises(ChoiceNeeded) as asked:
         plants_of(table(a=["x"], b=["y"]), ANY)
     assert asked.value.option == "columns"
+
+
+def test_plants_without_names_are_not_called_by_where_they_stand():
+    cells = table(lon=["35.1416", "35.1417", "35.1416"], lat=["30.35", "30.35", "30.35"])
+    with pytest.raises(ChoiceNeeded, match="the first of them one without a name"):
+        plants_of(cells, ANY)

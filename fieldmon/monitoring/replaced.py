@@ -1,0 +1,120 @@
+"""Rows that stand back for another one, and count again once that one no longer does.
+
+Two people who worked apart may record the same result of the same plant and time: the first of
+them counts, the other stands back. It was not taken back: whoever undoes the first one's file
+leaves the other's as it was recorded. So does an inspection that was corrected stand back for what
+was made of it, or for nothing if it was deleted: whoever undoes the correction has it back.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Sequence
+
+#: in the column `undone` of inspections and treatments
+COUNTS, TAKEN_BACK, STANDS_BACK = 0, 1, 2
+
+
+def count_again(db: sqlite3.Connection, table: str = "inspections") -> list[int]:
+    """Let rows count again where none stands for them any more; return their batches."""
+    found = db.execute(
+        f"SELECT digest, fid, batch FROM {table} AS one WHERE undone = ? AND NOT EXISTS "  # noqa: S608 - ours
+        f"(SELECT 1 FROM {table} WHERE digest = one.digest AND undone = 0) "
+        "ORDER BY batch DESC, fid DESC",
+        (STANDS_BACK,),
+    ).fetchall()
+    gone = corrected(_corrections(db)) if found and table == "inspections" else set()
+    first = {mark: (fid, batch) for mark, fid, batch in found if mark not in gone}
+    db.executemany(
+        f"UPDATE {table} SET undone = 0 WHERE fid = ?",  # noqa: S608 - ours
+        [(fid,) for fid, _ in first.values()],
+    )
+    return sorted({batch for _, batch in first.values()})
+
+
+def corrected(corrections: Sequence[dict[str, Any]]) -> set[str]:
+    """Return digests of inspections that stand back for a correction, given rows of those in order.
+
+    Where one that was taken back had been corrected itself, the last correction stands.
+    """
+    gone: set[str] = set()
+    for row in reversed(corrections):
+        if row["before"] and (not row["undone"] or row["now"] in gone):
+            gone.add(as_it_was(row["before"])["digest"])
+    return gone
+
+
+def as_it_was(before: str) -> dict[str, Any]:
+    """Return what an inspection said before it was corrected, by the names of its columns.
+
+    Its digest is None where that is not known.
+    """
+    try:
+        return {"digest": None, **json.loads(before, strict=False)}
+    except (ValueError, TypeError):  # another program wrote it
+        return {"digest": None}
+
+
+def _corrections(db: sqlite3.Connection) -> list[dict[str, Any]]:
+    names = ("before", "now", "undone")
+    rows = db.execute(
+        f"SELECT {', '.join(names)} FROM outside_changes WHERE batch NOTNULL "  # noqa: S608 - ours
+        "AND before NOTNULL ORDER BY fid"
+    )
+    return [dict(zip(names, row, strict=True)) for row in rows]
+
+
+def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None) -> None:
+    """Note that the corrections of a batch were taken back, or the one that came to `now`.
+
+    What stood there before takes its old place in the order, and has what a phone told of it.
+    """
+    rows = db.execute(
+        "SELECT fid, before, now FROM outside_changes "
+        "WHERE batch = ? AND before NOTNULL AND coalesce(?, now, '') = coalesce(now, '')",
+        (batch, now),
+    ).fetchall()
+    one = "SELECT min(fid) FROM inspections WHERE digest = ?"
+    for fid, before, made in rows:
+        db.execute("UPDATE outside_changes SET undone = 1 WHERE fid = ?", (fid,))
+        was = as_it_was(before)["digest"]
+        (held,) = db.execute(
+            f"{one} AND undone = ? AND batch <> ?", (was, STANDS_BACK, batch)
+        ).fetchone()
+        (new,) = db.execute(f"{one} AND batch = ?", (made, batch)).fetchone()
+        if held is not None and new is not None and new < held:
+            for here, there in ((new, -1), (held, new), (-1, held)):
+                db.execute("UPDATE inspections SET fid = ? WHERE fid = ?", (there, here))
+
+
+def take_back_others(db: sqlite3.Connection, inspection: int) -> list[int]:
+    """Take back all that say the same as an inspection that was; return their batches."""
+    found = db.execute(
+        "SELECT fid, batch FROM inspections WHERE undone <> ? AND digest = "
+        "(SELECT digest FROM inspections WHERE fid = ?)",
+        (TAKEN_BACK, inspection),
+    ).fetchall()
+    taken = [(TAKEN_BACK, fid) for fid, _ in found]
+    db.executemany("UPDATE inspections SET undone = ? WHERE fid = ?", taken)
+    return sorted({batch for _, batch in found})
+
+
+def n_counting(db: sqlite3.Connection, mark: str) -> int:
+    """Return how many inspections with a digest count: one or none."""
+    counts = "SELECT count(*) FROM inspections WHERE digest = ? AND undone = 0"
+    (n,) = db.execute(counts, (mark,)).fetchone()
+    return int(n)
+
+
+def n_elsewhere(db: sqlite3.Connection, batch: int, table: str = "inspections") -> int:
+    """Return how many rows of a batch do not count, but another one that says the same does."""
+    (n,) = db.execute(
+        f"SELECT count(*) FROM {table} AS one WHERE batch = ? AND undone <> 0 AND EXISTS "  # noqa: S608 - ours
+        f"(SELECT 1 FROM {table} WHERE digest = one.digest AND undone = 0)",
+        (batch,),
+    ).fetchone()
+    return int(n)

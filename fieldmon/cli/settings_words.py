@@ -72,6 +72,7 @@ def _in_words(settings: MonitoringSettings) -> dict[str, str]:
     else:
         words |= _each_of_worker(settings.robot)
     words |= {"start": f"{settings.starts:%H:%M}", "traces": "yes" if belief.traces else "no"}
+    words["finds"] = "treated at once" if belief.treated else "only flagged"
     words["spread"] = written(belief.spread.rate_per_day, ".3g")
     if settings.pest is not None:
         words["pest"] = settings.pest.name

@@ -59,6 +59,10 @@ def write(db: sqlite3.Connection, parts: Parts) -> list[str]:
     return [name for name, _, _ in changed]
 
 
+# of settings that their own names do not tell
+_NAMES = {"beliefs treated": "finds treated at once"}
+
+
 def differences(before: Parts, after: Parts) -> list[str]:
     """Return what differs between two choices, from what to what; what is long by its name alone.
 
@@ -84,7 +88,7 @@ def _differing(name: str, was: object, now: object) -> Iterator[str]:
                 yield from _differing(f"{name} {key}", was.get(key), now.get(key))
         return
     said = [_in_short(one) for one in (was, now)]
-    words = name.replace("_", " ")
+    words = _NAMES.get(name, name.replace("_", " "))
     yield words if "" in said else f"{words} {said[0]} to {said[1]}"
 
 

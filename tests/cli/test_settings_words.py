@@ -30,6 +30,8 @@ ANN = TeamMember("Ann", scout())
          "start 07:00 (now 06:00 again), harvest 2026-12-01 (now none again)"),
         ({"language": "he"}, "language he (now en again)"),
         ({"belief": replace(FIRST.belief, traces=False)}, "traces no (now yes again)"),
+        ({"belief": replace(FIRST.belief, treated=False)},
+         "finds only flagged (now treated at once again)"),
     ],
 )  # fmt: skip
 def test_what_is_taken_back_is_named_with_what_counts_again(chosen, said):

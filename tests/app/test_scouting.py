@@ -313,6 +313,12 @@ def test_a_phone_handed_over_and_taken_to_another_plot_mixes_nothing(season, lin
     page.locator("#open_menu").click()
     page.locator(".season", has_text="Gate 2026").click()
     page.locator(f"#last[data-plant='{second[0]}']").wait_for()
+    # a code opened where the page is open
+    code = invitation(line.address, "Other", key, str(BEGINS), "en")
+    page.evaluate("code => { location.href = code; }", code)
+    page.wait_for_function("() => location.hash === ''")
+    page.locator("#open_menu").click()
+    page.locator("dialog h2", has_text="Bea").wait_for()
     assert problems == []
     with Season(season.path).store.reading() as db:
         assert db.execute("SELECT scout FROM tellings").fetchall() == [("Gil",)]

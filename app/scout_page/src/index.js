@@ -21,6 +21,12 @@ function accessOfAddress() {
   return { access, language: said.get("lang") };
 }
 
+/** A code that is opened where the page is open changes no more than the address behind #. */
+function beginAnewWithCode() {
+  const said = new URLSearchParams(location.hash.slice(1));
+  if (said.get("season") && said.get("key")) location.reload();
+}
+
 /** The phone's disk. As long as it cannot be had, as in some private windows, that is said and it is tried again. */
 async function storeOfPhone() {
   const slow = setTimeout(sayNoDisk, SLOW_MS);
@@ -50,6 +56,7 @@ async function sayNoDisk() {
 async function begin() {
   if (isApple) document.querySelector("link[rel=manifest]")?.remove();
   const { access, language } = accessOfAddress();
+  addEventListener("hashchange", beginAnewWithCode);
   const store = await storeOfPhone();
   const field = new Field(store);
   const page = new Page(document.getElementById("page"), field, store);

@@ -174,16 +174,38 @@ def _offer_undo(key: str) -> None:
 
 
 def show_doubts(choices: Choices) -> None:
-    """Show, while no season is begun, what is doubtful, and which records are left out."""
-    if choices.season is not None:
-        return
-    doubts = [one for one in choices.messages if one.message.severity == Severity.DOUBTFUL]
-    if not doubts and not chosen_day.messages_on_records(choices):
-        return
-    with st.container(border=True, key="doubts"):
-        for number, one in enumerate(doubts):
-            _show_message(number, one)
-        show_of_records(choices)
+    """Show, while no season is begun, all that is doubtful, and which records are left out."""
+    show_doubts_of_plot(choices)
+    show_doubts_of_records(choices)
+
+
+def show_doubts_of_plot(choices: Choices) -> None:
+    """Show, while no season is begun, what is doubtful about the plot: it may lie elsewhere."""
+    if doubts := _doubts(choices, of_records=False):
+        with st.container(border=True, key="doubts"):
+            for number, one in doubts:
+                _show_message(number, one)
+
+
+def show_doubts_of_records(choices: Choices) -> None:
+    """Show, while no season is begun, what is doubtful about records, and which are left out."""
+    doubts = _doubts(choices, of_records=True)
+    if doubts or (choices.season is None and chosen_day.messages_on_records(choices)):
+        with st.container(border=True, key="doubts_of_records"):
+            for number, one in doubts:
+                _show_message(number, one)
+            show_of_records(choices)
+
+
+def _doubts(choices: Choices, *, of_records: bool) -> list[tuple[int, FileMessage]]:
+    """Return what is doubtful, with the number of each message; in a season nothing is."""
+    return [
+        (number, one)
+        for number, one in enumerate(choices.messages)
+        if one.message.severity == Severity.DOUBTFUL
+        and one.asked.startswith(f"{RECORDS} ") == of_records
+        and choices.season is None
+    ]
 
 
 def show_of_records(choices: Choices) -> None:

@@ -152,7 +152,7 @@ class OpenSeason:
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
 
         As when the day was planned last or, if it never was, first recorded. What is believed is
-        of now, for all days (but see `fieldmon.monitoring.told_detection`); so is a team.
+        of now, for all days (but see `fieldmon.monitoring.told_detection`).
         """
         return self._counted_on(on)
 
@@ -166,11 +166,9 @@ class OpenSeason:
         if not parts:
             return now
         then = from_json(parts)
-        if now.team or then.team:
-            return now
         return replace(
             now, robot=then.robot, starts=then.starts, sampler=then.sampler,
-            sampler_settings=then.sampler_settings,
+            sampler_settings=then.sampler_settings, team=then.team, teamwork=then.teamwork,
         )  # fmt: skip
 
     @property

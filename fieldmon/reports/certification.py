@@ -375,7 +375,9 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
         found = int(np.count_nonzero(of.result == FOUND))
         by = joined(", ", who)
         if authors := ", ".join(sorted(one.corrected.get(str(day), set()) - {""})):
-            by = joined(", ", [*who, worded(words.CERT_CORRECTED, who=authors)])
+            by = joined(
+                ", ", [*map(words.isolated, who), worded(words.CERT_CORRECTED, who=authors)]
+            )
         rows.append((one.units.day(day), figure(len(of)), figure(found), by))
     title = worded(words.CERT_OF_PLOT, plot=one.name)
     if not rows:

@@ -106,7 +106,7 @@ def test_a_correction_names_who_inspected_and_who_corrected(tmp_path):
             for line in read(inspections_table(season))]  # fmt: skip
     assert said == [("clean", "Ben", ""), ("found", "Ben", "Eve"), ("clean", "Ben", "")]
     table = next(_inspections(_PlotRecord.of(season, None, Units())))
-    assert table.rows[0][3] == "Ben, corrected by Eve"
+    assert table.rows[0][3] == "\u2068Ben\u2069, corrected by Eve"
 
 
 def test_of_nothing_no_table_is_made():

@@ -24,6 +24,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
 
     Example: fieldmon merge season.gpkg "season (conflict).gpkg"
     """
+    from fieldmon.compute.wording import counted
     from fieldmon.monitoring import Season, copy_season
 
     if other.exists() and other.samefile(season):
@@ -34,7 +35,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         copy_season(other, copy)  # an older one is brought up to date in the copy
         done = kept.merge(Season(copy))
     gone = f", {done.taken_back} were taken back there" if done.taken_back else ""
-    typer.echo(f"{other.name}: {done.new} inspections were new{gone}")
+    new = f"{counted(done.new, 'inspection')} {'was' if done.new == 1 else 'were'} new"
+    typer.echo(f"{other.name}: {new}{gone}")
     if done.moved:
         typer.echo(
             "  numbered anew: batches have other numbers now than the log said before; see "

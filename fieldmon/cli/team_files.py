@@ -75,7 +75,7 @@ def tell_member(name: str, start: datetime, route: Route) -> None:
 def write_member(name: str, route: Route, paths: list[Path]) -> None:
     """Write the route of one of a team, if it has one, and say where."""
     if not len(route):
-        typer.echo(f"{name} has no route: the others leave it none in its hours.")
+        typer.echo(f"{name} has no route: its hours are over, or the others leave it none in them.")
         return
     for path in paths:
         for written in route.to_file(path):

@@ -162,13 +162,13 @@ def numbers(db: sqlite3.Connection) -> dict[tuple[str, str, str, str], int]:
     return {(one.at, one.kind, one.source, one.who): one.number for one in all_of(db)}
 
 
-def corrected_by(db: sqlite3.Connection) -> dict[tuple[int, str, str], str]:
-    """Return who corrected inspections that count, by plant, day (ISO) and result."""
+def corrected_by(db: sqlite3.Connection) -> dict[tuple[object, ...], str]:
+    """Return who corrected inspections that count, by plant, day (ISO), result and count."""
     rows = db.execute(
-        "SELECT plant, date, result, coalesce(batches.who, '') FROM inspections "
+        "SELECT plant, date, result, count, coalesce(batches.who, '') FROM inspections "
         "JOIN batches ON batches.fid = batch WHERE kind = 'corrections' AND inspections.undone = 0"
     )
-    return {(plant, day, result): who for plant, day, result, who in rows}
+    return {(plant, day, result, count): who for plant, day, result, count, who in rows}
 
 
 def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchContents]:

@@ -378,6 +378,13 @@ def _once(
     ]
 
 
+def _members(team: str) -> str:
+    """Return who is in a team as it is kept, each with the hours: all else is in the log."""
+    members = (json.loads(team) or {}).get("members", ())
+    each = (f"{one['name']} {one['robot']['hours']:g} h" for one in members)
+    return ", ".join(each) or "none"
+
+
 def _differing(copies: list[dict[str, list[Row]]]) -> tuple[str, ...]:
     """Return a sentence for each setting that was last chosen differently in the two copies."""
     ours, theirs = (
@@ -388,7 +395,8 @@ def _differing(copies: list[dict[str, list[Row]]]) -> tuple[str, ...]:
     for name in sorted(set(ours) & set(theirs)):
         one, other = ours[name], theirs[name]
         if one["value"] != other["value"]:
-            here, there = _apart(one["value"], other["value"])
+            values = str(one["value"]), str(other["value"])
+            here, there = map(_members, values) if name == "team" else _apart(*values)
             last = here if str(one["changed"]) >= str(other["changed"]) else there
             said.append(
                 f"The setting {name} differs: {here} here, {there} there. What was chosen last "

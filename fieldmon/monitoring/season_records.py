@@ -326,8 +326,8 @@ class SeasonRecords(OpenSeason):
         with self.store.reading() as db:
             return batches.contents(db, numbers)
 
-    def corrected_by(self) -> dict[tuple[int, str, str], str]:
-        """Return who corrected inspections that count, by plant, day (ISO) and result."""
+    def corrected_by(self) -> dict[tuple[object, ...], str]:
+        """Return who corrected inspections that count, by plant, day (ISO), result and count."""
         with self.store.reading() as db:
             return batches.corrected_by(db)
 

@@ -75,8 +75,8 @@ class _PlotRecord:
         seen = season.inspections
         seen = seen.take(seen.date <= np.datetime64(on, "D")).inspected
         corrected: dict[str, set[str]] = {}
-        for (_, day, _), who in season.corrected_by().items():
-            corrected.setdefault(day, set()).add(who)
+        for (_, day, *_), who in season.corrected_by().items():
+            corrected.setdefault(str(day), set()).add(who)
         return cls(season, on, units, done, beware, told, log, wrong, seen, corrected)
 
     @property

@@ -85,7 +85,8 @@ def inspections_table(season: Season) -> Table:
     blank = [""] * len(done)
     results = [RESULT_NAMES[result] for result in done.result.tolist()]
     dates = np.datetime_as_string(done.date).tolist()
-    which = zip(done.plant.tolist(), dates, results, strict=True)
+    counts = _each(done.count, float)
+    which = zip(done.plant.tolist(), dates, results, counts, strict=True)
     return {
         "plot": [plot] * len(done),
         "date": dates,
@@ -95,7 +96,7 @@ def inspections_table(season: Season) -> Table:
         "lon": lon[of].tolist(),
         "lat": lat[of].tolist(),
         "result": results,
-        "count": _each(done.count, float),
+        "count": counts,
         "who": done.who.tolist(),
         "corrected_by": [corrected.get(one, "") for one in which] if corrected else blank,
         "notes": done.notes.tolist(),

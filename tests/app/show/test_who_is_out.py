@@ -50,3 +50,12 @@ def test_a_time_of_another_day_names_it(choices):
     at = choices.clock.moment(BEGINS, datetime(2026, 4, 6, 7, 30).time())
     assert who_is_out._clock(choices, at) == "07:30"
     assert who_is_out._clock(choices, at + timedelta(days=1)) == "Tue 7 Apr 07:30"
+
+
+@pytest.mark.parametrize(
+    ("off", "said"),
+    [(timedelta(minutes=-7), "7 min off"), (timedelta(hours=3), "3 h off"),
+     (-timedelta(days=3 * 365), "more than a day off")],
+)  # fmt: skip
+def test_how_far_a_clock_is_off_is_said_as_one_would_count_it(off, said):
+    assert said in who_is_out._clock_off(off)

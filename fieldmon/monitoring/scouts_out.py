@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.monitoring.day_ahead import Part, crew_of, kept_as
+from fieldmon.monitoring.day_ahead import Part, crew_of, given, kept_as
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import scouts_of
 
@@ -82,9 +82,9 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     for name in dict.fromkeys([*coded, *(member.name for member in settings.team)]):
         code = coded.get(name)
         part = Part(None if code is None else code.rows, name)
-        member, route = part.member(season), season.kept_route(on, kept_as(season, part))
+        member, route = part.member(season), given(season, on, part)
         with season.store.reading() as db:
-            asked = day, kept_as(season, part), name, day
+            asked = day, kept_as(season, on, part), name, day
             (is_older,) = db.execute(_IS_OLDER, asked).fetchone()
         heard = max(filter(None, (sent.get(name, ("",))[0], photos.get(name, ""))), default="")
         out.append(

@@ -149,6 +149,11 @@ class SeasonPlans(OpenSeason):
                 who = who if named is None else named.name
             return routes.plants(db, settings.day(on), who)
 
+    def kept_last(self, on: date) -> dict[str, int]:
+        """Return the number in the file of the last route kept for a day, of each who has one."""
+        with self._lock, self.store.reading() as db:
+            return routes.kept_last(db, settings_of(db).day(on))
+
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
 

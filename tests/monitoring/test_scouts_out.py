@@ -41,6 +41,15 @@ def test_it_says_who_has_which_rows_and_how_far_they_are(fresh):
     assert of(fresh, "Ben").done == 0
 
 
+def test_what_is_ahead_of_who_has_other_rows_now_lies_in_these(fresh):
+    scouts.let_in(fresh, "Dan", (1, 8))
+    line = fresh.label.line[route_ahead(fresh, BEGINS, Part((1, 8), "Dan")).plant]
+    scouts.let_in(fresh, "Dan", (7, 12))
+    assert of(fresh, "Dan").ahead == int((line >= 7).sum())
+    route = route_ahead(fresh, BEGINS, Part((7, 12), "Dan"))
+    assert of(fresh, "Dan").ahead == len(route)
+
+
 def test_a_wrong_clock_and_shared_plants_are_said(fresh):
     key = scouts.let_in(fresh, "Ann")
     scouts.let_in(fresh, "Ben")

@@ -61,9 +61,12 @@ def plan_in_short(plan: DayPlan) -> str:
     return in_short(len(plan.route), plan.route.end_s / 3600)
 
 
-def in_short(plants: int, hours_h: float) -> str:
-    """Return so many plants and hours in words."""
-    return listed([texts.PLANTS_COUNTED.format(n=plants), hours(hours_h)])
+def in_short(plants: int, hours_h: float, people: int = 1) -> str:
+    """Return so many plants and hours in words, of several people their hours added up."""
+    time = hours(hours_h)
+    if people > 1:
+        time = texts.HOURS_IN_ALL.format(hours=time)
+    return listed([texts.PLANTS_COUNTED.format(n=plants), time])
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:

@@ -420,6 +420,7 @@ STEP_FOUND = Plural(
     by="inspected",
 )
 STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
+HOURS_IN_ALL = "{hours} in all"
 STEP_TREATED = Plural("{n:,} plant treated", "{n:,} plants treated")
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"

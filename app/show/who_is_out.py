@@ -77,9 +77,15 @@ def _cautions(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> tuple
         (one.clock_is_wrong, _clock_off(one.fast)),
         (is_other, "" if asked is None or asked.day is None else
          texts.OUT_OTHER_DAY.format(day=choices.units.said_day(asked.day, choices.on))),
-        (one.is_older and not is_other, texts.OUT_OLDER),
+        (_is_older(choices, one, asked), texts.OUT_OLDER),
     )  # fmt: skip
     return tuple(sentence for holds, sentence in said if holds)
+
+
+def _is_older(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> bool:
+    """Return whether the phone goes by another plan of the day than the one given last."""
+    knows = asked is not None and asked.day == choices.on
+    return knows and one.plan is not None and asked.plan != one.plan
 
 
 def _clock_off(fast: timedelta) -> str:

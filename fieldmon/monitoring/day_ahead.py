@@ -121,6 +121,11 @@ def kept_as(season: Season, on: date, part: Part) -> str:
     return part.name if last.get(part.name, 0) > last.get("", 0) else ""
 
 
+def plan_of(season: Season, on: date, part: Part) -> int | None:
+    """Return the number in the file of the route kept last of a part; None: none is kept."""
+    return season.kept_last(on).get(kept_as(season, on, part))
+
+
 def given(season: Season, on: date, part: Part) -> Plants:
     """Return the plants of the route kept of a part that are in it."""
     kept = season.kept_route(on, kept_as(season, on, part))

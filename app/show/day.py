@@ -109,6 +109,8 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
         st.warning(in_words(told))
     said = "" if len(plan.route) else texts.NO_STOPS
     if choices.season is not None:
+        if not said and _is_of_nobody(choices):
+            st.info(texts.ROUTE_OF_NOBODY)
         now = chosen_day.progress(choices)
         done = {"inspected": now.inspected_today, "found": now.found_today}
         if now.inspected_today:
@@ -116,6 +118,14 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
             return
     if said:
         st.warning(said)
+
+
+def _is_of_nobody(choices: Choices) -> bool:
+    """Return whether the route shown is planned for one, while several are out with their own."""
+    if choices.season.settings.team or chosen_day.route(choices).worked:
+        return False
+    kept = chosen_day.planned_and_done(choices)
+    return kept is not None and kept.people > 1
 
 
 def beside_figures(choices: Choices) -> None:

@@ -420,6 +420,9 @@ STEP_FOUND = Plural(
     by="inspected",
 )
 STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
+ROUTE_OF_NOBODY = (
+    "The route shown is that of one who works alone; those who are out have their own."
+)
 HOURS_IN_ALL = "{hours} in all"
 STEP_TREATED = Plural("{n:,} plant treated", "{n:,} plants treated")
 PLAN_USED = "This is the plan for {day}: it is kept with the season."

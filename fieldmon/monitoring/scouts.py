@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import secrets
 from dataclasses import dataclass
-from datetime import datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
@@ -20,10 +19,8 @@ from fieldmon.monitoring.tables import utc_now
 
 if TYPE_CHECKING:
     import sqlite3
-    from datetime import date
 
     from fieldmon.monitoring.season_file import Season
-    from fieldmon.plot.local_clock import LocalClock
 
 _KEY_BYTES = 18
 _LONGEST_NAME = 60
@@ -145,14 +142,6 @@ def scouts_of(season: Season) -> tuple[Scout, ...]:
     with season.store.reading() as db:
         rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY fid")  # noqa: S608 - ours
         return tuple(_scout(row) for row in rows)
-
-
-def held_on(db: sqlite3.Connection, clock: LocalClock, on: date) -> list[Scout]:
-    """Return whose key holds, or was taken back after a day: what was planned of it stays."""
-    codes = [_scout(row) for row in db.execute(f"SELECT {_COLUMNS} FROM scouts ORDER BY fid")]  # noqa: S608 - ours
-    ends = [clock.at(datetime.fromisoformat(one.ended)).date() if one.ended else None
-            for one in codes]  # fmt: skip
-    return [one for one, end in zip(codes, ends, strict=True) if end is None or end > on]
 
 
 def who(season: Season, key: str) -> Scout:

@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import routes, scouts, season_log
+from fieldmon.monitoring import phone_tables, routes, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.mornings import is_behind
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.open_season import SeasonContents
-    from fieldmon.monitoring.scouts import Scout
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
@@ -152,7 +151,7 @@ class SeasonPlans(OpenSeason):
             return routes.plants(db, settings.day(on), who)
 
     def kept_last(self, on: date) -> dict[str, int]:
-        """Return the number in the file of the last route kept for a day, of each who has one."""
+        """Return the number in the file of the last route kept for the day `on`, by who has one."""
         with self._lock, self.store.reading() as db:
             return routes.kept_last(db, settings_of(db).day(on))
 
@@ -166,10 +165,10 @@ class SeasonPlans(OpenSeason):
             contents = self._read(db)
             day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
             kept = routes.of_day(db, day)
-            held = scouts.held_on(db, local_clock(self.plot.field), on)
+            codes = phone_tables.codes_on(db, local_clock(self.plot.field), on)
             last = routes.kept_last(db, day)
         if who is None:
-            out = _out(last, held, self._planned_by(contents, on))
+            out = _out(last, codes, self._planned_by(contents, on))
         else:
             out = {name for name in last if name.casefold() == who.casefold()}
             kept = [one for one in kept if one.who in out]
@@ -249,13 +248,14 @@ class SeasonPlans(OpenSeason):
         return given if (given >= 0).any() else None
 
 
-def _out(last: dict[str, int], held: list[Scout], settings: MonitoringSettings) -> set[str]:
+def _out(
+    last: dict[str, int], codes: dict[str, tuple[int, int] | None], settings: MonitoringSettings
+) -> set[str]:
     """Return by which names the routes are kept of those who are out, of all kept of a day.
 
     They are of the team or have a code. The season's own route is that of who is alone, and counts
     where none was given to anybody.
     """
-    codes = {one.name.casefold(): one.rows for one in held}
     names = {one.name.casefold() for one in settings.team} | {*codes}
     out = {name for name in last if name.casefold() in names}
     if not settings.team and [*codes.values()] == [None] and "" in last:

@@ -73,11 +73,12 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
     if choices.season is None:
         return rest
     kept = chosen_day.planned_and_done(choices)
+    said = "" if kept is None else day.in_short(kept.planned, kept.hours, kept.people)
     if not chosen_day.progress(choices).inspected_today:
-        return rest if kept is None else day.in_short(kept.planned, kept.hours)
+        return said or rest
     if kept is None:
         return rest and texts.STEP_REST.format(plan=rest)
-    return texts.STEP_KEPT.format(plan=day.in_short(kept.planned, kept.hours), left=kept.left)
+    return texts.STEP_KEPT.format(plan=said, left=kept.left)
 
 
 def _today(choices: Choices, _: DayPlan) -> str:

@@ -171,6 +171,8 @@ PLOT: dict[str, Any] = {
         },
     },
 }
+_PLAN = {"type": ["integer", "null"], "description": "Number of the plan kept of the day."}
+REST: dict[str, Any] = {"type": "object", "properties": {"route": ROUTE, "plan": _PLAN}}
 DAY: dict[str, Any] = {
     "type": "object",
     "required": ["day", "live", "route", "plot"],
@@ -186,6 +188,7 @@ DAY: dict[str, Any] = {
         "robot": {"type": "object"},
         "seconds_left": {"type": "number"},
         "route": ROUTE,
+        "plan": _PLAN,
         "chance": _LIST | {"description": "Of each plant, in thousandths."},
         "found": _LIST,
         "clean": _LIST,
@@ -299,14 +302,25 @@ def description() -> dict[str, Any]:
                 "get": _operation(
                     "A day as it stands; the route is given out.",
                     _answer(DAY, "The day."),
-                    _query(on=_DATE | {"default": None}),
+                    _query(
+                        on=_DATE | {"default": None},
+                        plan=_PLAN
+                        | {
+                            "default": None,
+                            "description": "The plan that one has and goes on by; without it one "
+                            "goes by the plan returned.",
+                        },
+                    ),
                 ),
             },
             f"{season}/route": {
                 "parameters": [_AT],
                 "post": _operation(
                     "The rest of the day, planned anew.",
-                    _answer({"type": "object", "properties": {"route": ROUTE}}, "The rest."),
+                    _answer(
+                        {"type": "object", "properties": {"route": ROUTE, "plan": _PLAN}},
+                        "The rest.",
+                    ),
                     _body(ASKED),
                 ),
             },

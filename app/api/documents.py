@@ -17,7 +17,14 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.monitoring.day_ahead import Part, asked_of, planned_again, route_ahead, work_left_s
+from fieldmon.monitoring.day_ahead import (
+    Part,
+    asked_of,
+    plan_of,
+    planned_again,
+    route_ahead,
+    work_left_s,
+)
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
 from fieldmon.plot.local_clock import local_clock, utc_now
@@ -68,13 +75,17 @@ def plot_document(season: Season) -> tuple[str, bytes]:
     return digest(made, length=16), made
 
 
-def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
-    """Return a day as it stands: the route left for this person, what is believed and known."""
+def day_document(season: Season, scout: Scout, on: date | None, has: int | None = None) -> bytes:
+    """Return a day as it stands: the route left for this person, what is believed and known.
+
+    `has`: the plan that the phone has and goes on by; None: it goes by what is returned.
+    """
     on = _day(season, on)
     number = season.settings.day(on)
-    heard.note(season.path, scout.name, on)
     part = Part(scout.rows, scout.name)
     route, history = route_ahead(season, on, part), season.history
+    plan = plan_of(season, on, part)
+    heard.note(season.path, scout.name, on, plan if has is None else has)
     member = part.member(season)
     robot = season.settings.robot if member is None else member.robot
     known = history.known(number)
@@ -96,6 +107,7 @@ def day_document(season: Season, scout: Scout, on: date | None) -> bytes:
         },
         "seconds_left": work_left_s(season, on, part),
         "route": _route(route),
+        "plan": plan,
         # evening: what was found today counts
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
         "found": np.flatnonzero(known == PRESENT).tolist(),
@@ -114,8 +126,11 @@ def rest_document(
 ) -> bytes:
     """Return the rest of a day, planned anew with all that is known."""
     on = _day(season, on)
-    route = planned_again(season, on, Part(scout.rows, scout.name), seconds_left)
-    return _json({"day": on.isoformat(), "route": _route(route)})
+    part = Part(scout.rows, scout.name)
+    route = planned_again(season, on, part, seconds_left)
+    plan = plan_of(season, on, part)
+    heard.note(season.path, scout.name, on, plan)
+    return _json({"day": on.isoformat(), "route": _route(route), "plan": plan})
 
 
 def _day(season: Season, on: date | None) -> date:

@@ -26,6 +26,15 @@ def findings(body: bytes) -> tuple[list[Finding], datetime]:
     return [Finding(**fields_of(one)) for one in sent["findings"]], moment(sent["sent"])
 
 
+def plan(text: str | None) -> int | None:
+    """Return which plan a phone has; raise `ObservationError` if it is no number."""
+    if text is None:
+        return None
+    if not re.fullmatch("[0-9]{1,15}", text):
+        raise ObservationError(f"plan must be the number of a plan, but it is {text[:20]!r}.")
+    return int(text)
+
+
 def asked(body: bytes) -> tuple[date | None, float | None]:
     """Return the day and the seconds left, for whoever asks for the rest of a day."""
     sent = _checked(body or b"{}", "ASKED")

@@ -56,7 +56,8 @@ async def _plot(request: Request) -> Response:
 async def _day(request: Request) -> Response:
     season, scout = await _asked_by(request)
     on = reading.day(request.query_params.get("on"))
-    return _json(await run_in_threadpool(documents.day_document, season, scout, on))
+    has = reading.plan(request.query_params.get("plan"))
+    return _json(await run_in_threadpool(documents.day_document, season, scout, on, has))
 
 
 async def _route(request: Request) -> Response:

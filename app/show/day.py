@@ -61,9 +61,12 @@ def plan_in_short(plan: DayPlan) -> str:
     return in_short(len(plan.route), plan.route.end_s / 3600)
 
 
-def in_short(plants: int, hours_h: float) -> str:
-    """Return so many plants and hours in words."""
-    return listed([texts.PLANTS_COUNTED.format(n=plants), hours(hours_h)])
+def in_short(plants: int, hours_h: float, people: int = 1) -> str:
+    """Return so many plants and hours in words, of several people their hours added up."""
+    time = hours(hours_h)
+    if people > 1:
+        time = texts.HOURS_IN_ALL.format(hours=time)
+    return listed([texts.PLANTS_COUNTED.format(n=plants), time])
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
@@ -106,6 +109,8 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
         st.warning(in_words(told))
     said = "" if len(plan.route) else texts.NO_STOPS
     if choices.season is not None:
+        if not said and _is_of_nobody(choices):
+            st.info(texts.ROUTE_OF_NOBODY)
         now = chosen_day.progress(choices)
         done = {"inspected": now.inspected_today, "found": now.found_today}
         if now.inspected_today:
@@ -113,6 +118,14 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
             return
     if said:
         st.warning(said)
+
+
+def _is_of_nobody(choices: Choices) -> bool:
+    """Return whether the route shown is planned for one, while several are out with their own."""
+    if choices.season.settings.team or chosen_day.route(choices).worked:
+        return False
+    kept = chosen_day.planned_and_done(choices)
+    return kept is not None and kept.people > 1
 
 
 def beside_figures(choices: Choices) -> None:

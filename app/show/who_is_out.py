@@ -14,12 +14,16 @@ from ..state import heard
 from ..words import texts
 
 if TYPE_CHECKING:
-    from datetime import datetime
+    from datetime import datetime, timedelta
 
     from fieldmon.monitoring.scouts_out import ScoutOut
 
     from ..state.choices import Choices
     from ..state.heard import LastHeard
+
+
+# up to there one counts in minutes
+_MOST_MINUTES_H = 2
 
 
 @dataclass(frozen=True)
@@ -68,15 +72,28 @@ def _line(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> OutLine:
 
 def _cautions(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> tuple[str, ...]:
     is_other = asked is not None and asked.day not in (None, choices.on) and choices.is_today
-    minutes = round(abs(one.fast.total_seconds()) / 60)
     said = (
         (not one.has_route, texts.OUT_NO_ROUTE),
-        (one.clock_is_wrong, texts.OUT_CLOCK.format(minutes=minutes)),
+        (one.clock_is_wrong, _clock_off(one.fast)),
         (is_other, "" if asked is None or asked.day is None else
          texts.OUT_OTHER_DAY.format(day=choices.units.said_day(asked.day, choices.on))),
-        (one.is_older and not is_other, texts.OUT_OLDER),
+        (_is_older(choices, one, asked), texts.OUT_OLDER),
     )  # fmt: skip
     return tuple(sentence for holds, sentence in said if holds)
+
+
+def _is_older(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> bool:
+    """Return whether the phone goes by another plan of the day than the one given last."""
+    knows = asked is not None and asked.day == choices.on
+    return knows and one.plan is not None and asked.plan != one.plan
+
+
+def _clock_off(fast: timedelta) -> str:
+    """Say how far a phone's clock is off, in what one would count it in."""
+    off_h = abs(fast.total_seconds()) / 3600
+    if off_h < _MOST_MINUTES_H:
+        return texts.OUT_CLOCK.format(minutes=round(off_h * 60))
+    return texts.OUT_CLOCK_HOURS.format(hours=round(off_h)) if off_h < 24 else texts.OUT_CLOCK_DAYS
 
 
 def _clock(choices: Choices, moment: datetime) -> str:

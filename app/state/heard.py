@@ -16,24 +16,28 @@ if TYPE_CHECKING:
 
 
 class LastHeard(NamedTuple):
-    """When somebody last asked anything, which day was asked for last, and since when."""
+    """When somebody last asked anything; which day was asked for last, since when, by which plan.
+
+    The plan is the one that the phone goes by, see `fieldmon.monitoring.day_ahead.plan_of`.
+    """
 
     at: datetime
     day: date | None = None
     since: datetime | None = None
+    plan: int | None = None
 
 
 # by file and name
 _HEARD: dict[tuple[Path, str], LastHeard] = {}
 
 
-def note(path: Path, name: str, day: date | None = None) -> None:
-    """Note that somebody asks something of a season now; `day`: for this day's route."""
+def note(path: Path, name: str, day: date | None = None, plan: int | None = None) -> None:
+    """Note that somebody asks something of a season now; `day`: for this day's route, `plan`."""
     now, before = utc_now(), _HEARD.get((path, name))
     if day is None and before is not None:
         noted = before._replace(at=now)
-    elif day is None or before is None or before.day != day:
-        noted = LastHeard(now, day, None if day is None else now)
+    elif day is None or before is None or (before.day, before.plan) != (day, plan):
+        noted = LastHeard(now, day, None if day is None else now, plan)
     else:
         noted = before._replace(at=now)
     _HEARD[path, name] = noted

@@ -420,6 +420,10 @@ STEP_FOUND = Plural(
     by="inspected",
 )
 STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
+ROUTE_OF_NOBODY = (
+    "The route shown is that of one who works alone; those who are out have their own."
+)
+HOURS_IN_ALL = "{hours} in all"
 STEP_TREATED = Plural("{n:,} plant treated", "{n:,} plants treated")
 PLAN_USED = "This is the plan for {day}: it is kept with the season."
 SEND_TITLE = "Take the route along"
@@ -1061,6 +1065,8 @@ OUT, OUT_NO_CODE, OUT_MADE = "Who is out", "no code", "code made {at}"
 OUT_HEARD, OUT_SILENT, OUT_LOADED = "heard {at}", "not heard yet", "has the day since {time}"
 OUT_DONE = "{done:,} of {all:,} recorded"
 OUT_CLOCK = "The phone's clock is {minutes:,} min off: its times are put right."
+OUT_CLOCK_HOURS = "The phone's clock is {hours:,} h off: its times are put right."
+OUT_CLOCK_DAYS = "The phone's clock is more than a day off: its times are put right."
 OUT_OLDER = "Works by an older plan of the day: load the day again on the phone."
 OUT_OTHER_DAY = "Has the plan of {day}: load the day again on the phone."
 OUT_SHARES = "shares these plants with {others}"

@@ -60,9 +60,13 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     Somebody of the team has a route of their own, and so has whoever has rows, or shares them, see
     `crew_of`. It begins where that person inspected last, or at the gate.
     """
-    kept, scene = season.kept_route(on, kept_as(season, part)), season.scene(on, who=part.name)
-    left = kept[(scene.last_inspected[kept] != scene.day) & _own(season, part)[kept]]
-    return _through(scene, left) if len(left) else planned_again(season, on, part)
+    scene = season.scene(on, who=part.name)
+    kept = season.kept_route(on, kept_as(season, on, part))
+    kept = kept[scene.last_inspected[kept] != scene.day]
+    left = kept[_own(season, part)[kept]]
+    if not len(left) or (part.name and _is_others(season, on, part, kept)):
+        return planned_again(season, on, part)
+    return _through(scene, left)
 
 
 def planned_again(
@@ -81,7 +85,7 @@ def planned_again(
     if part.name and member is None:
         crew = crew_of(season, part)
         told = None if seconds_left is None else {part.name: seconds_left}
-        named = (kept_as(season, part),) if len(crew) == 1 else None
+        named = (kept_as(season, on, part),) if len(crew) == 1 else None
         days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
         return days[crew.index(part.name)].route
     who = None if member is None else member.name
@@ -103,12 +107,39 @@ def crew_of(season: Season, part: Part) -> tuple[str, ...]:
     return (*names, *({part.name} - {*names}))
 
 
-def kept_as(season: Season, part: Part) -> str:
-    """Return by which name a part's route is kept: the season's own is that of who works alone."""
+def kept_as(season: Season, on: date, part: Part) -> str:
+    """Return by which name a part's route of a day is kept.
+
+    The season's own is that of who works alone, unless one of their own was given to them after it.
+    """
     if (member := part.member(season)) is not None:
         return member.name
     alone = part.rows is None and not season.settings.team and len(crew_of(season, part)) == 1
-    return "" if alone else part.name
+    if not alone:
+        return part.name
+    last = season.kept_last(on)
+    return part.name if last.get(part.name, 0) > last.get("", 0) else ""
+
+
+def plan_of(season: Season, on: date, part: Part) -> int | None:
+    """Return the number in the file of the route kept last of a part; None: none is kept."""
+    return season.kept_last(on).get(kept_as(season, on, part))
+
+
+def given(season: Season, on: date, part: Part) -> Plants:
+    """Return the plants of the route kept of a part that are in it."""
+    kept = season.kept_route(on, kept_as(season, on, part))
+    return kept[_own(season, part)[kept]]
+
+
+def _is_others(season: Season, on: date, part: Part, left: Plants) -> bool:
+    """Return whether a route was made for other rows, or others who share them have of it now."""
+    if part.member(season) is not None:
+        return False
+    if not _own(season, part)[left].all():
+        return True
+    others = [one for one in crew_of(season, part) if one != part.name]
+    return any(np.isin(left, season.kept_route(on, one)).any() for one in others)
 
 
 def _own(season: Season, part: Part) -> NDArray[np.bool_]:

@@ -15,7 +15,7 @@ from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -146,13 +146,16 @@ class PlannedAndDone:
     done, added
         Plants inspected of these, and besides them.
     hours
-        From the begin of the first plan to the end of the last one.
+        From the begin of the first plan to the end of the last one, those of all together.
+    people
+        How many they are: each has a plan.
     """
 
     planned: int
     done: int
     added: int
     hours: float
+    people: int = 1
 
     @property
     def left(self) -> int:
@@ -162,22 +165,22 @@ class PlannedAndDone:
     @classmethod
     def of(
         cls, kept: Iterable[tuple[NDArray[np.int32], NDArray[np.int32]]],
-        inspected: NDArray[np.int32], hours: float,
+        inspected: NDArray[np.int32], hours: Sequence[float],
     ) -> PlannedAndDone:  # fmt: skip
         """Return it of each one's plans, the plants of the last one and of all, and what was done.
 
         Examples
         --------
         >>> last, of_all, seen = (np.array(plants) for plants in ([3, 4], [1, 2, 3, 4], [1, 3, 9]))
-        >>> PlannedAndDone.of([(last, of_all)], seen, 4.0)
-        PlannedAndDone(planned=3, done=2, added=1, hours=4.0)
+        >>> PlannedAndDone.of([(last, of_all)], seen, [4.0])
+        PlannedAndDone(planned=3, done=2, added=1, hours=4.0, people=1)
         """
         seen = set(inspected.tolist())
         planned: set[int] = set()
         for last, of_all in kept:
             planned |= {*last.tolist()} | (seen & {*of_all.tolist()})
         done = len(planned & seen)
-        return cls(len(planned), done, len(seen) - done, hours)
+        return cls(len(planned), done, len(seen) - done, sum(hours), len(hours))
 
 
 def kept(db: sqlite3.Connection) -> tuple[DayFigures, ...]:

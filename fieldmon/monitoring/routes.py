@@ -125,6 +125,12 @@ def plants(db: sqlite3.Connection, day: int, who: str = "") -> NDArray[np.int32]
     return np.array([plant for (plant,) in rows], np.int32)
 
 
+def kept_last(db: sqlite3.Connection, day: int) -> dict[str, int]:
+    """Return the number in the file of the route kept last for a day, of each who has one."""
+    rows = db.execute("SELECT who, max(fid) FROM routes WHERE day = ? GROUP BY who", (day,))
+    return dict(rows.fetchall())
+
+
 @dataclass(frozen=True, eq=False)
 class KeptPlans:
     """All that is kept of a day's plans for one: who, and what of it.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.monitoring.day_ahead import Part, crew_of, kept_as
+from fieldmon.monitoring.day_ahead import Part, crew_of, given, plan_of
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import scouts_of
 
@@ -22,14 +22,6 @@ _WRONG = timedelta(minutes=2)
 # the last finding of each, and the last photo
 _LAST_SENT = "SELECT scout, max(received), sent_phone FROM tellings GROUP BY scout"
 _LAST_PHOTO = "SELECT scout, max(received) FROM photos GROUP BY scout"
-# whether somebody's last finding on a route is of one that is no longer the day's last
-_IS_OLDER = (
-    "WITH own AS (SELECT s.plant AS plant, r.revision AS revision, max(r.revision) OVER () AS last "
-    "FROM routes r JOIN stops s ON s.route = r.fid WHERE r.day = ? AND r.who = ?), "
-    "told AS (SELECT i.plant AS plant FROM tellings t JOIN inspections i ON i.fid = t.inspection "
-    "WHERE t.scout = ? AND t.off_route = 0 AND i.day = ? ORDER BY t.fid DESC LIMIT 1) "
-    "SELECT max(own.revision) < max(own.last) FROM own JOIN told ON own.plant = told.plant"
-)
 
 
 @dataclass(frozen=True)
@@ -46,8 +38,8 @@ class ScoutOut:
         How far the phone's clock was ahead then.
     done, ahead
         Plants that this person recorded on the day, and those of the route that are left.
-    is_older
-        Whether the last finding was made by a plan of the day that is not its last one.
+    plan
+        Which plan of the day was given last, see `day_ahead.plan_of`; None: none.
     shares
         Who else has a code for the same rows.
     has_route
@@ -61,7 +53,7 @@ class ScoutOut:
     fast: timedelta
     done: int
     ahead: int
-    is_older: bool
+    plan: int | None
     shares: tuple[str, ...]
     has_route: bool
 
@@ -77,22 +69,19 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     with season.store.reading() as db:
         sent = {who: (at, clock) for who, at, clock in db.execute(_LAST_SENT)}
         photos = dict(db.execute(_LAST_PHOTO).fetchall())
-    day, done = settings.day(on), season.history.inspections.on(on)
+    done = season.history.inspections.on(on)
     out = []
     for name in dict.fromkeys([*coded, *(member.name for member in settings.team)]):
         code = coded.get(name)
         part = Part(None if code is None else code.rows, name)
-        member, route = part.member(season), season.kept_route(on, kept_as(season, part))
-        with season.store.reading() as db:
-            asked = day, kept_as(season, part), name, day
-            (is_older,) = db.execute(_IS_OLDER, asked).fetchone()
+        member, route = part.member(season), given(season, on, part)
         heard = max(filter(None, (sent.get(name, ("",))[0], photos.get(name, ""))), default="")
         out.append(
             ScoutOut(
                 name, part.rows, None if code is None else _at(code.made), _at(heard),
                 _fast(*sent[name]) if name in sent else timedelta(),
                 len(np.unique(made_by(done, name).plant)), int((~np.isin(route, done.plant)).sum()),
-                bool(is_older),
+                plan_of(season, on, part),
                 () if member else tuple(one for one in crew_of(season, part) if one != name),
                 not settings.team or member is not None or part.rows is not None,
             )

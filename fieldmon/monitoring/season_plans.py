@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import routes, season_log
+from fieldmon.monitoring import phone_tables, routes, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.mornings import is_behind
@@ -21,6 +21,7 @@ from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
 from fieldmon.planning.team_worker import Posted
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     from datetime import date, time
@@ -149,22 +150,35 @@ class SeasonPlans(OpenSeason):
                 who = who if named is None else named.name
             return routes.plants(db, settings.day(on), who)
 
+    def kept_last(self, on: date) -> dict[str, int]:
+        """Return the number in the file of the last route kept for the day `on`, by who has one."""
+        with self._lock, self.store.reading() as db:
+            return routes.kept_last(db, settings_of(db).day(on))
+
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
 
-        `who`: of one of a team alone; None: of all who work.
+        `who`: of one of a team alone; None: of all who are out. Of a plan that nobody goes by any
+        more only what was done of it is part.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
-            done = self._inspections(db).on(on).inspected
-            of_all = routes.of_day(db, settings_of(db).day(on))
-        name = None if who is None else who.casefold()
-        kept = [one for one in of_all if name is None or one.who.casefold() == name]
+            contents = self._read(db)
+            day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
+            kept = routes.of_day(db, day)
+            codes = phone_tables.codes_on(db, local_clock(self.plot.field), on)
+            last = routes.kept_last(db, day)
+        if who is None:
+            out = _out(last, codes, self._planned_by(contents, on))
+        else:
+            out = {name for name in last if name.casefold() == who.casefold()}
+            kept = [one for one in kept if one.who in out]
         if not kept:
             return None
+        none = np.empty(0, np.int32)
         return PlannedAndDone.of(
-            [(one.last, one.of_all) for one in kept],
+            [(one.last if one.who in out else none, one.of_all) for one in kept],
             np.unique(made_by(done, who).plant),
-            max(one.hours for one in kept),
+            [one.hours for one in kept if one.who in out],
         )
 
     def _keep(
@@ -232,6 +246,21 @@ class SeasonPlans(OpenSeason):
             for k, who in enumerate(names):
                 given[aisle[routes.plants(db, day, who)]] = k
         return given if (given >= 0).any() else None
+
+
+def _out(
+    last: dict[str, int], codes: dict[str, tuple[int, int] | None], settings: MonitoringSettings
+) -> set[str]:
+    """Return by which names the routes are kept of those who are out, of all kept of a day.
+
+    They are of the team or have a code. The season's own route is that of who is alone, and counts
+    where none was given to anybody.
+    """
+    names = {one.name.casefold() for one in settings.team} | {*codes}
+    out = {name for name in last if name.casefold() in names}
+    if not settings.team and [*codes.values()] == [None] and "" in last:
+        return {max(out | {""}, key=last.__getitem__)}
+    return out or ({""} if "" in last else {*last})
 
 
 def _names(settings: MonitoringSettings) -> tuple[str, ...]:

@@ -166,6 +166,8 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         said.append(headline(facts.route, day))
     if facts.who:
         said.append(worded(words.DAY_OF, who=words.isolated(facts.who)))
+    elif not (facts.worked or facts.team or facts.held is None) and facts.held.people > 1:
+        said.append(worded(words.DAY_OF_NOBODY))
     return said
 
 

@@ -164,6 +164,36 @@ def test_scouts_with_codes_for_the_same_plants_share_them(tmp_path):
     assert [len(asked_of(fresh, BEGINS, part)) for part in (ann, ben)] == [0, 1]
 
 
+def test_a_code_with_other_rows_is_a_full_day_in_these(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg", robot=Robot(hours=0.7))
+    for rows in (None, (1, 8), (11, 19)):
+        scouts.let_in(fresh, "Dan", rows)
+        route = route_ahead(fresh, BEGINS, Part(rows, "Dan"))
+        assert inside(fresh, rows)[route.plant].all()
+        assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
+        again = route_ahead(fresh, BEGINS, Part(rows, "Dan"))
+        assert again.plant.tolist() == route.plant.tolist()
+
+
+def test_who_is_left_alone_keeps_what_was_given_and_who_comes_back_takes_nothing_of_it(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    ann, dan = Part(name="Ann"), Part(name="Dan")
+    scouts.let_in(fresh, "Ann")
+    alone = route_ahead(fresh, BEGINS, ann).plant.tolist()
+    scouts.let_in(fresh, "Dan")
+    route_ahead(fresh, BEGINS, dan)
+    shared = route_ahead(fresh, BEGINS, ann).plant.tolist()
+    assert shared != alone
+    scouts.take_back(fresh, "Dan")
+    assert route_ahead(fresh, BEGINS, ann).plant.tolist() == shared
+    rest = planned_again(fresh, BEGINS, ann).plant
+    assert route_ahead(fresh, BEGINS, ann).plant.tolist() == rest.tolist()
+    scouts.let_in(fresh, "Dan")
+    routes = [route_ahead(fresh, BEGINS, part).plant for part in (dan, ann)]
+    assert len(routes[0])
+    assert not set(routes[0]) & set(routes[1])
+
+
 def test_a_name_beside_the_team_has_its_own_rows_or_nothing(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg", team=team_of(2, Robot(hours=0.5)))
     team = {plant for one in (1, 2) for plant in route_ahead(fresh, BEGINS, robot(one)).plant}

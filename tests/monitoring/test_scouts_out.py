@@ -41,6 +41,15 @@ def test_it_says_who_has_which_rows_and_how_far_they_are(fresh):
     assert of(fresh, "Ben").done == 0
 
 
+def test_what_is_ahead_of_who_has_other_rows_now_lies_in_these(fresh):
+    scouts.let_in(fresh, "Dan", (1, 8))
+    line = fresh.label.line[route_ahead(fresh, BEGINS, Part((1, 8), "Dan")).plant]
+    scouts.let_in(fresh, "Dan", (7, 12))
+    assert of(fresh, "Dan").ahead == int((line >= 7).sum())
+    route = route_ahead(fresh, BEGINS, Part((7, 12), "Dan"))
+    assert of(fresh, "Dan").ahead == len(route)
+
+
 def test_a_wrong_clock_and_shared_plants_are_said(fresh):
     key = scouts.let_in(fresh, "Ann")
     scouts.let_in(fresh, "Ben")
@@ -51,18 +60,17 @@ def test_a_wrong_clock_and_shared_plants_are_said(fresh):
     assert ann.fast.total_seconds() == pytest.approx(1800, abs=30)
 
 
-def test_who_goes_by_an_older_plan_is_known_by_what_was_recorded_last(fresh):
-    key, part = scouts.let_in(fresh, "Ann", (1, 19)), Part(None, "Ann")
-    old = route_ahead(fresh, BEGINS, part).plant
-    assert not of(fresh, "Ann").is_older
-    take(fresh, key, [a_finding(int(old[0]), on=BEGINS)], utc_now())
-    assert not of(fresh, "Ann").is_older
-    new = planned_again(fresh, BEGINS, part, seconds_left=600.0).plant
-    gone = next(int(plant) for plant in old[::-1] if plant not in new)
-    take(fresh, key, [a_finding(gone, on=BEGINS)], utc_now())
-    assert of(fresh, "Ann").is_older
-    take(fresh, key, [a_finding(int(new[0]), on=BEGINS)], utc_now())
-    assert not of(fresh, "Ann").is_older
+def test_which_plan_was_given_last_is_known_before_anything_is_recorded_by_it(fresh):
+    scouts.let_in(fresh, "Ann")
+    assert of(fresh, "Ann").plan is None
+    route_ahead(fresh, BEGINS, Part(None, "Ann"))
+    alone = of(fresh, "Ann").plan
+    scouts.let_in(fresh, "Ben")
+    route_ahead(fresh, BEGINS, Part(None, "Ben"))
+    shared = of(fresh, "Ann").plan
+    assert len({alone, shared, of(fresh, "Ben").plan}) == 3
+    planned_again(fresh, BEGINS, Part(None, "Ann"), seconds_left=3000.0)
+    assert of(fresh, "Ann").plan not in {alone, shared}
 
 
 def test_the_team_is_there_without_codes_and_who_is_beside_it_has_no_route(fresh):

@@ -8,13 +8,18 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import SKIPPED, Inspections
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
+from fieldmon.plot.local_clock import utc_now
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
+    a_plot,
     a_season,
     on,
+    some_records,
     some_results,
 )
 
@@ -111,6 +116,39 @@ def test_a_kept_plan_is_held_to_what_was_inspected(season):
     assert (held.planned, held.done) == (len(rest.route) + 4, 4)
     assert ROBOT.hours - 0.2 < held.hours <= ROBOT.hours + 0.01
     assert Season(season.path).planned_and_done(on(1)) is None
+
+
+def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
+    today = utc_now().date()
+    plot = a_plot()
+    settings = MonitoringSettings(today, robot=ROBOT)
+    season = Season.create(tmp_path / "out.gpkg", plot, some_records(plot), settings)
+    own = season.plan(today).route
+    parts = [Part(name=name) for name in ("Ann", "Dan")]
+    for part in parts:
+        scouts.let_in(season, part.name)
+    held = season.planned_and_done(today)
+    assert held.planned == len(own), "until something was given to one of them"
+    ann, dan = (route_ahead(season, today, part) for part in parts)
+    held = season.planned_and_done(today)
+    assert (held.planned, held.people) == (len(ann) + len(dan), 2)
+    assert held.hours == pytest.approx((ann.end_s + dan.end_s) / 3600, abs=0.01)
+    done = Inspections.of(dan.plant[:3], np.zeros(3, np.int8), np.datetime64(today))
+    season.record(done, "f", "Dan")
+    scouts.take_back(season, "Dan")
+    held = season.planned_and_done(today)
+    assert (held.planned, held.done, held.people) == (len(ann) + 3, 3, 1)
+
+
+def test_a_code_taken_back_on_a_later_day_changes_no_day_before(tmp_path):
+    season = a_season(tmp_path / "out.gpkg")
+    parts = [Part(name=name) for name in ("Ann", "Dan")]
+    for part in parts:
+        scouts.let_in(season, part.name)
+    route_ahead(season, BEGINS, parts[0])
+    before = season.planned_and_done(BEGINS)
+    scouts.take_back(season, "Dan")
+    assert season.planned_and_done(BEGINS) == before
 
 
 def test_the_plans_of_a_team_are_held_to_what_each_and_all_did(tmp_path):

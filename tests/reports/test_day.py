@@ -12,6 +12,7 @@ from fieldmon.monitoring import PlannedAndDone
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.robot import Robot
+from fieldmon.reports import words
 from fieldmon.reports.content import (
     Illustration,
     KeyFigures,
@@ -192,6 +193,13 @@ def test_a_worked_day_is_held_to_its_plan(done, of_worked_day):
     assert len(paragraphs(day_report(replace(done, held=None), Units()))) == (
         len(paragraphs(other)) - 1
     )
+
+
+def test_the_route_of_a_day_on_which_several_are_out_is_said_to_be_nobodys(done):
+    alone = replace(done, worked=False, held=PlannedAndDone(9, 5, 1, 2.0))
+    several = replace(alone, held=PlannedAndDone(9, 5, 1, 4.0, people=2))
+    said = [words.DAY_OF_NOBODY in paragraphs(day_report(one, Units())) for one in (alone, several)]
+    assert said == [False, True]
 
 
 @pytest.fixture

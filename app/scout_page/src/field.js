@@ -154,11 +154,11 @@ export class Field {
   /** See what others found meanwhile; the way stays as it is. */
   async refresh() {
     if (!this.day) return;
-    const { day } = await fetchDay(this.ask, this.access, this.day.plot);
+    const { day } = await fetchDay(this.ask, this.access, this.day.plot, this.day.plan);
     if (day.day !== this.day.day || day.plot !== this.day.plot) return;
-    const { route, seconds_left } = this.day;
+    const { route, plan, seconds_left } = this.day;
     const asked = new Set(this.asked().map((one) => one.id));
-    this.#take({ ...day, route, seconds_left });
+    this.#take({ ...day, route, plan, seconds_left });
     const isNew = this.asked().some((one) => !asked.has(one.id));
     this.ahead = isNew ? this.#withAsked(this.ahead) : this.ahead.filter((one) => !this.done.has(one));
     // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
@@ -168,9 +168,9 @@ export class Field {
 
   /** Let the full planner plan the rest. */
   async planRest() {
-    const route = await fetchRest(this.ask, this.access, this.meant(), this.secondsLeft());
+    const { route, plan } = await fetchRest(this.ask, this.access, this.meant(), this.secondsLeft());
     await this.settled();
-    this.day = { ...this.day, route };
+    this.day = { ...this.day, route, plan };
     this.ahead = this.#withAsked(route.plants);
     this.last = null;
     this.draft = this.#keepDraft();

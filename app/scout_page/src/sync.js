@@ -134,9 +134,9 @@ export async function call(ask, access, path, request = {}) {
 }
 
 /** Bring the plot and the day; the plot only where it is another one. */
-export async function fetchDay(ask, access, known) {
-  const query = access.on ? `?on=${access.on}` : "";
-  const answered = await call(ask, access, `day${query}`);
+export async function fetchDay(ask, access, known, plan) {
+  const query = new URLSearchParams({ ...(access.on && { on: access.on }), ...(plan && { plan }) }).toString();
+  const answered = await call(ask, access, `day${query && `?${query}`}`);
   if (answered.status === 401) throw new KeyEnded(access.season);
   const day = answered.said;
   if (!answered.ok) throw new Error(day.error);
@@ -155,5 +155,5 @@ export async function fetchRest(ask, access, on, secondsLeft) {
   const answer = await call(ask, access, "route", { method: "POST", body, headers: { "content-type": "application/json" } });
   if (answer.status === 401) throw new KeyEnded(access.season);
   if (!answer.ok) throw new Error(answer.said.error);
-  return answer.said.route;
+  return answer.said;
 }

@@ -184,6 +184,20 @@ test("what others found is seen, and not inspected twice; the way stays", async 
   assert.ok(field.known().found.has(10));
 });
 
+test("it tells by which plan it goes on as it sees what others found, until it loads another", async () => {
+  const { season, field } = await aField();
+  const asked = [], ask = season.ask;
+  field.ask = (address, ...rest) => { asked.push(new URL(address, "http://here").searchParams.get("plan")); return ask(address, ...rest); };
+  season.day = aDay([0, 1], { plan: 7 });
+  await field.load();
+  season.day = aDay([1, 2], { plan: 9 });
+  await field.refresh();
+  assert.equal(field.day.plan, 7);
+  await field.load();
+  await field.refresh();
+  assert.deepEqual(asked, [null, "7", null, "9"]);
+});
+
 test("the plant in large print stays when another records it: a tap is of what is shown", async () => {
   const { season, field } = await aField();
   season.day = aDay([1, 2], { today: [{ plant: 0, result: "clean", who: "Ben", count: null, second: 1 }], clean: [0] });

@@ -11,6 +11,7 @@ from app.state import heard, scout_page
 from app.words import texts
 from fieldmon.errors import AccessError
 from fieldmon.monitoring import scouts
+from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.planning.members import team_of
 from tests.app.driving import go, press, tap
 
@@ -90,6 +91,16 @@ def test_a_second_code_for_the_same_plants_says_that_they_are_shared(scout):
     assert "shares these plants with \u2068Ann\u2069" in scout.success[0].value
     ask_for(scout, "Cem", first=1, last=2)
     assert "overlap" in scout.error[0].value
+
+
+def test_where_several_are_out_today_says_that_the_route_shown_is_nobodys(season_app, season):
+    on = season_app.date_input[0].value
+    for name in ("Ann", "Dan"):
+        assert not any(one.value == texts.ROUTE_OF_NOBODY for one in season_app.run().info)
+        scouts.let_in(season(), name)
+        route_ahead(season(), on, Part(None, name))
+    assert any(one.value == texts.ROUTE_OF_NOBODY for one in season_app.run().info)
+    assert any(" in all" in one.value for one in season_app.markdown)
 
 
 def test_the_names_of_the_team_are_offered_and_any_other_needs_rows(season_app, season):

@@ -2,6 +2,7 @@
 
 import json
 from datetime import timedelta
+from types import SimpleNamespace
 
 import jsonschema
 import numpy as np
@@ -9,11 +10,15 @@ import pytest
 
 from app.api import description
 from app.api.documents import day_document, plot_document, rest_document
+from app.show import who_is_out
+from app.words import texts
+from app.words.units import UnitsInLanguage
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.findings import take
+from fieldmon.plot.local_clock import local_clock
 from tests.monitoring.phone import NOW, a_finding
-from tests.monitoring.seasons import BEGINS
+from tests.monitoring.seasons import BEGINS, a_season
 
 
 @pytest.fixture
@@ -88,3 +93,31 @@ def test_the_rest_is_planned_anew_within_what_is_left(served, scout):
     assert 0 < rest["end_s"] <= 1200
     whole = json.loads(rest_document(served.season, scout, BEGINS + timedelta(days=1), None))
     assert len(whole["route"]["plants"]) > len(rest["plants"])
+
+
+def test_the_board_warns_until_a_phone_has_the_plan_given_last(tmp_path):
+    season = a_season(tmp_path / "out.gpkg")
+    choices = SimpleNamespace(season=season, on=BEGINS, is_today=True, units=UnitsInLanguage(),
+                              clock=local_clock(season.plot.field))  # fmt: skip
+
+    def warned():
+        return [one.name for one in who_is_out.lines(choices) if texts.OUT_OLDER in one.cautions]
+
+    def loaded(scout, has=None):
+        return json.loads(day_document(season, scout, BEGINS, has))["plan"]
+
+    ann = scouts.who(season, scouts.let_in(season, "Ann"))
+    alone = loaded(ann)
+    assert warned() == []
+    dan = scouts.who(season, scouts.let_in(season, "Dan"))
+    loaded(dan)
+    assert warned() == ["Ann"]
+    assert loaded(ann, alone) != alone, "it sees what others found, and goes on by what it has"
+    assert warned() == ["Ann"]
+    loaded(ann)
+    assert warned() == []
+    planned = json.loads(rest_document(season, ann, BEGINS, 900.0))
+    jsonschema.validate(planned["route"], description.ROUTE)
+    assert warned() == ["Dan"], "the rest of both was planned anew"
+    loaded(dan)
+    assert warned() == []

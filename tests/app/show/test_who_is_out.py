@@ -10,7 +10,7 @@ from app.state import heard
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.monitoring import scouts
-from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.day_ahead import Part, plan_of, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.plot.local_clock import local_clock, utc_now
 from tests.monitoring.phone import a_finding
@@ -22,6 +22,9 @@ def choices(tmp_path):
     season = a_season(tmp_path / "out.gpkg")
     return SimpleNamespace(season=season, on=BEGINS, is_today=True, units=UnitsInLanguage(),
                            clock=local_clock(season.plot.field))  # fmt: skip
+
+
+PART = Part((1, 8), "Ann")
 
 
 def test_nobody_is_out_where_there_are_no_codes(choices):
@@ -36,7 +39,7 @@ def test_a_line_says_rows_code_phone_and_how_far(choices):
     route = route_ahead(choices.season, BEGINS, Part((1, 8), "Ann")).plant
     take(choices.season, key, [a_finding(int(route[0]), on=BEGINS)],
          utc_now() + timedelta(hours=1))  # fmt: skip
-    heard.note(choices.season.path, "Ann", BEGINS)
+    heard.note(choices.season.path, "Ann", BEGINS, plan_of(choices.season, BEGINS, PART))
     (line,) = who_is_out.lines(choices)
     assert f"1 of {len(route)} recorded" in line.said
     assert "has the day since " in line.said
@@ -50,3 +53,12 @@ def test_a_time_of_another_day_names_it(choices):
     at = choices.clock.moment(BEGINS, datetime(2026, 4, 6, 7, 30).time())
     assert who_is_out._clock(choices, at) == "07:30"
     assert who_is_out._clock(choices, at + timedelta(days=1)) == "Tue 7 Apr 07:30"
+
+
+@pytest.mark.parametrize(
+    ("off", "said"),
+    [(timedelta(minutes=-7), "7 min off"), (timedelta(hours=3), "3 h off"),
+     (-timedelta(days=3 * 365), "more than a day off")],
+)  # fmt: skip
+def test_how_far_a_clock_is_off_is_said_as_one_would_count_it(off, said):
+    assert said in who_is_out._clock_off(off)

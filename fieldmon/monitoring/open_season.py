@@ -36,6 +36,7 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
 from fieldmon.plot.grid import RowLabel, row_label
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -182,15 +183,18 @@ class OpenSeason:
     def planned_by(self, on: date) -> MonitoringSettings:
         """Return what a day is planned by: an earlier one by what counted then, see `settings_on`.
 
-        A day is an earlier one once something was recorded of a later one. If it was neither
-        planned nor recorded itself, it goes by what counted on the day recorded before it.
+        A day is an earlier one once something was recorded of a later one or, if anything was of
+        itself, once it is past by the plot's clock. If it was neither planned nor recorded itself,
+        it goes by what counted on the day recorded before it.
         """
         return self._planned_by(self._now(), on)
 
     def _planned_by(self, contents: SeasonContents, on: date) -> MonitoringSettings:
         recorded = contents.history.inspections.date
         day = np.datetime64(on, "D")
-        if not len(recorded) or day >= recorded[-1]:
+        if not len(recorded) or day > recorded[-1]:
+            return contents.settings
+        if day == recorded[-1] and on >= local_clock(self.plot.field).today():
             return contents.settings
         before = recorded[recorded <= day][-1:].tolist()
         return self._counted_on(on, *before)

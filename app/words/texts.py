@@ -1018,7 +1018,8 @@ SCOUT_PAGE = {
     "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
     "scan it.",
     "count_whole": "Pests of a find are a whole number from 1. Leave it empty if nobody counted.",
-    "stranded": "{n} of {who} wait here, whose key no longer holds. Save them to a file.",
+    "stranded": "Records of {who} that wait here: {n}. Their key no longer holds: save them to a "
+    "file.",
     "plots": "Seasons on this phone",
     "refused": "Not taken", "send_again": "Send again what was not taken",
     "save_file": "Save what is not sent to a file",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -157,9 +157,11 @@ class OpenSeason:
         """
         return self._counted_on(on)
 
-    def _counted_on(self, *days: date) -> MonitoringSettings:
+    def _counted_on(
+        self, *days: date, read: sqlite3.Connection | None = None
+    ) -> MonitoringSettings:
         """Return what counted on the first of some days that was planned or recorded; else now."""
-        with self.store.reading() as db:
+        with self.store.reading() if read is None else nullcontext(read) as db:
             now = settings_of(db)
             moments = (season_log.planned_last(db, str(day)) for day in days)
             moment = next((one for one in moments if one is not None), None)
@@ -189,15 +191,24 @@ class OpenSeason:
         """
         return self._planned_by(self._now(), on)
 
-    def _planned_by(self, contents: SeasonContents, on: date) -> MonitoringSettings:
+    def _planned_by(
+        self, contents: SeasonContents, on: date, read: sqlite3.Connection | None = None
+    ) -> MonitoringSettings:
+        if not self._is_earlier(contents, on):
+            return contents.settings
         recorded = contents.history.inspections.date
-        day = np.datetime64(on, "D")
+        before = recorded[recorded <= np.datetime64(on, "D")][-1:].tolist()
+        return self._counted_on(on, *before, read=read)
+
+    def is_earlier(self, on: date) -> bool:
+        """Return whether a day goes by what counted then, see `planned_by`."""
+        return self._is_earlier(self._now(), on)
+
+    def _is_earlier(self, contents: SeasonContents, on: date) -> bool:
+        recorded, day = contents.history.inspections.date, np.datetime64(on, "D")
         if not len(recorded) or day > recorded[-1]:
-            return contents.settings
-        if day == recorded[-1] and on >= local_clock(self.plot.field).today():
-            return contents.settings
-        before = recorded[recorded <= day][-1:].tolist()
-        return self._counted_on(on, *before)
+            return False
+        return bool(day < recorded[-1]) or on < local_clock(self.plot.field).today()
 
     @property
     def history(self) -> History:
@@ -237,8 +248,8 @@ class OpenSeason:
         Of a team it is that of `who` is named, or of the first. Whoever else is named has the
         season's robot and stands where they inspected last, or at the gate.
         """
-        with self._lock:
-            return self._scene(self._now(), on, now, who)
+        with self._lock, self.store.reading() as db:  # all of one moment
+            return self._scene(self._read(db), on, now, who, db)
 
     def begun_s(self, on: date, who: str = "") -> float:
         """Return the second of the day `on` at which work began, or will; `who` as in `scene`.
@@ -253,9 +264,10 @@ class OpenSeason:
         return contents.history.begun_s(shift, contents.settings.day(on), name)
 
     def _scene(
-        self, contents: SeasonContents, on: date, now: time | None = None, who: str = ""
-    ) -> Scene:
-        settings, day = self._planned_by(contents, on), contents.settings.day(on)
+        self, contents: SeasonContents, on: date, now: time | None = None, who: str = "",
+        read: sqlite3.Connection | None = None,
+    ) -> Scene:  # fmt: skip
+        settings, day = self._planned_by(contents, on, read), contents.settings.day(on)
         now_s = None if now is None else seconds(now)
         morning = contents.morning(day)
         shift, name = self._shift(settings, who)

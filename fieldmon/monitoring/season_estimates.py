@@ -117,9 +117,11 @@ class SeasonEstimates(OpenSeason):
         asked
             The threshold, the sprayer and the costs; None: the defaults.
         """
-        with self._asked(on) as (contents, morning, day):
-            scene = self._scene(contents, on)
-            evening = contents.history.in_hindsight(morning, day)
+        with self._lock, self.store.reading() as db:  # all of one moment
+            contents = self._read(db)
+            day = contents.settings.day(on)
+            scene = self._scene(contents, on, read=db)
+            evening = contents.history.in_hindsight(contents.morning(day), day)
         done = tuple(one for one in contents.history.treatments if one.day == day)
         return advice(contents.history.grid, evening, asked or AdviceSettings(), scene, done)
 

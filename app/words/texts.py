@@ -322,6 +322,10 @@ EARLIER_SETTINGS = (
     "This day goes by what counted then: {strategy}, from {starts}. Who works, and how long, is "
     "changed on a later day."
 )
+TEAM_SETTINGS = (
+    "{name}: {strategy}, from {starts}. How each of a team works stands in its table, which is "
+    "changed with `fieldmon change --robots`."
+)
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
 UNDO_CHANGE = "Back to {strategy}, from {starts}"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"

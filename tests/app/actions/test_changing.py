@@ -6,8 +6,10 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
+from app.state.choices import WHOSE_DAY
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot, scout
 from tests.app.driving import PAGES, go, metric, opened, press, texts_of, until
 
@@ -147,3 +149,20 @@ def test_an_earlier_day_goes_by_what_counted_then_and_says_so(season):
     assert not [one for one in app.slider if one.key.startswith("hours ")]
     assert "what counted then: Adaptive · 12 h · 40 s, from 06:00" in texts_of(app)
     assert metric(app, texts.PLANTS_TO_INSPECT) != few
+
+
+def test_of_a_team_the_one_chosen_is_said_and_what_the_app_cannot_change_is_not_offered(
+    season_app, season
+):
+    before = season().settings
+    team = (TeamMember("Ann", before.robot), TeamMember("Dan", scout().with_hours(3), None, 7200.0))
+    season().change(replace(before, team=team), before)
+    go(season_app, "today")
+    season_app.segmented_control(key=WHOSE_DAY).set_value("Dan").run()
+    assert f"3 h · {scout().look_s:g} s, from 08:00" in texts_of(season_app)
+    assert "fieldmon change --robots" in texts_of(season_app)
+    shown = [one.key or "" for one in (*season_app.slider, *season_app.segmented_control)]
+    assert not [key for key in shown if key.startswith(("hours ", "inspection_s ", "who "))]
+    next(one for one in season_app.selectbox if one.label == texts.SAMPLER).set_value("naive").run()
+    press(season_app, "Use from now on")
+    assert (season().settings.sampler, season().settings.team) == ("naive", team)

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.monitoring.settings_words import telling_anew
 
 from ..show.assumed import of_who_inspects, sentence
 from ..state import assumptions, notices, widget_memory
 from ..words import texts
+from ..words.language import in_words
 from . import drawing
 
 if TYPE_CHECKING:
@@ -77,5 +79,7 @@ def _change(choices: Choices) -> str:
     if settings.pest is None:
         rate = state["season_spread"] / 100
         belief = replace(belief, spread=replace(belief.spread, rate_per_day=rate))
-    choices.season.change(replace(settings, prior=prior, belief=belief), settings)
-    return texts.ASSUMED_CHANGED
+    new, said = replace(settings, prior=prior, belief=belief), [texts.ASSUMED_CHANGED]
+    with telling_anew(choices.season, settings, new, said.append):
+        choices.season.change(new, settings)
+    return " ".join(map(in_words, said))

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
+from fieldmon.monitoring.settings_words import changed, taken_back, telling_anew
 from fieldmon.plot.robot import Robot, scout
 
 from ..state import chosen_day, notices
 from ..words import texts
+from ..words.language import in_words
 from ..words.strategies import sampler_does, sampler_name, strategy_name
 from . import robot_boxes
 
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
 
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.monitoring import MonitoringSettings, Season
+    from fieldmon.monitoring import MonitoringSettings
 
     from ..state.choices import Choices
     from ..state.comparison import Strategy
@@ -83,7 +85,7 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
                 if st.button(texts.CHANGE, type="primary", key="change_setup"):
                     season.change(wanted, settings)
                     st.rerun()
-        _offer_undo(season)
+        _offer_undo(choices)
 
 
 def _wanted_of_team(
@@ -138,15 +140,23 @@ def _wanted(
     return replace(settings, robot=robot, sampler=sampler), place
 
 
-def _offer_undo(season: Season) -> None:
-    before = season.before_change()
+def _offer_undo(choices: Choices) -> None:
+    before = choices.season.before_change()
     if before is None:
         return
-    back = strategy_name(before.sampler, before.robot.hours, before.robot.look_s)
-    label = texts.UNDO_CHANGE.format(strategy=back, starts=f"{before.starts:%H:%M}")
-    if st.button(label, key="undo_change", icon=":material/undo:"):
-        season.undo_change()
-        st.rerun()
+    what = in_words(changed(choices.season.settings, before))
+    label = texts.UNDO_CHANGE.format(what=what) if what else texts.UNDO_NO_CHANGE
+    st.button(label, key="undo_change", icon=":material/undo:", on_click=_undo, args=(choices,))
+
+
+@notices.reporting
+def _undo(choices: Choices) -> str:
+    """Take the last change back, and say what it was and what that makes of days past."""
+    season, said = choices.season, []
+    settings = season.settings
+    with telling_anew(season, settings, season.before_change() or settings, said.append):
+        said.append(taken_back(settings, season.undo_change(choices.who or "")))
+    return " ".join(map(in_words, said))
 
 
 @notices.reporting

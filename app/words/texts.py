@@ -327,7 +327,7 @@ TEAM_SETTINGS = (
     "changed with `fieldmon change --robots`."
 )
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
-UNDO_CHANGE = "Back to {strategy}, from {starts}"
+UNDO_CHANGE, UNDO_NO_CHANGE = "Take back: {what}", "Take the last change back"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
 LANGUAGE = "Language"
 #: said in the other languages only: see `language.is_machine_made`

@@ -52,9 +52,11 @@ def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
     for hours in (7.0, 16.0):
         hours_box(season_app).set_value(hours).run()
         press(season_app, "Use from now on")
-    press(season_app, "Back to Adaptive · 7 h · 40 s, from 06:00")
+    press(season_app, "Take back: hours 16")
+    said = season_app.success[0].value.replace("\u00a0", " ")
+    assert said == "The last change was taken back: hours 16 (now 7 again)."
     assert season().settings.robot.hours == 7.0
-    press(season_app, "Back to Adaptive · 12 h · 40 s, from 06:00")
+    press(season_app, "Take back: hours 7")
     assert season().settings == settings
     assert not [one for one in season_app.button if one.key == "undo_change"]
 

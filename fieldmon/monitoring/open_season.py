@@ -201,7 +201,7 @@ class OpenSeason:
         return self._counted_on(on, *before, read=read)
 
     def is_earlier(self, on: date) -> bool:
-        """Return whether a day goes by what counted then, see `planned_by`."""
+        """Return whether the day `on` goes by what counted then, see `planned_by`."""
         return self._is_earlier(self._now(), on)
 
     def _is_earlier(self, contents: SeasonContents, on: date) -> bool:

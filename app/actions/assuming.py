@@ -58,16 +58,21 @@ def _boxes_of_season(choices: Choices) -> None:
     settings = choices.season.settings
     with st.form("assumed_form", border=False):
         st.caption(texts.ASSUMED_LAID)
+        # side by side: a low window shows all of it at once
+        left, right = st.columns(2)
         usual = 100 * settings.prior.background_chance
-        widget_memory.anew(st.number_input, texts.BACKGROUND, 0.0, 100.0, usual, 0.5,
-                           key="season_background", help=texts.BACKGROUND_HELP)  # fmt: skip
+        with left:
+            widget_memory.anew(st.number_input, texts.BACKGROUND, 0.0, 100.0, usual, 0.5,
+                               key="season_background", help=texts.BACKGROUND_HELP)  # fmt: skip
         # a pest says itself how it spreads
         if settings.pest is None:
             usual = 100 * settings.belief.spread.rate_per_day
-            widget_memory.anew(st.number_input, texts.SPREAD, 0.0, 100.0, usual, 0.5,
-                               key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
-        finds_are(widget_memory.anew, "season_finds", index=0 if settings.belief.treated else 1)
-        st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
+            with right:
+                widget_memory.anew(st.number_input, texts.SPREAD, 0.0, 100.0, usual, 0.5,
+                                   key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
+        with st.container(horizontal=True, vertical_alignment="bottom"):
+            finds_are(widget_memory.anew, "season_finds", index=0 if settings.belief.treated else 1)
+            st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
 
 
 @notices.reporting

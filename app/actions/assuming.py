@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.monitoring.settings_words import telling_anew
 
 from ..show.assumed import of_who_inspects, sentence
 from ..state import assumptions, notices, widget_memory
 from ..words import texts
+from ..words.language import in_words
 from . import drawing
 
 if TYPE_CHECKING:
@@ -56,16 +58,21 @@ def _boxes_of_season(choices: Choices) -> None:
     settings = choices.season.settings
     with st.form("assumed_form", border=False):
         st.caption(texts.ASSUMED_LAID)
+        # side by side: a low window shows all of it at once
+        left, right = st.columns(2)
         usual = 100 * settings.prior.background_chance
-        widget_memory.anew(st.number_input, texts.BACKGROUND, 0.0, 100.0, usual, 0.5,
-                           key="season_background", help=texts.BACKGROUND_HELP)  # fmt: skip
+        with left:
+            widget_memory.anew(st.number_input, texts.BACKGROUND, 0.0, 100.0, usual, 0.5,
+                               key="season_background", help=texts.BACKGROUND_HELP)  # fmt: skip
         # a pest says itself how it spreads
         if settings.pest is None:
             usual = 100 * settings.belief.spread.rate_per_day
-            widget_memory.anew(st.number_input, texts.SPREAD, 0.0, 100.0, usual, 0.5,
-                               key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
-        finds_are(widget_memory.anew, "season_finds", index=0 if settings.belief.treated else 1)
-        st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
+            with right:
+                widget_memory.anew(st.number_input, texts.SPREAD, 0.0, 100.0, usual, 0.5,
+                                   key="season_spread", help=texts.SPREAD_HELP)  # fmt: skip
+        with st.container(horizontal=True, vertical_alignment="bottom"):
+            finds_are(widget_memory.anew, "season_finds", index=0 if settings.belief.treated else 1)
+            st.form_submit_button(texts.ASSUMED_USE, on_click=_change, args=(choices,))
 
 
 @notices.reporting
@@ -77,5 +84,7 @@ def _change(choices: Choices) -> str:
     if settings.pest is None:
         rate = state["season_spread"] / 100
         belief = replace(belief, spread=replace(belief.spread, rate_per_day=rate))
-    choices.season.change(replace(settings, prior=prior, belief=belief), settings)
-    return texts.ASSUMED_CHANGED
+    new, said = replace(settings, prior=prior, belief=belief), [texts.ASSUMED_CHANGED]
+    with telling_anew(choices.season, settings, new, said.append):
+        choices.season.change(new, settings)
+    return " ".join(map(in_words, said))

@@ -8,17 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
+from fieldmon.monitoring.settings_words import changed, taken_back, telling_anew
 from fieldmon.plot.robot import Robot, scout
 
-from ..state import notices
+from ..state import chosen_day, notices
 from ..words import texts
+from ..words.language import in_words
 from ..words.strategies import sampler_does, sampler_name, strategy_name
 from . import robot_boxes
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.monitoring import MonitoringSettings, Season
+    from fieldmon.monitoring import MonitoringSettings
 
     from ..state.choices import Choices
     from ..state.comparison import Strategy
@@ -57,18 +61,22 @@ def in_hours() -> str:
     return texts.IN_HOURS.format(hours="%g")
 
 
-def show(name: str, season: Season, work: Work, by: MonitoringSettings) -> None:
+def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> None:
     """Show who works in the season of this name, and change it on demand.
 
-    A day that goes `by` what counted then says so instead: a change is for days to come.
+    A day that goes `by` what counted then says so instead: a change is for days to come. So does
+    one of a team, whose table says how each works.
     """
+    season = choices.season
     with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         settings = season.settings
         if by != settings:
             was = strategy_name(by.sampler, by.robot.hours, by.robot.look_s)
             st.caption(texts.EARLIER_SETTINGS.format(strategy=was, starts=f"{by.starts:%H:%M}"))
             return
-        wanted, hours = _wanted(name, settings, work)
+        wanted, hours = (
+            _wanted(name, settings, work) if choices.who is None else _wanted_of_team(name, choices)
+        )
         others = replace(wanted, robot=wanted.robot.with_hours(settings.robot.hours))
         # what was changed with the day is used there
         with hours if others == settings else nullcontext():
@@ -77,7 +85,31 @@ def show(name: str, season: Season, work: Work, by: MonitoringSettings) -> None:
                 if st.button(texts.CHANGE, type="primary", key="change_setup"):
                     season.change(wanted, settings)
                     st.rerun()
-        _offer_undo(season)
+        _offer_undo(choices)
+
+
+def _wanted_of_team(
+    name: str, choices: Choices
+) -> tuple[MonitoringSettings, AbstractContextManager[object]]:
+    """Say how the one works whose day is shown; return settings with the sampler that is chosen."""
+    settings, starts = choices.season.settings, chosen_day.work_begins(choices)
+    robot = settings.member(choices.who).robot
+    does = strategy_name(settings.sampler, robot.hours, robot.look_s)
+    said = {"name": texts.isolated(choices.who), "strategy": does, "starts": f"{starts:%H:%M}"}
+    st.caption(texts.TEAM_SETTINGS.format(**said))
+    return replace(
+        settings, sampler=_sampler(settings, f"{name} {settings.sampler}")
+    ), nullcontext()
+
+
+def _sampler(settings: MonitoringSettings, key: str) -> str:
+    """Show the box of the sampler; return which is chosen."""
+    names = list(texts.SAMPLERS)
+    sampler = st.selectbox(
+        texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **named()
+    )
+    st.caption(sampler_does(sampler))
+    return sampler
 
 
 def _wanted(
@@ -103,24 +135,28 @@ def _wanted(
                              5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
     if who != SCOUT:
         robot = robot_boxes.of_season(robot, key)
-    names = list(texts.SAMPLERS)
-    sampler = st.selectbox(
-        texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **named()
-    )
-    st.caption(sampler_does(sampler))
+    sampler = _sampler(settings, key)
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
     return replace(settings, robot=robot, sampler=sampler), place
 
 
-def _offer_undo(season: Season) -> None:
-    before = season.before_change()
+def _offer_undo(choices: Choices) -> None:
+    before = choices.season.before_change()
     if before is None:
         return
-    back = strategy_name(before.sampler, before.robot.hours, before.robot.look_s)
-    label = texts.UNDO_CHANGE.format(strategy=back, starts=f"{before.starts:%H:%M}")
-    if st.button(label, key="undo_change", icon=":material/undo:"):
-        season.undo_change()
-        st.rerun()
+    what = in_words(changed(choices.season.settings, before))
+    label = texts.UNDO_CHANGE.format(what=what) if what else texts.UNDO_NO_CHANGE
+    st.button(label, key="undo_change", icon=":material/undo:", on_click=_undo, args=(choices,))
+
+
+@notices.reporting
+def _undo(choices: Choices) -> str:
+    """Take the last change back, and say what it was and what that makes of days past."""
+    season, said = choices.season, []
+    settings = season.settings
+    with telling_anew(season, settings, season.before_change() or settings, said.append):
+        said.append(taken_back(settings, season.undo_change(choices.who or "")))
+    return " ".join(map(in_words, said))
 
 
 @notices.reporting

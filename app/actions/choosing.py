@@ -148,7 +148,7 @@ def _from_season(name: str, work: Work) -> Choices:
         key, season.plot, season.observations, said, by.robot, by.sampler, str(day),
         units, season, key, today=calendar.today, prior=settings.prior,
     )  # fmt: skip
-    changing.show(name, season, work, by)
+    changing.show(name, choices, work, by)
     return choices
 
 

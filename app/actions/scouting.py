@@ -9,6 +9,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import seconds
 
 from ..show import recorded_batches
@@ -17,6 +18,9 @@ from ..words import texts
 from ..words.language import in_words, number
 
 if TYPE_CHECKING:
+    from fieldmon.monitoring import MonitoringSettings
+    from fieldmon.planning.members import TeamMember
+
     from ..state.choices import Choices
 
 SOURCE = "scout mode"
@@ -70,26 +74,40 @@ def undo(choices: Choices, batch: int) -> str:
     return in_words(choices.season.undo(batch, who=choices.who or ""))
 
 
+def can_be_longer(choices: Choices) -> bool:
+    """Return whether the day shown would go by other hours: one that is past would not."""
+    return choices.who is not None or not choices.season.is_earlier(choices.on)
+
+
 @notices.reporting
 def longer(choices: Choices) -> str:
-    """Make the working day an hour longer than it is, and than the work has taken so far."""
+    """Make the working day an hour longer than it is, and than the work has taken so far.
+
+    Of a team it is the day of the one chosen.
+    """
     settings, history = choices.season.settings, choices.season.history
-    second = history.inspections.on(choices.on).second
+    second = made_by(history.inspections.on(choices.on), choices.who).second
     # who worked on is hours beyond the end
-    gone_s = np.nanmax(np.append(second, 0.0)) - choices.season.begun_s(choices.on)
-    hours = max(settings.robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
-    robot = replace(settings.robot, hours=float(min(hours, 24.0)))
-    choices.season.change(replace(settings, robot=robot), settings)
-    return texts.NOW_USED.format(name=texts.IN_HOURS.format(hours=number(robot.hours, "g")))
+    gone_s = np.nanmax(np.append(second, 0.0)) - choices.season.begun_s(
+        choices.on, choices.who or ""
+    )
+    robot = settings.robot if choices.who is None else settings.member(choices.who).robot
+    hours = max(robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
+    robot = replace(robot, hours=float(min(hours, 24.0)))
+    changed = replace(settings, robot=robot)
+    if choices.who is not None:
+        changed = _with(settings, replace(settings.member(choices.who), robot=robot))
+    choices.season.change(changed, settings)
+    return _now_used(choices, texts.IN_HOURS.format(hours=number(robot.hours, "g")))
 
 
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
-    settings, now = choices.season.settings, choices.clock.now()
-    begun = len(choices.season.history.inspections.on(choices.on))
-    late = now.date() == choices.on and now.time() > settings.starts
+    now, starts = choices.clock.now(), chosen_day.work_begins(choices)
+    begun = len(made_by(choices.season.history.inspections.on(choices.on), choices.who))
+    late = now.date() == choices.on and now > starts
     if not begun and late:
-        said = texts.SCOUT_START.format(start=f"{settings.starts:%H:%M}", now=f"{now:%H:%M}")
+        said = texts.SCOUT_START.format(start=f"{starts:%H:%M}", now=f"{now:%H:%M}")
         with st.container(key="begin_later", horizontal=True, vertical_alignment="center"):
             st.markdown(said, width="stretch")
             st.button(texts.SCOUT_NOW, key="begin_now", on_click=_begin_now, args=(choices,))
@@ -99,5 +117,21 @@ def ask_start(choices: Choices) -> None:
 def _begin_now(choices: Choices) -> str:
     settings = choices.season.settings
     starts = choices.clock.now().replace(second=0).time()
-    choices.season.change(replace(settings, starts=starts), settings)
-    return texts.NOW_USED.format(name=f"{starts:%H:%M}")
+    changed = replace(settings, starts=starts)
+    if choices.who is not None:  # the others begin as before
+        late_s = seconds(starts) - seconds(settings.starts)
+        changed = _with(settings, replace(settings.member(choices.who), starts_s=late_s))
+    choices.season.change(changed, settings)
+    return _now_used(choices, f"{starts:%H:%M}")
+
+
+def _with(settings: MonitoringSettings, member: TeamMember) -> MonitoringSettings:
+    """Return settings in which one of the team works otherwise."""
+    team = tuple(member if one.name == member.name else one for one in settings.team)
+    return replace(settings, team=team)
+
+
+def _now_used(choices: Choices, what: str) -> str:
+    """Return what is in use now, and for whom of a team."""
+    name = what if choices.who is None else f"{texts.isolated(choices.who)} · {what}"
+    return texts.NOW_USED.format(name=name)

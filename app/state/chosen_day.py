@@ -52,10 +52,10 @@ def starts(choices: Choices, plan: DayPlan) -> datetime:
     if notes is not None and notes.start is not None:
         return notes.start
     gone = timedelta(seconds=plan.scene.robot.day_s - plan.scene.seconds_left)
-    return _work_begins(choices) + gone
+    return work_begins(choices) + gone
 
 
-def _work_begins(choices: Choices, *, worked: bool = False) -> datetime:
+def work_begins(choices: Choices, *, worked: bool = False) -> datetime:
     """Return the local time at which the day's work starts for the one whose day is shown."""
     if (season := choices.season) is None:
         return datetime.combine(choices.on, STARTS)
@@ -70,7 +70,7 @@ def route(choices: Choices) -> DayRoute:
     if season is not None and day_was_worked(season, choices.on, plan.route):
         of = choices.day, choices.who
         done = cached.worked(choices.key, choices.revision, of, season)
-        return DayRoute(done, _work_begins(choices, worked=True), worked=True)
+        return DayRoute(done, work_begins(choices, worked=True), worked=True)
     return DayRoute(plan.route, starts(choices, plan))
 
 

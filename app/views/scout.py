@@ -38,10 +38,11 @@ def show(choices: Choices) -> None:
         field_map.want(map_layers.day_map(choices, first="state"))
         st.markdown(texts.SCOUT_DONE.format(inspected=progress.inspected_today,
                                             found=progress.found_today))  # fmt: skip
-        st.caption(texts.SCOUT_LONGER_NOTE)
-        with st.container(key="scout_more"):
-            st.button(texts.SCOUT_LONGER, key="scout_hour", on_click=scouting.longer,
-                      args=(choices,))  # fmt: skip
+        if scouting.can_be_longer(choices):
+            st.caption(texts.SCOUT_LONGER_NOTE)
+            with st.container(key="scout_more"):
+                st.button(texts.SCOUT_LONGER, key="scout_hour", on_click=scouting.longer,
+                          args=(choices,))  # fmt: skip
         _undo(choices)
         inviting.show_below(choices)
         return

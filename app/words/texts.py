@@ -322,8 +322,12 @@ EARLIER_SETTINGS = (
     "This day goes by what counted then: {strategy}, from {starts}. Who works, and how long, is "
     "changed on a later day."
 )
+TEAM_SETTINGS = (
+    "{name}: {strategy}, from {starts}. How each of a team works stands in its table, which is "
+    "changed with `fieldmon change --robots`."
+)
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
-UNDO_CHANGE = "Back to {strategy}, from {starts}"
+UNDO_CHANGE, UNDO_NO_CHANGE = "Take back: {what}", "Take the last change back"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
 LANGUAGE = "Language"
 #: said in the other languages only: see `language.is_machine_made`
@@ -1022,7 +1026,8 @@ SCOUT_PAGE = {
     "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
     "scan it.",
     "count_whole": "Pests of a find are a whole number from 1. Leave it empty if nobody counted.",
-    "stranded": "{n} of {who} wait here, whose key no longer holds. Save them to a file.",
+    "stranded": "Records of {who} that wait here: {n}. Their key no longer holds: save them to a "
+    "file.",
     "plots": "Seasons on this phone",
     "refused": "Not taken", "send_again": "Send again what was not taken",
     "save_file": "Save what is not sent to a file",

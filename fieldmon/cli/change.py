@@ -21,7 +21,6 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
-from fieldmon.cli.settings_words import telling_anew, worker_in_words
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import CHANCE
@@ -128,6 +127,8 @@ class ChangeOptions:
 
     def _must_be_alike(self, team: tuple[TeamMember, ...]) -> None:
         """Refuse what is said of everybody where members of a team differ, or find by a table."""
+        from fieldmon.monitoring.settings_words import worker_in_words
+
         told = self.look is not None and any(one.robot.detection is not None for one in team)
         if len({one.robot for one in team}) == 1 and not told:
             return
@@ -202,6 +203,7 @@ def change(options: ChangeOptions) -> None:
     Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv
     """
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.settings_words import telling_anew
 
     season = Season(options.season)
     seen = season.settings
@@ -209,7 +211,7 @@ def change(options: ChangeOptions) -> None:
     if new == seen:
         typer.echo("Nothing was changed.")
         return
-    with telling_anew(season, seen, new):
+    with telling_anew(season, seen, new, typer.echo):
         season.change(new, seen, options.who)
         whom = f" for {', '.join(m.name for m in new.team)}" if options.of_worker else ""
         typer.echo(f"Changed{whom if new.team else ''}; fieldmon plan uses it from now on.")

@@ -56,12 +56,12 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
         )
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
-    chance = season.evening(on)
-    typer.echo(f"{on}: {done}{day_in_words(route, float(chance[route.plant].sum()))}")
+    infested = float(season.evening_planned_by(on)[route.plant].sum())
+    typer.echo(f"{on}: {done}{day_in_words(route, infested)}")
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
-    write_chance_map(options.chance_map, season.plot, chance)
+    write_chance_map(options.chance_map, season.plot, season.evening(on))
 
 
 def _tell_detection(season: Season, on: date) -> None:

@@ -137,7 +137,7 @@ def _take_saved(season: Season, file: Path, saved: PhoneFile, who: str) -> None:
     """Record what a phone saved, as what it sends."""
     from fieldmon.monitoring.findings import of_others, take_saved
 
-    taken = take_saved(season, saved, who.strip())
+    taken = take_saved(season, _saved_of(who, season, saved, file))
     new, known = (
         sum(one.new is is_new and not one.problem for one in taken) for is_new in (True, False)
     )
@@ -158,12 +158,29 @@ def _of(who: str, read: Inspections, file: Path) -> Inspections:
     others = len(read) - len(made_by(read, who)) - len(made_by(read, ""))
     if others:
         names = sorted({str(name) for name in read.who} - {"", who})
-        typer.echo(
-            f"{file.name}: seen: By the file {', '.join(names)} made "
-            f"{counted(others, 'inspection')}; taken as those of {who}, as --who says.",
-            err=True,
-        )
+        _tell_others(file, names, counted(others, "inspection"), who)
     return replace(read, who=np.full(len(read), who, object))
+
+
+def _saved_of(who: str, season: Season, saved: PhoneFile, file: Path) -> PhoneFile:
+    """Return what a phone saved as that of somebody, and say whose it was by it."""
+    from fieldmon.compute.wording import counted
+
+    if not (who := who.strip()):
+        return saved
+    here = saved.of(season.path.stem)
+    others = [one.who for one in (*here.findings, *here.photos) if one.who not in {"", who}]
+    if others:
+        _tell_others(file, sorted({*others}), counted(len(others), "record"), who)
+    return saved.by(who)
+
+
+def _tell_others(file: Path, names: list[str], what: str, who: str) -> None:
+    typer.echo(
+        f"{file.name}: seen: By the file {', '.join(names)} made {what}; taken as those of {who}, "
+        "as --who says.",
+        err=True,
+    )
 
 
 def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:

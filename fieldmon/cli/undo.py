@@ -8,7 +8,6 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.options import SeasonFile
-from fieldmon.cli.settings_words import taken_back, telling_anew
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError
 
@@ -43,9 +42,11 @@ def undo(
     from fieldmon.monitoring import Season
 
     if change:
+        from fieldmon.monitoring.settings_words import taken_back, telling_anew
+
         kept = Season(season)
         settings = kept.settings
-        with telling_anew(kept, settings, kept.before_change() or settings):
+        with telling_anew(kept, settings, kept.before_change() or settings, typer.echo):
             typer.echo(taken_back(settings, kept.undo_change(who)))
         return
     typer.echo(Season(season).undo(batch, inspection, who))

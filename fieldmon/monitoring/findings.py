@@ -174,19 +174,18 @@ def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, 
     """
     received = utc_now()
     taken: list[Taken] = []
-    findings, kept = ([one for one in some if one.season in {"", season.path.stem}]
-                      for some in (saved.findings, saved.photos))  # fmt: skip
-    names = {one.who or who for one in (*findings, *kept)}
+    here = saved.of(season.path.stem)
+    names = {one.who or who for one in (*here.findings, *here.photos)}
     if "" in names:
         raise SettingError(
             worded("Records must have an author, but the file names none. Say who (--who NAME).")
         )
     with season.changing() as change:
         for name in sorted(names):
-            told = [Finding(**one.fields) for one in findings if (one.who or who) == name]
+            told = [Finding(**one.fields) for one in here.findings if (one.who or who) == name]
             letter = _SentFindings(told, (received, received), timedelta())
             taken += _take(season, change, Scout(name, None, ""), letter)
-        for one in kept:
+        for one in here.photos:
             new, problem = False, ""
             try:
                 new = photos.keep_of(change.db, one.who or who, photos.Photo(**one.fields))

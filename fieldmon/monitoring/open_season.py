@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -36,6 +36,7 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
 from fieldmon.plot.grid import RowLabel, row_label
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -156,9 +157,11 @@ class OpenSeason:
         """
         return self._counted_on(on)
 
-    def _counted_on(self, *days: date) -> MonitoringSettings:
+    def _counted_on(
+        self, *days: date, read: sqlite3.Connection | None = None
+    ) -> MonitoringSettings:
         """Return what counted on the first of some days that was planned or recorded; else now."""
-        with self.store.reading() as db:
+        with self.store.reading() if read is None else nullcontext(read) as db:
             now = settings_of(db)
             moments = (season_log.planned_last(db, str(day)) for day in days)
             moment = next((one for one in moments if one is not None), None)
@@ -180,18 +183,30 @@ class OpenSeason:
     def planned_by(self, on: date) -> MonitoringSettings:
         """Return what a day is planned by: an earlier one by what counted then, see `settings_on`.
 
-        A day is an earlier one once something was recorded of a later one. If it was neither
-        planned nor recorded itself, it goes by what counted on the day recorded before it.
+        A day is an earlier one once something was recorded of a later one or, if anything was of
+        itself, once it is past by the plot's clock. If it was neither planned nor recorded itself,
+        it goes by what counted on the day recorded before it.
         """
         return self._planned_by(self._now(), on)
 
-    def _planned_by(self, contents: SeasonContents, on: date) -> MonitoringSettings:
-        recorded = contents.history.inspections.date
-        day = np.datetime64(on, "D")
-        if not len(recorded) or day >= recorded[-1]:
+    def _planned_by(
+        self, contents: SeasonContents, on: date, read: sqlite3.Connection | None = None
+    ) -> MonitoringSettings:
+        if not self._is_earlier(contents, on):
             return contents.settings
-        before = recorded[recorded <= day][-1:].tolist()
-        return self._counted_on(on, *before)
+        recorded = contents.history.inspections.date
+        before = recorded[recorded <= np.datetime64(on, "D")][-1:].tolist()
+        return self._counted_on(on, *before, read=read)
+
+    def is_earlier(self, on: date) -> bool:
+        """Return whether the day `on` goes by what counted then, see `planned_by`."""
+        return self._is_earlier(self._now(), on)
+
+    def _is_earlier(self, contents: SeasonContents, on: date) -> bool:
+        recorded, day = contents.history.inspections.date, np.datetime64(on, "D")
+        if not len(recorded) or day > recorded[-1]:
+            return False
+        return bool(day < recorded[-1]) or on < local_clock(self.plot.field).today()
 
     @property
     def history(self) -> History:
@@ -231,8 +246,8 @@ class OpenSeason:
         Of a team it is that of `who` is named, or of the first. Whoever else is named has the
         season's robot and stands where they inspected last, or at the gate.
         """
-        with self._lock:
-            return self._scene(self._now(), on, now, who)
+        with self._lock, self.store.reading() as db:  # all of one moment
+            return self._scene(self._read(db), on, now, who, db)
 
     def begun_s(self, on: date, who: str = "") -> float:
         """Return the second of the day `on` at which work began, or will; `who` as in `scene`.
@@ -247,9 +262,10 @@ class OpenSeason:
         return contents.history.begun_s(shift, contents.settings.day(on), name)
 
     def _scene(
-        self, contents: SeasonContents, on: date, now: time | None = None, who: str = ""
-    ) -> Scene:
-        settings, day = self._planned_by(contents, on), contents.settings.day(on)
+        self, contents: SeasonContents, on: date, now: time | None = None, who: str = "",
+        read: sqlite3.Connection | None = None,
+    ) -> Scene:  # fmt: skip
+        settings, day = self._planned_by(contents, on, read), contents.settings.day(on)
         now_s = None if now is None else seconds(now)
         morning = contents.morning(day)
         shift, name = self._shift(settings, who)

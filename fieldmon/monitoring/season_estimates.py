@@ -69,6 +69,14 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             return contents.history.in_hindsight(morning, day).chance.copy()
 
+    def evening_planned_by(self, on: date) -> Floats:
+        """Return the chances ``(n,)`` by which what is left of `on` is planned, hidden or not.
+
+        Routes go by what can be seen of it. What finds say of others only `evening` has.
+        """
+        with self._asked(on) as (contents, morning, day):
+            return contents.history.evening(morning, day).chance.copy()
+
     def level_range(self, on: date) -> LevelRange:
         """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
         with self._asked(on) as (contents, morning, day):
@@ -109,9 +117,11 @@ class SeasonEstimates(OpenSeason):
         asked
             The threshold, the sprayer and the costs; None: the defaults.
         """
-        with self._asked(on) as (contents, morning, day):
-            scene = self._scene(contents, on)
-            evening = contents.history.in_hindsight(morning, day)
+        with self._lock, self.store.reading() as db:  # all of one moment
+            contents = self._read(db)
+            day = contents.settings.day(on)
+            scene = self._scene(contents, on, read=db)
+            evening = contents.history.in_hindsight(contents.morning(day), day)
         done = tuple(one for one in contents.history.treatments if one.day == day)
         return advice(contents.history.grid, evening, asked or AdviceSettings(), scene, done)
 

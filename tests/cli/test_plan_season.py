@@ -39,6 +39,7 @@ def test_half_way_the_rest_of_the_day_is_planned(run, season, tmp_path):
     code, out, err, _ = run("plan", season, "--date", BEGINS, "--now", "06:30", "-o", "r2.geojson")
     assert code == 0, err
     assert "5 done" in out
+    assert "so that it can be seen" not in out  # nothing hides
     features = json.loads((tmp_path / "r2.geojson").read_text(encoding="utf-8"))["features"]
     assert features[0]["properties"]["start"] == f"{BEGINS}T06:30:00"
     assert not {f["properties"].get("plant") for f in features} & set(plants)

@@ -129,3 +129,19 @@ def test_what_a_phone_saved_as_not_sent_is_recorded_and_changes_nothing_twice(
     code, out, _, _ = run("record", season, "rescue.json")
     assert "0 new, 3 known already" in out
     assert len(Season(season).history.inspections) == 1
+
+
+def test_what_a_phone_saved_is_of_whom_the_option_names_and_others_are_counted(
+    run, season, tmp_path
+):
+    one = {"at": f"{BEGINS}T06:00:00Z", "who": "Ann", "result": "clean"}
+    of = [Season(season).path.stem] * 2 + ["", "Other"]
+    told = [
+        one | {"id": str(uuid.UUID(int=k)), "plant": k, "season": name} for k, name in enumerate(of)
+    ]
+    told[2]["who"] = ""
+    (tmp_path / "rescue.json").write_text(json.dumps({"findings": told, "photos": []}))
+    code, _, err, _ = run("record", season, "rescue.json", "--who", "Zed")
+    assert code == 0, err
+    assert "By the file Ann made 2 records; taken as those of Zed, as --who says." in err
+    assert Season(season).history.inspections.who.tolist() == ["Zed"] * 3

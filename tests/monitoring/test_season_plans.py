@@ -1,7 +1,7 @@
 """A season's days are planned from all that is known, and their routes are kept."""
 
 from dataclasses import replace
-from datetime import date, time
+from datetime import UTC, date, datetime, time
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
+from fieldmon.plot import local_clock
 from fieldmon.plot.local_clock import utc_now
 from tests.monitoring.seasons import (
     BEGINS,
@@ -82,7 +83,14 @@ def test_the_time_now_is_a_time_or_a_sentence(season):
         season.plan(BEGINS, "11:00")
 
 
-def test_an_earlier_day_is_planned_by_what_counted_then(season):
+def clock_on(monkeypatch, day):
+    """Let it be noon of a day of the season."""
+    noon = datetime.combine(on(day), time(12), UTC)
+    monkeypatch.setattr(local_clock, "utc_now", lambda: noon)
+
+
+def test_an_earlier_day_is_planned_by_what_counted_then(season, monkeypatch):
+    clock_on(monkeypatch, 0)
     first = season.settings
     season.plan(on(0))
     season.record(some_results(season, n=3))
@@ -99,6 +107,17 @@ def test_an_earlier_day_is_planned_by_what_counted_then(season):
     assert np.array_equal(again.route.plant, before.route.plant)
     assert again.route.notes.sampler == first.sampler
     assert season.plan(on(2), keep=False).scene.robot.hours == 3.0
+
+
+def test_the_last_worked_day_is_an_earlier_one_once_it_is_past(season, monkeypatch):
+    first = season.settings
+    season.record(some_results(season, n=3))
+    season.change(replace(first, robot=first.robot.with_hours(3.0)), first)
+    clock_on(monkeypatch, 0)
+    assert season.planned_by(on(0)) == season.settings
+    clock_on(monkeypatch, 1)
+    assert season.planned_by(on(0)) == first
+    assert season.planned_by(on(1)) == season.settings
 
 
 def test_a_kept_plan_is_held_to_what_was_inspected(season):

@@ -10,7 +10,7 @@ import base64
 import json
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,6 +63,21 @@ class PhoneFile:
 
     findings: tuple[SavedRecord, ...]
     photos: tuple[SavedRecord, ...]
+
+    def of(self, season: str) -> PhoneFile:
+        """Return what is of a season of this name, or of a season that is not named."""
+        findings, photos = (
+            tuple(one for one in some if one.season in {"", season})
+            for some in (self.findings, self.photos)
+        )
+        return PhoneFile(findings, photos)
+
+    def by(self, who: str) -> PhoneFile:
+        """Return the same as that of somebody, whoever it says."""
+        findings, photos = (
+            tuple(replace(one, who=who) for one in some) for some in (self.findings, self.photos)
+        )
+        return PhoneFile(findings, photos)
 
 
 def is_phone_file(source: Source) -> bool:

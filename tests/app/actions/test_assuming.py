@@ -1,6 +1,9 @@
 """What is assumed is marked at the figures that rest on it, and changed there."""
 
+import numpy as np
+
 from app.words import texts
+from fieldmon.infestation.inspections import Inspections
 from tests.app.driving import go, metric, press, square, texts_of, upload, zipped
 
 
@@ -56,6 +59,8 @@ def test_a_season_keeps_what_was_assumed_and_is_told_otherwise(season_app, seaso
 
 
 def test_whether_finds_are_treated_is_assumed_and_told_otherwise(season_app, season):
+    day = np.datetime64(season().settings.begins)
+    season().record(Inspections.of(np.arange(9), np.arange(9) % 2, day))
     go(season_app, "season")
     assert "plants found infested are treated at once" in texts_of(season_app)
     season_app.radio(key="season_finds").set_value(False)
@@ -64,3 +69,9 @@ def test_whether_finds_are_treated_is_assumed_and_told_otherwise(season_app, sea
     assert not season().settings.belief.treated
     assert "treated" not in {one.setting for one in season().assumed()}
     assert "plants found infested are treated at once" not in texts_of(season_app)
+    assert "plants are expected to be still infested" in season_app.success[0].value
+    press(season_app, "Take back: finds only flagged")
+    said = season_app.success[0].value
+    assert "finds only flagged (now treated at once again)" in said
+    assert "before this change it was" in said
+    assert season().settings.belief.treated

@@ -6,8 +6,10 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
+from app.state.choices import WHOSE_DAY
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot, scout
 from tests.app.driving import PAGES, go, metric, opened, press, texts_of, until
 
@@ -50,9 +52,11 @@ def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
     for hours in (7.0, 16.0):
         hours_box(season_app).set_value(hours).run()
         press(season_app, "Use from now on")
-    press(season_app, "Back to Adaptive · 7 h · 40 s, from 06:00")
+    press(season_app, "Take back: hours 16")
+    said = season_app.success[0].value.replace("\u00a0", " ")
+    assert said == "The last change was taken back: hours 16 (now 7 again)."
     assert season().settings.robot.hours == 7.0
-    press(season_app, "Back to Adaptive · 12 h · 40 s, from 06:00")
+    press(season_app, "Take back: hours 7")
     assert season().settings == settings
     assert not [one for one in season_app.button if one.key == "undo_change"]
 
@@ -147,3 +151,20 @@ def test_an_earlier_day_goes_by_what_counted_then_and_says_so(season):
     assert not [one for one in app.slider if one.key.startswith("hours ")]
     assert "what counted then: Adaptive · 12 h · 40 s, from 06:00" in texts_of(app)
     assert metric(app, texts.PLANTS_TO_INSPECT) != few
+
+
+def test_of_a_team_the_one_chosen_is_said_and_what_the_app_cannot_change_is_not_offered(
+    season_app, season
+):
+    before = season().settings
+    team = (TeamMember("Ann", before.robot), TeamMember("Dan", scout().with_hours(3), None, 7200.0))
+    season().change(replace(before, team=team), before)
+    go(season_app, "today")
+    season_app.segmented_control(key=WHOSE_DAY).set_value("Dan").run()
+    assert f"3 h · {scout().look_s:g} s, from 08:00" in texts_of(season_app)
+    assert "fieldmon change --robots" in texts_of(season_app)
+    shown = [one.key or "" for one in (*season_app.slider, *season_app.segmented_control)]
+    assert not [key for key in shown if key.startswith(("hours ", "inspection_s ", "who "))]
+    next(one for one in season_app.selectbox if one.label == texts.SAMPLER).set_value("naive").run()
+    press(season_app, "Use from now on")
+    assert (season().settings.sampler, season().settings.team) == ("naive", team)

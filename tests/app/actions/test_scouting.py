@@ -1,13 +1,16 @@
 """Scout mode: each tap is kept at once and can be taken back."""
 
 from dataclasses import replace
-from datetime import date
+from datetime import UTC, date, datetime
 
 import numpy as np
 
+from app.state.choices import WHOSE_DAY
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
+from fieldmon.planning.members import TeamMember
+from fieldmon.plot import local_clock
 from fieldmon.plot.grid import row_label
 from tests.app.driving import go, map_of, opened, tap, texts_of
 
@@ -120,3 +123,64 @@ def test_on_a_full_disk_a_tap_says_so_and_counts_for_nothing(season_app, season,
     assert not season_app.error
     assert len(season().history.inspections) == 1
     assert len(season().kept_route(date(2026, 11, 16)))
+
+
+def hours_of_work(hours, who=""):
+    """Return two inspections on the first day, hours apart."""
+    second = 6 * 3600.0 + np.array([120.0, 3600.0 * hours])
+    return Inspections.of(np.array([6, 7]), np.array([0, 0]), np.datetime64("2026-11-16"),
+                          second=second, who=np.full(2, who, object))  # fmt: skip
+
+
+def of_two(season, hours=1.0, late_s=0.0):
+    """Make the season that of Ann, of 12 hours, and Dan; return its settings."""
+    before = season().settings
+    dan = TeamMember("Dan", before.robot.with_hours(hours), starts_s=late_s)
+    team = (TeamMember("Ann", before.robot), dan)
+    season().change(replace(before, team=team), before)
+    return season().settings
+
+
+def choose(app, who):
+    app.segmented_control(key=WHOSE_DAY).set_value(who).run()
+
+
+def test_one_hour_more_is_of_the_one_of_a_team_who_is_chosen(season_app, season):
+    settings = of_two(season)
+    season().record(hours_of_work(1, "Dan"), "scout mode", "Dan")
+    go(season_app, "scout")
+    choose(season_app, "Dan")
+    assert "Done for today" in texts_of(season_app)
+    tap(season_app, "scout_hour")
+    assert "Dan\u2069 · 2 h is in use now." in season_app.success[0].value
+    ann, dan = season().settings.team
+    assert (ann, dan.robot.hours) == (settings.team[0], 2.0)
+    assert "Done for today" not in texts_of(season_app)
+
+
+def test_a_member_s_start_is_said_and_begins_now_alone(season_app, season, monkeypatch):
+    settings = of_two(season, late_s=2 * 3600.0)
+    monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 16, 7, 30, tzinfo=UTC))
+    go(season_app, "scout")
+    choose(season_app, "Dan")
+    assert "Work starts at 08:00 by the settings of this season; it is 09:30" in texts_of(
+        season_app
+    )
+    tap(season_app, "begin_now")
+    ann, dan = season().settings.team
+    assert (ann, dan.starts_s) == (settings.team[0], 3.5 * 3600.0)
+    assert season().settings.starts == settings.starts
+    assert not [one for one in season_app.button if one.key == "begin_now"]
+
+
+def test_a_day_that_is_past_gets_no_hour_more(season_app, season, monkeypatch):
+    settings = season().settings
+    season().change(replace(settings, robot=settings.robot.with_hours(0.5)), settings)
+    season().record(hours_of_work(1), "scout mode")
+    go(season_app, "scout")
+    assert [one for one in season_app.button if one.key == "scout_hour"]
+    monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 17, 7, tzinfo=UTC))
+    app = opened("Gate 2026", day="2026-11-16")
+    go(app, "scout")
+    assert "Done for today" in texts_of(app)
+    assert not [one for one in app.button if one.key == "scout_hour"]

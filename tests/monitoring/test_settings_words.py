@@ -5,9 +5,9 @@ from datetime import date, time
 
 import pytest
 
-from fieldmon.cli.settings_words import taken_back, worker_in_words
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import MonitoringSettings
+from fieldmon.monitoring.settings_words import taken_back, worker_in_words
 from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.plot.robot import Robot, scout
 
@@ -32,6 +32,8 @@ ANN = TeamMember("Ann", scout())
         ({"belief": replace(FIRST.belief, traces=False)}, "traces no (now yes again)"),
         ({"belief": replace(FIRST.belief, treated=False)},
          "finds only flagged (now treated at once again)"),
+        ({"prior": replace(FIRST.prior, background_chance=0.04)},
+         "infested where nothing is known 0.04 (now 0.01 again)"),
     ],
 )  # fmt: skip
 def test_what_is_taken_back_is_named_with_what_counts_again(chosen, said):

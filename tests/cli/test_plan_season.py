@@ -4,6 +4,7 @@ import json
 from datetime import date, timedelta
 
 import numpy as np
+import pytest
 
 from fieldmon.compute.wording import written
 from fieldmon.errors import ImportDoubt

@@ -26,5 +26,5 @@ def test_until_somebody_takes_it_every_command_refuses_what_another_program_chan
     assert (code, out) == (0, "1 correction taken, by Ann.\n")
     code, out, _, _ = run("status", season, "--batches")
     assert code == 0
-    assert "1 corrections by Ann" in out
+    assert "1 correction by Ann" in out
     assert "Nothing was changed" in run("correct", season, "--who", "Ann")[1]

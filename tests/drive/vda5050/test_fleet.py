@@ -129,13 +129,13 @@ def test_a_robot_that_never_comes_is_waited_for_by_name_and_then_an_error(
     broker, plot, robot, monitor, monkeypatch
 ):
     monkeypatch.setattr("fieldmon.drive.vda5050.fleet._AGAIN_S", 0.1)
-    nobody, said = RobotName("fieldmon", "never-came"), []
+    nobody, said = RobotName("fieldmon", "absent"), []
     wire = Wire(broker, "fleet", nobody, ("state", "connection"))
     driver = Vda5050Robot(wire, "x", said.append, patience_s=1.0)
-    with monitor.day() as day, pytest.raises(SettingError, match="called fieldmon/never-came must be"):
+    with monitor.day() as day, pytest.raises(SettingError, match="called fieldmon/absent must be"):
         drive_day(day, plot.aisles.for_robot(robot), (robot, driver))
     wire.close()
-    assert said == ["Waiting for the robot fieldmon/never-came, which has not been heard yet."]
+    assert said == ["Waiting for the robot fieldmon/absent, which has not been heard yet."]
     assert len(day.plants) == 0
 
 

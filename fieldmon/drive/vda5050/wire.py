@@ -189,6 +189,9 @@ class Wire:
         self._answered.set()
 
     def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
+        # a broker keeps what a session of this name asked for before, also of another robot
+        if message.topic not in self._hears:
+            return
         kind = message.topic.rpartition("/")[2]
         self.heard_at[kind] = time.monotonic()
         self.heard.put((kind, message.payload))

@@ -57,9 +57,12 @@ def label_of(name: str) -> str:
     return name.rpartition(":")[2] if is_own(name) else name
 
 
-def own_digest(name: str) -> bytes:
-    """Return what stands for the file of an own sampler: another text is another sampler."""
-    return blake2b(_text(Path(name.rpartition(":")[0]).resolve())).digest()
+def own_text(name: str) -> bytes:
+    """Return what is in the file of an own sampler: another text is another sampler.
+
+    Raise `SettingError` if it cannot be read.
+    """
+    return _text(Path(name.rpartition(":")[0]).resolve())
 
 
 def _text(file: Path) -> bytes:

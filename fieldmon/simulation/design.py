@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.samplers import COMPARED, kind_of, sampler_or_name
-from fieldmon.samplers.own import is_own, label_of, own_digest
+from fieldmon.samplers.own import is_own, label_of, own_text
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.study_plot import DIGITS, Combination, StudyPlot, as_written
 from fieldmon.simulation.worker import simulate_chunk
@@ -94,13 +94,14 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
     Its keys are a sampler and a digest of all that its seasons depend on, and of nothing else.
     """
     n_days = design.n_days
+    # an own sampler's seasons hang on its text, read once for all chunks
+    own = {name: (own_text(name),) if is_own(name) else () for name in design.samplers}
 
     def key(setting: Setting, seeds: range) -> tuple[str, str]:
         plot, levels = setting
         label = label_of(levels.sampler)
-        own = (own_digest(levels.sampler),) if is_own(levels.sampler) else ()
         written = as_written(replace(levels, sampler=label))
-        parts = (plot.digest, written, (seeds.start, seeds.stop), n_days, *own)
+        parts = (plot.digest, written, (seeds.start, seeds.stop), n_days, *own[levels.sampler])
         return label, digest(_VERSION, *parts, length=DIGITS)
 
     return Experiment(

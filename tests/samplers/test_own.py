@@ -7,7 +7,7 @@ import pytest
 import fieldmon as fm
 from fieldmon.errors import SettingError
 from fieldmon.samplers import kind_of, sampler
-from fieldmon.samplers.own import is_own, label_of, own_class, own_digest
+from fieldmon.samplers.own import is_own, label_of, own_class, own_text
 from fieldmon.simulation.design import Design
 from tests.paths import ROOT
 
@@ -63,10 +63,10 @@ def test_a_name_in_a_file_of_settings_runs_no_code(file):
 
 def test_another_text_is_another_sampler(file):
     name = f"{file}:Mine"
-    first, digest = own_class(name), own_digest(name)
+    first, text = own_class(name), own_text(name)
     assert own_class(name) is first
     file.write_text(f"{SAMPLER}\nMORE = 1\n", encoding="utf-8")
-    assert own_digest(name) != digest
+    assert own_text(name) != text
     assert own_class(name) is not first
 
 

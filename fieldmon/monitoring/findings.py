@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 SOURCE = "phone"
 #: what one person may tell in a day: ten times what anybody can inspect
 MOST_A_DAY = 20_000
-# a clock as wrong as this was set wrong; less is the way through the network
-_WRONG = timedelta(minutes=2)
+#: a clock as wrong as this was set wrong; less is the way through the network
+CLOCK_IS_WRONG = timedelta(minutes=2)
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def take(
     """
     received = utc_now()
     fast = sent - received
-    shift = fast if abs(fast) > _WRONG else timedelta()
+    shift = fast if abs(fast) > CLOCK_IS_WRONG else timedelta()
     with season.changing() as change:
         scout = scouts.who_in(change.db, season, key)
         return _take(season, change, scout, _SentFindings([*findings], (received, sent), shift))
@@ -352,8 +352,10 @@ def _when(clock: LocalClock, one: Finding, letter: _SentFindings) -> tuple[date,
     """
     received, at = letter.clocks[0], one.at - letter.shift
     local, named = clock.at(at), one.on
-    least = one.after if one.after is None or one.after <= received + _WRONG else None
-    is_believed = at <= received + _WRONG and (least is None or at >= least - _WRONG)
+    least = one.after if one.after is None or one.after <= received + CLOCK_IS_WRONG else None
+    is_believed = at <= received + CLOCK_IS_WRONG and (
+        least is None or at >= least - CLOCK_IS_WRONG
+    )
     if named is not None:
         return named, seconds(local.time()) if is_believed and named == local.date() else np.nan
     if is_believed:

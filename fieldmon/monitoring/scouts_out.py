@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.monitoring.day_ahead import Part, crew_of, given, plan_of
+from fieldmon.monitoring.findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import scouts_of
 
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring.season_file import Season
 
-# as far as that, times are put right, see `fieldmon.monitoring.findings`
-_WRONG = timedelta(minutes=2)
 # the last finding of each, and the last photo
 _LAST_SENT = "SELECT scout, max(received), sent_phone FROM tellings GROUP BY scout"
 _LAST_PHOTO = "SELECT scout, max(received) FROM photos GROUP BY scout"
@@ -60,7 +59,7 @@ class ScoutOut:
     @property
     def clock_is_wrong(self) -> bool:
         """Return whether the phone's clock is so far off that its times are put right."""
-        return abs(self.fast) > _WRONG
+        return abs(self.fast) > CLOCK_IS_WRONG
 
 
 def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:

@@ -22,7 +22,11 @@ export class Runner {
     this.timer = setTimeout(() => this.#run(), ms);
   }
 
+  /** The next time, unless a tap asked for one meanwhile. */
+  #next(ms) { if (!this.timer) this.#later(ms); }
+
   async #run() {
+    this.timer = null;
     if (this.running) { this.again = true; return; }
     this.running = true;
     const alone = navigator.locks ? (work) => navigator.locks.request("fieldmon sync", work) : (work) => work();
@@ -32,10 +36,10 @@ export class Runner {
       await this.#news();
       this.#say("sent");
       this.wait = SOON_MS;
-      this.#later(NEWS_MS);
+      this.#next(NEWS_MS);
     } catch (error) {
       this.#say(error instanceof KeyEnded ? "ended" : "offline");
-      this.#later(this.wait);
+      this.#next(this.wait);
       this.wait = Math.min(this.wait * 2, LATEST_MS);
     }
     this.running = false;

@@ -1,0 +1,46 @@
+import assert from "node:assert/strict";
+import { before, mock, test } from "node:test";
+import { Runner } from "../src/runner.js";
+
+const turns = async () => { for (let k = 0; k < 20; k++) await Promise.resolve(); };
+
+before(() => {
+  globalThis.addEventListener ??= () => {};
+  globalThis.document = { addEventListener() {}, hidden: false };
+  Object.defineProperty(globalThis, "navigator", { value: {}, configurable: true });
+});
+
+test("what is tapped while something is sent goes a second later, not a minute", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout", "Date"] });
+  let sent = 0, free;
+  const sync = { send: mock.fn(() => { sent += 1; return new Promise((done) => { free = done; }); }), stranded: new Map() };
+  const field = { reread: async () => {}, refresh: async () => {}, day: {} };
+  const runner = new Runner(sync, field, () => {});
+  runner.now();
+  t.mock.timers.tick(0);
+  await turns();
+  assert.equal(sent, 1);
+  runner.afterTap(); // the first is on its way still
+  free();
+  await turns();
+  t.mock.timers.tick(1000);
+  await turns();
+  assert.equal(sent, 2);
+});
+
+test("a network that is lost is tried again by and by, and at once after a tap", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout", "Date"] });
+  let sent = 0;
+  const sync = { send: async () => { sent += 1; throw new Error("no network"); }, stranded: new Map() };
+  const runner = new Runner(sync, { reread: async () => {}, refresh: async () => {}, day: {} }, () => {});
+  runner.now();
+  for (const [ms, times] of [[0, 1], [3000, 2], [3000, 2], [3000, 3]]) {
+    t.mock.timers.tick(ms);
+    await turns();
+    assert.equal(sent, times);
+  }
+  runner.afterTap();
+  t.mock.timers.tick(1000);
+  await turns();
+  assert.equal(sent, 4);
+});

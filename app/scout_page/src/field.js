@@ -10,6 +10,8 @@ const KEPT = ["season", "plot", "day", "ahead", "draft", "begun", "last"];
 const EMPTY = { plot: null, day: null, ahead: [], draft: null, begun: null, last: null };
 // a record that is on no disk yet
 const WRITING = "writing";
+// where one was longer ago is not where one is
+const FRESH_MS = 60000;
 
 export class Field {
   #written = Promise.resolve();
@@ -19,7 +21,7 @@ export class Field {
 
   constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID(), time = new Clock(() => this.clock()) } = {}) {
     Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
-    this.position = null;
+    this.coords = null;
     this.records = [];
     this.people = {};
     this.seasons = [];
@@ -108,8 +110,7 @@ export class Field {
   async #change(season, given) {
     const left = this.season ? { [`of ${this.season}`]: Object.fromEntries(Object.keys(EMPTY).map((name) => [name, this[name]])) } : {};
     const kept = given ?? (await this.store.get(`of ${season}`));
-    Object.assign(this, EMPTY, kept, { season, position: null });
-    if (this.coords) this.moved(this.coords);
+    Object.assign(this, EMPTY, kept, { season });
     const values = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
     await this.store.put({ ...left, ...values });
   }
@@ -140,7 +141,6 @@ export class Field {
     await this.settled();
     await this.#name(this.access.key, day.scout);
     if (plot) this.plot = laidOut(plot, day.plot);
-    if (this.coords) this.moved(this.coords);
     this.#take(day);
     this.begun = null;
     this.last = null;
@@ -259,14 +259,18 @@ export class Field {
     return at && this.plant >= 0 ? Math.hypot(this.plot.x[this.plant] - at.x, this.plot.y[this.plant] - at.y) : null;
   }
 
-  /** The phone says where it is; before there is a plot, that is kept for later. */
-  moved(coords) {
-    this.coords = coords;
-    if (!this.plot) return;
-    const { longitude, latitude, accuracy } = coords;
-    const [x, y] = metres(this.plot, [longitude, latitude]);
-    this.position = { x, y, accuracy, lon: longitude, lat: latitude };
+  /** The phone says where it is, or that it does not know: null. */
+  moved(coords) { Object.assign(this, { coords, movedAt: this.#ticks() }); }
+
+  /** Where one is on the plot, in metres, as long as that is fresh; else null. */
+  get position() {
+    if (!this.plot || !this.coords || this.#ticks().some((now, k) => now - this.movedAt[k] > FRESH_MS)) return null;
+    const { longitude, latitude, accuracy } = this.coords, [x, y] = metres(this.plot, [longitude, latitude]);
+    return { x, y, accuracy, lon: longitude, lat: latitude };
   }
+
+  // asleep in a pocket, one of the two may stand still
+  #ticks() { return [this.time.tick(), this.clock().getTime()]; }
 
   #where() {
     const at = this.position;

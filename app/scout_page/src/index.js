@@ -76,7 +76,8 @@ async function later(page, field, store, access) {
   others.onmessage = async () => { await field.open(); await page.refresh(); };
   if ("serviceWorker" in navigator) navigator.serviceWorker.register("worker.js", { updateViaCache: "none" }).catch(() => {});
   page.persisted = (await navigator.storage?.persist?.()) ?? false;
-  navigator.geolocation?.watchPosition(({ coords }) => { field.moved(coords); page.moved(); }, () => {}, { enableHighAccuracy: true, maximumAge: 2000 });
+  const moved = (coords) => { field.moved(coords); page.moved(); };
+  navigator.geolocation?.watchPosition(({ coords }) => moved(coords), () => moved(null), { enableHighAccuracy: true, maximumAge: 2000 });
   setInterval(() => page.refresh(), 30000);
   if (access && !field.day) await page.load();
   runner.now();

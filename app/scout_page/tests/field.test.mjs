@@ -322,6 +322,21 @@ test("what cannot be written is taken back, and what was tapped after it too", a
   assert.equal((await again()).records.length, 2, "the next tap is kept as ever");
 });
 
+test("a position counts as long as it is fresh: where one was before a sleep is not where one is", async () => {
+  const { field } = await aField();
+  field.moved({ longitude: 35, latitude: 30, accuracy: 4 });
+  assert.ok(field.position.accuracy === 4 && field.isThere());
+  field.clock = () => new Date("2026-11-22T08:01:30Z");
+  assert.deepEqual([field.position, field.isThere(), field.metresAway(), field.offered()], [null, false, null, -1]);
+  await field.tell("clean");
+  assert.equal(field.records.at(-1).lon, undefined);
+  field.moved({ longitude: 35, latitude: 30, accuracy: 4 });
+  await field.tell("clean");
+  assert.ok(Math.abs(field.records.at(-1).lon - 35) < 1e-9);
+  field.moved(null);
+  assert.equal(field.position, null);
+});
+
 test("a photo belongs to its plant though the next one was there before it was ready", async () => {
   const { season, store, field, sync } = await aField();
   const begun = field.photoOf(), finding = field.draft.id;

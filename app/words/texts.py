@@ -995,6 +995,7 @@ SCOUT_PAGE = {
     "scan": "Scan the code that the app shows: Today, Send to phone.",
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
+    "newer_plan": "There is a newer plan: load it",
     "clock_wrong": "The clock of this phone is wrong: set it right.",
     "other_day": "What is recorded now counts for {day}.",
     "loading": "Loading ...", "route_done": "The route is done.",

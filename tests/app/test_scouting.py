@@ -13,9 +13,9 @@ import pytest
 
 from app.state.scout_page import invitation
 from app.words import texts
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season, photos, scouts
-from fieldmon.monitoring.day_ahead import route_ahead
+from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
@@ -254,6 +254,24 @@ def test_a_tap_is_of_the_plant_in_large_print_whoever_records_it_meanwhile(seaso
     assert plant_of(page) == plant
     told_now(page, "clean")
     assert [one["plant"] for one in kept(page).records] == [plant]
+
+
+def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone):
+    invited(phone, line, season, "Dan")
+    page = phone.page
+    page.locator(SENT).wait_for()
+    plant = plant_of(page)
+    ahead = [one for one in route_ahead(season, BEGINS, Part(name="Dan")).plant if one != plant]
+    theirs = [a_finding(one, CLEAN, on=BEGINS, at=utc_now()) for one in ahead[:9]]
+    take(season, scouts.let_in(season, "Ann"), theirs, utc_now())
+    plan = planned_again(season, BEGINS, Part(name="Dan"))
+    page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator("#newer").wait_for()
+    assert plant_of(page) == plant
+    page.locator("#newer").click()
+    page.locator("#newer").wait_for(state="hidden")
+    page.locator(f"#place[data-plant='{plan.plant[0]}']").wait_for()
 
 
 def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):

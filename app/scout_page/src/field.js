@@ -158,7 +158,7 @@ export class Field {
     if (day.day !== this.day.day || day.plot !== this.day.plot) return;
     const { route, plan, seconds_left } = this.day;
     const asked = new Set(this.asked().map((one) => one.id));
-    this.#take({ ...day, route, plan, seconds_left });
+    this.#take({ ...day, route, plan, seconds_left, newest: day.plan });
     const isNew = this.asked().some((one) => !asked.has(one.id));
     this.ahead = isNew ? this.#withAsked(this.ahead) : this.ahead.filter((one) => !this.done.has(one));
     // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
@@ -166,11 +166,17 @@ export class Field {
     await this.#keep("day", "ahead", "draft");
   }
 
+  /** Whether another plan was given out since, as when somebody else's rows are to be done, too. */
+  hasNewer() {
+    const { plan, newest = plan } = this.day ?? {};
+    return newest != null && newest !== plan;
+  }
+
   /** Let the full planner plan the rest. */
   async planRest() {
     const { route, plan } = await fetchRest(this.ask, this.access, this.meant(), this.secondsLeft());
     await this.settled();
-    this.day = { ...this.day, route, plan };
+    this.day = { ...this.day, route, plan, newest: plan };
     this.ahead = this.#withAsked(route.plants);
     this.last = null;
     this.draft = this.#keepDraft();

@@ -214,7 +214,8 @@ export class Page {
 
   #old() {
     const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
-    return [...wrong, ...this.#otherDay()];
+    const newer = field.hasNewer() && !field.isOld() ? [h("button", { type: "button", class: "wide", id: "newer", onclick: () => this.load() }, say("newer_plan"))] : [];
+    return [...wrong, ...this.#otherDay(), ...newer];
   }
 
   #otherDay() {

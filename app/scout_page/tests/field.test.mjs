@@ -192,9 +192,11 @@ test("it tells by which plan it goes on as it sees what others found, until it l
   await field.load();
   season.day = aDay([1, 2], { plan: 9 });
   await field.refresh();
-  assert.equal(field.day.plan, 7);
+  assert.deepEqual([field.day.plan, field.hasNewer()], [7, true]);
   await field.load();
+  assert.equal(field.hasNewer(), false);
   await field.refresh();
+  assert.equal(field.hasNewer(), false);
   assert.deepEqual(asked, [null, "7", null, "9"]);
 });
 

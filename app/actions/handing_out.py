@@ -14,7 +14,7 @@ from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import scouts
 
 from ..show import qr_code
-from ..state import chosen_day, morning, phone
+from ..state import chosen_day, morning, notices, phone
 from ..words import texts
 from . import inviting
 
@@ -35,6 +35,20 @@ def show(choices: Choices, plan: DayPlan) -> None:
     starts = chosen_day.starts(choices, plan)
     notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who)
     _files(choices, HandoffPlan(chosen_day.with_bound(choices, plan).route, notes))
+
+
+def give_out(choices: Choices) -> None:
+    """Keep the day's route with the season as the one given out: stops are counted along it."""
+    choices.season.plan(choices.on, wishes=choices.wishes)
+
+
+@notices.reporting
+def _taken(choices: Choices) -> str:
+    """Note that a route is taken along as a file."""
+    if choices.season is not None:
+        give_out(choices)
+    morning.note(choices, morning.SEND)
+    return ""
 
 
 def is_out(choices: Choices) -> bool:
@@ -64,7 +78,7 @@ def _files(choices: Choices, plan: HandoffPlan) -> None:
     st.download_button(
         texts.DOWNLOAD_AS.format(reader=_reader(name)), partial(made, chosen, plan),
         f"route_{choices.day}{ending}", key="download_format", type="primary",
-        on_click=morning.note, args=(choices, morning.SEND),
+        on_click=_taken, args=(choices,),
     )  # fmt: skip
 
 

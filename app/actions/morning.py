@@ -47,6 +47,8 @@ def show(choices: Choices, plan: DayPlan) -> None:
 
 
 def _sign(step: Step) -> str:
+    if step.done and step.nothing:
+        return ":material/horizontal_rule:"
     if step.done:
         return ":green[:material/check_circle:]"
     return f":material/{'arrow_circle_right' if step.next else 'circle'}:"
@@ -75,7 +77,9 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
     kept = chosen_day.planned_and_done(choices)
     said = "" if kept is None else day.in_short(kept.planned, kept.hours, kept.people)
     if not chosen_day.progress(choices).inspected_today:
-        return said or rest
+        if kept is None or chosen_day.is_given_out(choices, plan):
+            return said or rest
+        return texts.STEP_OTHER.format(plan=rest or texts.STEP_NO_STOPS, kept=said)
     if kept is None:
         return rest and texts.STEP_REST.format(plan=rest)
     return texts.STEP_KEPT.format(plan=said, left=kept.left)
@@ -137,7 +141,7 @@ def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
 @notices.reporting
 def _use_plan(choices: Choices) -> str:
     """Keep the day's route with the season, so that the report can hold it to what was done."""
-    choices.season.plan(choices.on, wishes=choices.wishes)
+    handing_out.give_out(choices)
     return texts.PLAN_USED.format(day=choices.units.said_day(choices.day))
 
 

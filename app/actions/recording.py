@@ -110,8 +110,8 @@ def _record_one(choices: Choices) -> str:
 
 def _show_route(choices: Choices) -> None:
     """Show the route given out for the day, or the one planned, to be marked stop by stop."""
-    kept = chosen_day.given_out(choices)
-    plants = kept if len(kept) else choices.plan().route.plant
+    kept, plan = chosen_day.given_out(choices), choices.plan()
+    plants = kept if len(kept) else plan.route.plant
     label = row_label(choices.plot.grid, plants)
     table = pd.DataFrame(
         {
@@ -127,6 +127,8 @@ def _show_route(choices: Choices) -> None:
     # Enter after typing a number must not record: the button under it would record as many again
     with st.form("route_form", border=False, enter_to_submit=False):
         st.caption(texts.RECORD_REST)
+        if len(kept) and len(plan.route) and not chosen_day.is_given_out(choices, plan):
+            st.caption(texts.RECORD_GIVEN_OUT)
         done = st.number_input(texts.RECORD_STOPS, 0, len(plants), None,
                                key=boxes.key(f"stops_done {of}"))  # fmt: skip
         with st.container(key="route_marks"):

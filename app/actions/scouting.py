@@ -16,6 +16,7 @@ from ..show import recorded_batches
 from ..state import chosen_day, notices
 from ..words import texts
 from ..words.language import in_words, number
+from . import handing_out
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
@@ -42,7 +43,7 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
         second=np.array([second]), count=np.array([counted]),
     )  # fmt: skip
     if not len(chosen_day.given_out(choices)):  # from the first tap on it is the day's route
-        choices.season.plan(choices.on, wishes=choices.wishes)
+        handing_out.give_out(choices)
     choices.season.record(results, SOURCE, choices.who or "")
     return ""
 

@@ -53,7 +53,18 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
 
 def headline(choices: Choices, plan: DayPlan) -> str:
     """Return what there is to do on the day, in one sentence."""
-    return in_words(sentences.headline(plan.route, choices.units.said_day(choices.day)))
+    on = choices.units.said_day(choices.day)
+    if is_over(choices, plan):
+        now = chosen_day.progress(choices)
+        return texts.DAY_DONE.format(found=now.found_today, inspected=now.inspected_today, day=on)
+    return in_words(sentences.headline(plan.route, on))
+
+
+def is_over(choices: Choices, plan: DayPlan) -> bool:
+    """Return whether the day was worked, and nothing is left of it."""
+    if choices.season is None or len(plan.route):
+        return False
+    return chosen_day.progress(choices).inspected_today > 0
 
 
 def plan_in_short(plan: DayPlan) -> str:
@@ -112,9 +123,12 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
         if not said and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)
         now = chosen_day.progress(choices)
-        done = {"inspected": now.inspected_today, "found": now.found_today}
+        if is_over(choices, plan):
+            st.info(texts.TODAY_OVER)
+            return
         if now.inspected_today:
-            st.info((texts.TODAY_OVER if said else texts.TODAY_DONE).format(**done))
+            done = {"inspected": now.inspected_today, "found": now.found_today}
+            st.info(texts.TODAY_DONE.format(**done))
             return
     if said:
         st.warning(said)

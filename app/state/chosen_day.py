@@ -92,6 +92,12 @@ def given_out(choices: Choices) -> cached.Array:
     return cached.kept_route(choices.key, choices.revision, of, choices.season)
 
 
+def is_given_out(choices: Choices, plan: DayPlan) -> bool:
+    """Return whether a season keeps just this plan as given out: later news may bring another."""
+    kept = given_out(choices)
+    return bool(len(kept)) and np.array_equal(kept, plan.route.plant)
+
+
 def planned_and_done(choices: Choices) -> PlannedAndDone | None:
     """Return the plan that a season keeps of the day, held to what was inspected; None: none."""
     of = choices.day, choices.who

@@ -23,18 +23,25 @@ RECORD, REPORT, NEXT_DAY = "record", "report", "next_day"
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the day: its name, whether it is done, and whether it is what comes next."""
+    """A step of the day: its name, whether it is done, and whether it is what comes next.
+
+    `nothing`: there was nothing to do.
+    """
 
     name: str
     done: bool
     next: bool = False
+    nothing: bool = False
 
 
 def steps(choices: Choices, plan: DayPlan) -> list[Step]:
     """Return the steps of the day in order; one of them at most comes next."""
     done = _in_season(choices, plan) if choices.season is not None else _without(choices, plan)
     first = next((name for name, is_done in done.items() if not is_done), None)
-    return [Step(name, is_done, name == first) for name, is_done in done.items()]
+    return [
+        Step(name, is_done, name == first, name == LOOK_BACK and not day_before(choices).inspected)
+        for name, is_done in done.items()
+    ]
 
 
 def _without(choices: Choices, plan: DayPlan) -> dict[str, bool]:
@@ -51,7 +58,7 @@ def _in_season(choices: Choices, plan: DayPlan) -> dict[str, bool]:
     done = {}
     if choices.on > choices.season.settings.begins:
         done[LOOK_BACK] = not left_unsaid(choices)
-    done[PLAN] = worked or bool(len(chosen_day.given_out(choices)))
+    done[PLAN] = worked or chosen_day.is_given_out(choices, plan)
     if not over:
         done[SEND] = worked or did(choices, SEND)
     done |= {RECORD: worked and over, REPORT: did(choices, REPORT)}

@@ -36,7 +36,8 @@ def show(choices: Choices) -> None:
         st.markdown(day.headline(choices, plan))
     work, figures = st.container(), st.container()
     with figures:  # they change with every choice: what takes longer is worked out after them
-        day.route_figures(choices, plan)
+        if not day.is_over(choices, plan):
+            day.route_figures(choices, plan)
         assuming.show(choices)
     with work:
         _work(choices, plan)

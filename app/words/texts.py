@@ -170,7 +170,7 @@ SEVERITIES = {
 }
 STOPS = "Stops in order"
 LEGEND_CHANCE = "Chance that a plant is infested"
-LEGEND_ROUTE, LEGEND_GATE = "route, arrows show the way", "gate: start and end"
+LEGEND_ROUTE, LEGEND_GATE = "route; numbers: its legs, stops from near", "gate: start and end"
 LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
 LEGEND_HOT = "hot spot: finds cluster more than chance allows"
 LEGEND_TREATED = "treated in the last two weeks"
@@ -424,6 +424,8 @@ STEP_FOUND = Plural(
     by="inspected",
 )
 STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
+STEP_OTHER = "{plan}, not given out yet; given out before: {kept}"
+STEP_NO_STOPS = "no stops"
 ROUTE_OF_NOBODY = (
     "The route shown is that of one who works alone; those who are out have their own."
 )
@@ -450,16 +452,14 @@ CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were
 CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most: {rows}."
-_OVER = (
-    "inspected today, {found:,} found: the working day is over. Choose the next day above for "
-    "its route, or give more hours."
-)
-TODAY_OVER = Plural(
-    "{inspected:,} plant " + _OVER, "{inspected:,} plants " + _OVER, by="inspected"
+DAY_DONE = Plural(
+    "Done on {day}: {found:,} found on {inspected:,} plant.",
+    "Done on {day}: {found:,} found on {inspected:,} plants.", by="inspected",
 )  # fmt: skip
+TODAY_OVER = "The working day is over: plan the next day below, or give more hours."
 TODAY_DONE = Plural(
-    "{inspected:,} plant inspected today so far, {found:,} found. The route shows the rest.",
-    "{inspected:,} plants inspected today so far, {found:,} found. The route shows the rest.",
+    "{inspected:,} plant inspected so far, {found:,} found. The route shows the rest.",
+    "{inspected:,} plants inspected so far, {found:,} found. The route shows the rest.",
     by="inspected",
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
@@ -723,6 +723,10 @@ RECORD_REST = (
     "found. A mark counts wherever it stands."
 )
 RECORD_STOPS = "Stops done"
+RECORD_GIVEN_OUT = (
+    "**These are the stops of the route given out.** The map shows what is left, planned anew: its "
+    "stops are others."
+)
 RECORD_UNSAID = (
     "Something must be said before it is recorded, but no stop is done and none is marked. Say how "
     "many stops were done, or mark those where pests were found."

@@ -122,7 +122,7 @@ def heading(app):
 
 def headline(app):
     """Return the sentence at the top of Today: what there is to do."""
-    leads = ("Inspect ", "Nothing to inspect")
+    leads = ("Inspect ", "Nothing to inspect", "Done on ")
     (said,) = (text.value for text in app.markdown if text.value.startswith(leads))
     return apart(said)
 

@@ -1,13 +1,16 @@
 """The morning's buttons: the plan is kept, the route goes along, the report is there."""
 
+from dataclasses import replace
 from datetime import date
 
 import numpy as np
 import pytest
 
+from app.actions import handing_out
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from tests.app.driving import boxed, go, opened, press, tap, texts_of
+from tests.app.chosen import in_season
+from tests.app.driving import boxed, go, headline, opened, press, tap, texts_of
 
 
 def test_without_a_season_one_button_begins_it(app):
@@ -22,6 +25,38 @@ def test_the_plan_is_kept_once_it_is_used(season_app, season):
     tap(season_app, "do_plan")
     assert len(season().kept_route(date(2026, 11, 16))) > 100
     assert texts.PLAN_USED.format(day="Mon 16 Nov") in season_app.success[0].value
+
+
+def test_a_route_taken_as_a_file_is_the_one_whose_stops_are_recorded(season_app, season):
+    def sign(step):
+        (said,) = [one.value for one in season_app.markdown if texts.STEPS[step] in one.value]
+        return said
+
+    tap(season_app, "do_plan")
+    kept, first = season(), date(2026, 11, 16)
+    given_out = kept.kept_route(first)
+    assert sign("plan").startswith(":green")
+    shorter = replace(kept.settings, robot=replace(kept.settings.robot, hours=1.0))
+    kept.change(shorter, kept.settings)
+    season_app.run()
+    assert not sign("plan").startswith(":green")
+    assert f"given out before: {len(given_out):,} plants" in sign("plan")
+    handing_out.give_out(in_season(kept))
+    season_app.run()
+    assert sign("plan").startswith(":green")
+    assert len(season().kept_route(first)) < len(given_out)
+
+
+def test_a_day_that_is_done_says_what_was_found(season_app, season):
+    kept, first = season(), date(2026, 11, 16)
+    plants = np.arange(40)
+    results = np.zeros(40, np.int8)
+    results[:3] = 1
+    late = np.linspace(6 * 3600, 18.1 * 3600, 40)
+    kept.record(Inspections.of(plants, results, np.datetime64(first), second=late))
+    season_app.run()
+    assert headline(season_app) == "Done on Mon 16 Nov: 3 found on 40 plants."
+    assert texts.TODAY_OVER in texts_of(season_app)
 
 
 @pytest.mark.parametrize("begun", [True, False], ids=["season", "plan"])

@@ -116,7 +116,7 @@ def test_thousands_of_a_day_or_a_hot_spot_are_written_as_everywhere(speaking, co
     speaking(code)
     many = {"found": 1009, "inspected": 1009, "plants": 1009, "n": 1, "day": "x"}
     for text in (texts.TIP_HOT, texts.STEP_FOUND, texts.CHANGED_FINDS, texts.TODAY_DONE,
-                 texts.TODAY_OVER, texts.SCOUT_DONE):  # fmt: skip
+                 texts.DAY_DONE, texts.SCOUT_DONE):  # fmt: skip
         assert text.format(**many).count(counted) == 2
     hot = worded(words.HOT_MEANS, rows="", expected="7", p="", **many)
     assert language.in_words(hot).count(counted) == 3

@@ -213,7 +213,8 @@ class Ancestry:
     ) -> tuple[Ancestry, NDArray[np.float64] | None]:
         """Return what is known the next morning, and each plant's chance ``(n,)``.
 
-        Before anything was inspected there are no chances (None).
+        There are no chances (None) where nothing was inspected since the night before: what was
+        found has had its say.
 
         Parameters
         ----------
@@ -237,19 +238,23 @@ class Ancestry:
                 idle=self.idle + (self.knows and not hears),
             )
         )
-        if not self.knows:
+        if not hears:
             return night, None
         many = int(np.count_nonzero(night.infestations.there))
-        for k in range(_on(night.heard - 1, _ROUNDS) if hears else 1):
-            night, hidden, unseen = _drawn(night, landing_of(self.grid), k, arrive, hears=hears)
-        if hears:
-            night = replace(night, idle=0)
+        for k in range(_on(night.heard - 1, _ROUNDS)):
+            night, hidden, unseen = _drawn(night, landing_of(self.grid), k, arrive)
+        night = replace(night, idle=0)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
         )
-        if day + 1 >= _MOST_DAYS or many > _MOST_INFESTATIONS:
+        if night.is_old or many > _MOST_INFESTATIONS:
             night = night.anew(chance)
         return night, chance
+
+    @property
+    def is_old(self) -> bool:
+        """Tell whether it goes back so far that it is to begin anew."""
+        return len(self.sends) >= _MOST_DAYS
 
     @property
     def arrays(self) -> dict[str, NDArray[np.generic]]:
@@ -321,13 +326,12 @@ def _with_finds(of: Ancestry) -> Ancestry:
 
 
 def _drawn(
-    of: Ancestry, landing: Landing, nth: int, arrive: float, *, hears: bool
+    of: Ancestry, landing: Landing, nth: int, arrive: float
 ) -> tuple[Ancestry, Floats, NDArray[np.float64]]:
     """Draw ancestries for the `nth` time in a night, and estimate rates by them.
 
-    Unless the night `hears` of nothing new to learn from: then rates stay. Return also how likely
-    each plant is infested as the ancestor of a find, and how many infestations of which nothing was
-    seen are expected there.
+    Return also how likely each plant is infested as the ancestor of a find, and how many
+    infestations of which nothing was seen are expected there.
     """
     t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
     # half the digits: on a large plot it is memory that takes the time
@@ -352,7 +356,7 @@ def _drawn(
     np.maximum(lasting, _TINY, out=lasting)
     drawn = DrawnSums.none(t, n, landing.kernels.shape[1])
     day = len(of.sends) - 1
-    sweeps = of.sweeps if hears else of.sweeps[-1:]
+    sweeps = of.sweeps
     for k, many in enumerate(sweeps):
         sends = of.sent(rates)
         kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
@@ -375,8 +379,6 @@ def _drawn(
             taken = active.copy()
             taken[finds] = 1.0
             unfound = unseen_now(unseen, active, roots, sends, rates.shares, landing)
-        if not hears:
-            break
         night = DrawnEvidence(
             of.start, sends, kernel, seen, taken, drawn, active, unfound, arrive, of.earlier
         )
@@ -393,7 +395,7 @@ def _drawn(
         # several may have come to one plant
         else _at_start(drawn, infestations, float(-np.expm1(-unfound[BEFORE]).sum())),
         arrived=float(drawn.roots[1].sum()),
-        taught=rates.taught(night, exposure, landing) if hears else of.taught,
+        taught=rates.taught(night, exposure, landing),
     )
     return made, drawn.hidden, unfound[-1].astype(np.float64)
 

@@ -139,9 +139,12 @@ def forecast(
         expected[0] = now.expected
     doubts = _deviation(tonight), _OF_A_PEST if named else _LEVEL_DOUBT
     low, high = _interval(inside, expected - inside, doubts, found)
-    low, high = np.floor(low), np.minimum(np.ceil(high), len(evening.chance))
     if now is not None:
+        # it is never surer than what is known this evening
+        grows = expected / max(float(expected[0]), _LEAST)
+        low, high = np.minimum(low, now.low * grows), np.maximum(high, now.high * grows)
         low[0], high[0] = now.low, now.high
+    low, high = np.floor(low), np.minimum(np.ceil(high), len(evening.chance))
     return Forecast(expected, low, high, weather)
 
 
@@ -154,7 +157,9 @@ def _told_tonight(evening: Belief, nights: Sequence[Spread]) -> Floats | None:
 
     ``(n,)``; None: nothing. So tomorrow's map is that of tomorrow's plan.
     """
-    if not isinstance(evening, TracedPairs) or evening.ancestry is None or len(nights) == 0:
+    if not isinstance(evening, TracedPairs) or len(nights) == 0:
+        return None
+    if evening.ancestry is None or not evening.ancestry.waits:
         return None
     told: Floats = evening.overnight(nights[0]).chance / evening.untold_night(nights[0]).chance
     return told

@@ -379,6 +379,8 @@ class TracedPairs:
             # a logarithmic pool of both maps (Genest & Zidek 1986)
             odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(by_origins.chance) ** _ORIGINS
             by_origins = by_origins.times(odds / (1.0 + odds) / by_origins.chance)
+        elif ancestry.is_old:
+            ancestry = ancestry.anew(by_origins.chance)
         return _levelled(replace(by_origins, ancestry=ancestry))
 
     def untold_night(self, spread: Spread) -> TracedPairs:

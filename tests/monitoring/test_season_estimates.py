@@ -51,6 +51,17 @@ def test_the_evening_and_the_next_morning_tell_the_same_of_many_finds(season):
     assert start[0].low >= 30
 
 
+def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):
+    season.record(some_results(season, n=60, found=list(range(0, 30))), "x")
+    season.record(some_results(season, n=20, day=1, found=[3]), "y")
+    ahead = season.forecast(on(1))
+    came = [season.status(on(1 + night)).estimate.expected for night in range(15)]
+    assert came == pytest.approx(ahead.expected, rel=1e-3)
+    wide = ahead.high / np.maximum(ahead.low, 1.0)
+    assert np.all(np.diff(ahead.expected) > 0.0)
+    assert np.all(wide[1:] >= 0.99 * wide[0])
+
+
 def test_finds_that_are_only_flagged_stay_infested(tmp_path):
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
     results = some_results(season, found=[0])

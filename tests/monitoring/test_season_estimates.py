@@ -52,7 +52,7 @@ def test_the_evening_and_the_next_morning_tell_the_same_of_many_finds(season):
 
 
 def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):
-    season.record(some_results(season, n=60, found=list(range(0, 30))), "x")
+    season.record(some_results(season, n=60, found=list(range(30))), "x")
     season.record(some_results(season, n=20, day=1, found=[3]), "y")
     ahead = season.forecast(on(1))
     came = [season.status(on(1 + night)).estimate.expected for night in range(15)]

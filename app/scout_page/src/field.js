@@ -88,8 +88,9 @@ export class Field {
   }
 
   async #begin() {
-    this.access = this.season ? await this.store.access(this.season) : null;
-    this.seasons = (await this.store.seasons()).sort();
+    const { season } = this, [access, seasons] = await Promise.all([season ? this.store.access(season) : null, this.store.seasons()]);
+    if (this.season === season) this.access = access;
+    this.seasons = seasons.sort();
     await this.reread();
     await this.#countPhotos();
   }
@@ -106,12 +107,14 @@ export class Field {
     await this.#begin();
   }
 
-  /** Go on with a season as it was left, or with what is given of it. */
+  /** Go on with a season as it was left, or with what is given of it: all of it at once, whatever is tapped meanwhile. */
   async #change(season, given) {
+    const [kept, access, records] = await Promise.all([given ?? this.store.get(`of ${season}`), this.store.access(season), this.store.records(season)]);
+    await this.settled();
     const left = this.season ? { [`of ${this.season}`]: Object.fromEntries(Object.keys(EMPTY).map((name) => [name, this[name]])) } : {};
-    const kept = given ?? (await this.store.get(`of ${season}`));
-    Object.assign(this, EMPTY, kept, { season });
-    const values = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
+    const values = { ...EMPTY, ...kept, season };
+    Object.assign(this, values, { access: access ?? null, records: this.#ownOf(records, access) });
+    this.#work();
     await this.store.put({ ...left, ...values });
   }
 
@@ -123,39 +126,54 @@ export class Field {
   }
 
   async reread() {
-    const before = new Set(this.records.filter((one) => one.state !== WRITING).map((one) => one.id));
-    const all = this.season ? await this.store.records(this.season) : [];
-    // what another person told on this phone is not one's own
-    const kept = all.filter((one) => isOf(this.people, one.key, this.access?.key)), ids = new Set(kept.map((one) => one.id));
+    const { season, access } = this, before = new Set(this.records.filter((one) => one.state !== WRITING).map((one) => one.id));
+    const all = season ? await this.store.records(season) : [];
+    if (this.#hasTurned(season, access)) return;
+    const kept = this.#ownOf(all, access), ids = new Set(kept.map((one) => one.id));
     // what was told while the disk was read
     const newer = this.records.filter((one) => one.season === this.season && one.key === this.access?.key && !ids.has(one.id) && !before.has(one.id));
     this.records = [...kept, ...newer];
     this.#work();
   }
 
+  /** What another person told on this phone is not one's own. */
+  #ownOf(records, access) { return records.filter((one) => isOf(this.people, one.key, access?.key)); }
+
+  /** Whether another season, or another person's key, is here than there was. */
+  #hasTurned(season, access) { return this.season !== season || this.access?.key !== access?.key; }
+
+  /** What the network answers to this season's key; null where another is here by then: it is of no use to that. */
+  async #hear(asking) {
+    const { season, access } = this;
+    const heard = access.season === season ? await asking(access) : null;
+    await this.settled();
+    return this.#hasTurned(season, access) ? null : heard;
+  }
+
   /** Load plot, plants, route, chances and hot spots, while there is a network. */
   async load() {
     // a code made for a day ahead is of that day until it is over
     if (this.access.on && this.isOld()) await this.store.allow((this.access = { ...this.access, on: null }));
-    const { day, plot } = await fetchDay(this.ask, this.access, this.plot?.digest);
-    await this.settled();
-    await this.#name(this.access.key, day.scout);
+    const heard = await this.#hear((access) => fetchDay(this.ask, access, this.plot?.digest));
+    if (!heard) return;
+    const { day, plot } = heard, { season } = this;
+    this.people = { ...this.people, [this.access.key]: day.scout };
     if (plot) this.plot = laidOut(plot, day.plot);
     this.#take(day);
     this.begun = null;
     this.last = null;
     this.ahead = this.#withAsked(day.route.plants);
     this.draft = this.#keepDraft();
-    await this.#keep(...KEPT);
-    await this.store.tidy(this.season, day.day);
+    await this.#keep(...KEPT, "people");
+    await this.store.tidy(season, day.day);
     await this.reread();
   }
 
   /** See what others found meanwhile; the way stays as it is. */
   async refresh() {
     if (!this.day) return;
-    const { day } = await fetchDay(this.ask, this.access, this.day.plot, this.day.plan);
-    if (day.day !== this.day.day || day.plot !== this.day.plot) return;
+    const { day } = (await this.#hear((access) => fetchDay(this.ask, access, this.day.plot, this.day.plan))) ?? {};
+    if (!day || day.day !== this.day.day || day.plot !== this.day.plot) return;
     const { route, plan, seconds_left } = this.day;
     const asked = new Set(this.asked().map((one) => one.id));
     this.#take({ ...day, route, plan, seconds_left, newest: day.plan });
@@ -174,8 +192,9 @@ export class Field {
 
   /** Let the full planner plan the rest. */
   async planRest() {
-    const { route, plan } = await fetchRest(this.ask, this.access, this.meant(), this.secondsLeft());
-    await this.settled();
+    const heard = await this.#hear((access) => fetchRest(this.ask, access, this.meant(), this.secondsLeft()));
+    if (!heard) return;
+    const { route, plan } = heard;
     this.day = { ...this.day, route, plan, newest: plan };
     this.ahead = this.#withAsked(route.plants);
     this.last = null;

@@ -52,6 +52,7 @@ export class Page {
 
   #laidOut = null;
   #shown = null;
+  #of = null;
 
   get theme() {
     const { theme } = this.choices;
@@ -180,6 +181,7 @@ export class Page {
   #layOut() {
     const { field } = this;
     this.#shown = field.day;
+    this.#of = field.season;
     if (!field.access) return this.sheet.replaceChildren(h("p", { class: "large" }, say("scan")));
     if (!field.day) {
       return this.sheet.replaceChildren(h("p", { class: "large" }, say("not_loaded", { season: field.season })),
@@ -256,8 +258,8 @@ export class Page {
   async #tell(result, beat) {
     if (performance.now() < this.rests) return;
     if (result === "found" && !this.field.isCountable()) return this.#say(say("count_whole"), true);
-    // another window of this page may have gone on
-    if (Number(this.place.dataset.plant) !== this.field.plant) return this.#draw();
+    // another window of this page may have gone on, or this one be turning to another season
+    if (this.#of !== this.field.season || Number(this.place.dataset.plant) !== this.field.plant) return this.#draw();
     this.rests = performance.now() + REST_MS;
     setTimeout(() => document.getElementById("answers")?.removeAttribute("data-resting"), REST_MS);
     const kept = this.#act(() => this.field.tell(result), beat);
@@ -415,14 +417,15 @@ export class Page {
 
   async #network(work) {
     if (this.menu.open) this.menu.close();
+    const { season } = this.field;
     this.#say(say("loading"));
-    try {
-      await work();
-      this.#say("");
-    } catch (error) {
+    let why = "";
+    try { await work(); } catch (error) {
       const known = error instanceof KeyEnded ? "state_ended" : error instanceof NotNow ? "no_network" : null;
-      this.#say(known ? say(known) : error.message, true);
+      why = known ? say(known) : error.message;
     }
+    if (this.field.season !== season) return; // it is of what is not seen any more
+    this.#say(why, why !== "");
     await this.refresh();
     this.#look();
     this.onTold?.();

@@ -175,6 +175,58 @@ test("two seasons on one phone: each goes on where it was left", async () => {
   assert.deepEqual([other.day.scout, other.access.key, other.records[0].plant], ["Bea", "k9", 7]);
 });
 
+/** Two seasons on one plot, the first shown; what the network says of it comes when it is let go. */
+async function twoSeasons() {
+  const days = { Gate: aDay([0, 1, 2]), Other: aDay([7, 8], { season: "Other", scout: "Bea" }) };
+  const { season, field, ...more } = await aField();
+  await field.open({ season: "Other", key: "k9", on: null });
+  season.day = days.Other;
+  await field.load();
+  await field.turnTo("Gate");
+  let go;
+  const gone = new Promise((done) => { go = done; }), ask = season.ask;
+  field.ask = async (address, ...rest) => {
+    const of = address.split("/")[4];
+    if (of === "Gate") await gone;
+    season.day = days[of];
+    return ask(address, ...rest);
+  };
+  return { season, field, go, days, ...more };
+}
+
+for (const asking of ["load", "refresh", "planRest"]) {
+  test(`what comes of a season after one turned to another is not that one's: ${asking}`, async () => {
+    const { season, store, field, sync, go, days } = await twoSeasons();
+    days.Gate = aDay([4, 5], { found: [3] });
+    const asked = field[asking]();
+    await field.turnTo("Other");
+    go();
+    await asked;
+    assert.deepEqual([field.season, field.day.scout, field.day.found, field.ahead, field.access.key], ["Other", "Bea", [], [7, 8], "k9"]);
+    assert.deepEqual([field.people, await store.get("people")], [{ k1: "Ann", k9: "Bea" }, { k1: "Ann", k9: "Bea" }]);
+    await field.tell("clean");
+    await sync.send();
+    assert.deepEqual([...season.by], [["k9", 1]]);
+    await field.turnTo("Gate");
+    assert.deepEqual(field.ahead, [0, 1, 2, 10, 11], "and the other one is as it was left");
+  });
+}
+
+test("a season is turned to whole: what is noted meanwhile is of one or of the other", async () => {
+  const { field } = await twoSeasons(), noted = {}, of = { Gate: ["k1", "Ann"], Other: ["k9", "Bea"] };
+  for (const season of ["Other", "Gate", "Other", "Gate"]) {
+    const turned = field.turnTo(season);
+    for (let k = 0; k < 12; k++) {
+      assert.deepEqual([field.access.key, field.day.scout], of[field.season]);
+      noted[field.season] = `${season} ${k}`;
+      field.note({ notes: noted[field.season] });
+      await new Promise((done) => setImmediate(done));
+    }
+    await turned;
+    assert.deepEqual([field.season, field.draft.notes], [season, noted[season]]);
+  }
+});
+
 test("what others found is seen, and not inspected twice; the way stays", async () => {
   const { season, field } = await aField();
   await field.tell("clean");

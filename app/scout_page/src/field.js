@@ -13,6 +13,9 @@ const WRITING = "writing";
 // where one was longer ago is not where one is
 const FRESH_MS = 60000;
 
+/** Whether something of a plant is in hand that is not told yet. */
+const isNoted = (draft) => Boolean(draft?.open || draft?.photos || draft?.notes);
+
 export class Field {
   #written = Promise.resolve();
   #failures = 0;
@@ -249,15 +252,19 @@ export class Field {
 
   #fresh(ahead) { return { id: this.id(), plant: ahead[0] ?? -1, open: false, photos: 0 }; }
 
-  #keepDraft() {
-    const had = this.draft;
-    if (!had || (had.chosen !== true && !had.open && !had.photos && !had.notes)) return this.#fresh(this.ahead);
-    return had;
+  /** What comes after the plant in hand: what was in hand before an undo, or the next of the way. */
+  #comesNext(ahead) {
+    const aside = this.draft?.aside;
+    return aside ? { ...aside, chosen: aside.plant !== ahead[0] } : this.#fresh(ahead);
   }
+
+  #keepDraft() { return this.draft?.chosen === true || isNoted(this.draft) ? this.draft : this.#comesNext(this.ahead); }
 
   /** Go to another plant than the next; whatever was noted goes along. */
   goTo(plant) {
-    return this.note({ ...(this.draft ?? this.#fresh([])), plant, chosen: plant !== this.ahead[0] });
+    const had = this.draft ?? this.#fresh([]), { aside } = had;
+    const one = aside?.plant === plant && !isNoted(had) ? aside : had;
+    return this.note({ ...one, aside: one.aside, plant, chosen: plant !== this.ahead[0] });
   }
 
   /** Back to the route. */
@@ -337,7 +344,7 @@ export class Field {
       const done = new Set([...this.done, plant]);
       ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.time.best()));
     }
-    const follows = { ahead, begun, draft: this.#fresh(ahead), last: { id, plant, ahead: this.ahead } };
+    const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
     return this.#step(follows, () => this.store.record(record, { ...follows, heard: this.time.least() }), record);
   }
 
@@ -347,13 +354,14 @@ export class Field {
     return this.records.filter((one) => one.day === this.day?.day && !one.undoes && !gone.has(one.id)).at(-1);
   }
 
-  /** Take the last record back; nothing is deleted. */
+  /** Take the last record back; nothing is deleted, and what is in hand comes again after it. */
   undo() {
     const one = this.lastRecord();
     if (!one) return Promise.resolve();
     const record = { ...this.#common(this.id()), undoes: one.id };
     const ahead = this.last?.id === one.id ? this.last.ahead : [one.plant, ...this.ahead.filter((p) => p !== one.plant)];
-    const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0] };
+    const aside = isNoted(this.draft) ? this.draft : this.draft.aside;
+    const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0], aside };
     const follows = { ahead, draft, last: null };
     return this.#step(follows, () => this.store.record(record, follows), record);
   }

@@ -45,6 +45,26 @@ test("a find brings its neighbours, and undo brings back what was before", async
   assert.equal((await again()).records.length, 2, "nothing is deleted");
 });
 
+test("an undo keeps the photo and the note of the plant in hand: it comes again after the one taken back", async () => {
+  const { season, field, sync, again } = await aField();
+  await field.tell("clean");
+  await field.addPhoto(field.photoOf(), PICTURE());
+  await field.note({ notes: "webs" });
+  const inHand = field.draft;
+  await field.undo();
+  await field.undo();
+  assert.deepEqual([field.plant, field.draft.photos, field.draft.notes], [0, 0, undefined]);
+  const other = await again();
+  await other.goTo(1);
+  assert.deepEqual([other.draft.id, other.draft.photos, other.draft.aside], [inHand.id, 1, undefined], "at once, where one goes to it");
+  await field.tell("found");
+  assert.deepEqual([field.plant, field.draft.id, field.draft.photos, field.draft.notes], [1, inHand.id, 1, "webs"]);
+  await field.tell("clean");
+  assert.deepEqual([field.plant, field.draft.photos], [5, 0]);
+  await sync.send();
+  assert.deepEqual([season.taken.get(inHand.id).plant, season.taken.get(inHand.id).notes, season.photos.size], [1, "webs", 1]);
+});
+
 test("a free find is off the route, and the route goes on", async () => {
   const { field } = await aField();
   await field.goTo(14);

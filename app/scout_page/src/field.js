@@ -21,6 +21,7 @@ export class Field {
   #failures = 0;
   #way = null;
   #pending = 0;
+  #steps = 0;
 
   constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID(), time = new Clock(() => this.clock()) } = {}) {
     Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
@@ -35,12 +36,13 @@ export class Field {
    * order. Where one cannot be written, it is taken back, and those after it with it.
    */
   #step(changes, write, record = null) {
-    const before = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
+    const before = Object.fromEntries([...KEPT, "access"].map((name) => [name, this[name]]));
     const failures = this.#failures;
     Object.assign(this, changes);
     if (record) this.records = [...this.records, { ...record, state: WRITING }];
     this.#work();
     this.#pending += 1;
+    this.#steps += 1;
     const written = this.#written.then(async () => {
       if (failures !== this.#failures) throw new Error("the step before it was not kept");
       try {
@@ -66,14 +68,16 @@ export class Field {
 
   /** Bring back what was there when the page was closed, or killed. */
   async open(access) {
-    let kept;
+    let kept, known, steps;
     do {
+      steps = this.#steps;
       await this.settled();
-      kept = await Promise.all(KEPT.map((name) => this.store.get(name)));
-    } while (this.#pending);
-    Object.assign(this, Object.fromEntries(KEPT.map((name, k) => [name, kept[k]])));
-    this.time.knew(await this.store.get("heard"));
-    this.people = (await this.store.get("people")) ?? {};
+      kept = await this.store.several([...KEPT, "people", "heard"]);
+      known = kept.season ? await this.store.access(kept.season) : null;
+    } while (this.#steps !== steps);
+    const { people = {}, heard, ...here } = kept;
+    Object.assign(this, here, { people, access: known });
+    this.time.knew(heard);
     if (access) await this.#comes(access);
     await this.#begin();
   }
@@ -106,8 +110,7 @@ export class Field {
   /** Turn to another season of this phone; the day of this one stays as it is. */
   async turnTo(season) {
     await this.settled();
-    if (season !== this.season) await this.#change(season);
-    await this.#begin();
+    try { if (season !== this.season) await this.#change(season); } finally { await this.#begin(); }
   }
 
   /** Go on with a season as it was left, or with what is given of it: all of it at once, whatever is tapped meanwhile. */
@@ -116,16 +119,15 @@ export class Field {
     await this.settled();
     const left = this.season ? { [`of ${this.season}`]: Object.fromEntries(Object.keys(EMPTY).map((name) => [name, this[name]])) } : {};
     const values = { ...EMPTY, ...kept, season };
-    Object.assign(this, values, { access: access ?? null, records: this.#ownOf(records, access) });
-    this.#work();
-    await this.store.put({ ...left, ...values });
+    this.records = this.#ownOf(records, access);
+    await this.#step({ ...values, access: access ?? null }, () => this.store.put({ ...left, ...values }));
   }
 
   /** A photo may be on the disk, and the page was killed before it was counted. */
   async #countPhotos() {
     if (!this.draft) return;
-    const photos = await this.store.drafts(this.draft.id);
-    if (photos !== (this.draft.photos ?? 0)) this.draft = { ...this.draft, photos };
+    const { id } = this.draft, photos = await this.store.drafts(id);
+    if (this.draft?.id === id && photos !== (this.draft.photos ?? 0)) this.draft = { ...this.draft, photos };
   }
 
   async reread() {
@@ -180,11 +182,13 @@ export class Field {
     const { route, plan, seconds_left } = this.day;
     const asked = new Set(this.asked().map((one) => one.id));
     this.#take({ ...day, route, plan, seconds_left, newest: day.plan });
-    const isNew = this.asked().some((one) => !asked.has(one.id));
-    this.ahead = isNew ? this.#withAsked(this.ahead) : this.ahead.filter((one) => !this.done.has(one));
+    const isNew = this.asked().some((one) => !asked.has(one.id)), { ahead, draft } = this;
+    if (isNew) this.ahead = this.#withAsked(ahead);
+    else if (ahead.some((one) => this.done.has(one))) this.ahead = ahead.filter((one) => !this.done.has(one));
     // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
-    if (this.plant < 0) this.draft = this.#keepDraft();
-    await this.#keep("day", "ahead", "draft");
+    if (this.plant < 0 && this.ahead.length > 0) this.draft = this.#keepDraft();
+    // what is as it was may be another in another window by now
+    await this.#keep("day", ...(this.ahead === ahead ? [] : ["ahead"]), ...(this.draft === draft ? [] : ["draft"]));
   }
 
   /** Whether another plan was given out since, as when somebody else's rows are to be done, too. */

@@ -71,10 +71,12 @@ async function begin() {
 async function later(page, field, store, access) {
   const runner = new Runner(new Sync(store, field.ask), field, (...all) => page.sending(...all));
   const others = new BroadcastChannel("fieldmon");
-  page.onTold = () => { runner.afterTap(); others.postMessage("told"); };
-  // another window of this page told something
+  page.onTold = () => runner.afterTap();
+  page.onStep = () => others.postMessage("step");
+  // another window of this page noted or told something, or turned to another season
   others.onmessage = async () => { await field.open(); await page.refresh(); };
   if ("serviceWorker" in navigator) navigator.serviceWorker.register("worker.js", { updateViaCache: "none" }).catch(() => {});
+  if (access) page.onStep(); // a code may bring another season
   page.persisted = (await navigator.storage?.persist?.()) ?? false;
   const moved = (coords) => { field.moved(coords); page.moved(); };
   navigator.geolocation?.watchPosition(({ coords }) => moved(coords), () => moved(null), { enableHighAccuracy: true, maximumAge: 2000 });

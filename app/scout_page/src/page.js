@@ -100,6 +100,7 @@ export class Page {
     this.#draw();
     try {
       await kept;
+      this.onStep?.();
       if (beat) navigator.vibrate?.(beat);
     } catch (error) {
       navigator.vibrate?.([200, 100, 200]);
@@ -270,7 +271,7 @@ export class Page {
 
   /** Count, stage, leaves and a note of a find. */
   #details() {
-    const { draft } = this.field, save = (changes) => { const kept = this.field.note(changes); kept.catch(() => this.#act(() => kept)); };
+    const { draft } = this.field, save = (changes) => { const kept = this.field.note(changes); kept.then(() => this.onStep?.(), () => this.#act(() => kept)); };
     const number = (name) => {
       const input = h("input", { type: "number", inputmode: "numeric", min: "1", max: "1000000", id: name, value: draft[name] ?? "",
         oninput: () => save({ [name]: input.value === "" ? null : Math.max(0, Number(input.value)) }) });
@@ -402,7 +403,7 @@ export class Page {
 
   async #turnTo(season) {
     this.menu.close();
-    await this.field.turnTo(season);
+    await this.#act(() => this.field.turnTo(season));
     await this.refresh();
     this.#look();
     if (this.field.day) this.onTold?.();
@@ -428,6 +429,7 @@ export class Page {
     this.#say(why, why !== "");
     await this.refresh();
     this.#look();
+    this.onStep?.();
     this.onTold?.();
   }
 

@@ -247,6 +247,32 @@ test("a season is turned to whole: what is noted meanwhile is of one or of the o
   }
 });
 
+test("what is noted in one window of the page is not undone by the news that another one hears", async () => {
+  const { season, field, again } = await aField();
+  const other = await again();
+  await field.note({ notes: "webs", open: true, count: 12 });
+  await other.refresh();
+  const later = await again();
+  assert.deepEqual([later.draft.notes, later.draft.count, later.plant], ["webs", 12, 0]);
+  season.day = aDay([0, 1], { today: [{ plant: 10, result: "found", who: "Ben", count: null, second: 1 }] });
+  await other.refresh();
+  assert.deepEqual((await again()).ahead, [0, 1, 2, 11]);
+});
+
+test("what is noted and where one turns while a window reads the disk again is not lost", async () => {
+  const { store, field } = await twoSeasons();
+  for (let k = 0; k < 12; k++) {
+    const opened = field.open(), to = field.season === "Gate" ? "Other" : "Gate";
+    for (let n = 0; n < k; n++) await new Promise((done) => setImmediate(done));
+    await field.note({ notes: `note ${k}` });
+    await field.turnTo(to);
+    await opened;
+    assert.deepEqual([field.season, await store.get("season"), field.access.key], [to, to, to === "Gate" ? "k1" : "k9"]);
+    const left = await store.get(`of ${to === "Gate" ? "Other" : "Gate"}`);
+    assert.equal(left.draft.notes, `note ${k}`);
+  }
+});
+
 test("what others found is seen, and not inspected twice; the way stays", async () => {
   const { season, field } = await aField();
   await field.tell("clean");

@@ -241,11 +241,10 @@ export class Field {
     return (this.day?.photos_asked ?? []).filter((one) => !taken.has(one.plant) && (plant === null || one.plant === plant));
   }
 
-  /** The plants ahead, with those among them of which a photo is asked for. */
-  #withAsked(plants) {
-    const ahead = plants.filter((one) => !this.done.has(one));
-    const wanted = this.asked().map((one) => one.plant).filter((one) => !this.done.has(one));
-    return withAsked(this.plot, this.day, this.lastRecord()?.plant ?? -1, ahead, wanted, this.secondsLeft());
+  /** The plants ahead, with those among them of which a photo is asked for; `back` is one that is taken back. */
+  #withAsked(plants, back = -1) {
+    const isOpen = (one) => one === back || !this.done.has(one), at = back < 0 ? this.lastRecord()?.plant ?? -1 : -1;
+    return withAsked(this.plot, this.day, at, plants.filter(isOpen), this.asked().map((one) => one.plant).filter(isOpen), this.secondsLeft());
   }
 
   // -- the next plant
@@ -363,7 +362,7 @@ export class Field {
     const one = this.lastRecord();
     if (!one) return Promise.resolve();
     const record = { ...this.#common(this.id()), undoes: one.id };
-    const ahead = this.last?.id === one.id ? this.last.ahead : [one.plant, ...this.ahead.filter((p) => p !== one.plant)];
+    const ahead = this.#withAsked(this.last?.id === one.id ? this.last.ahead : [one.plant, ...this.ahead.filter((p) => p !== one.plant)], one.plant);
     const aside = isNoted(this.draft) ? this.draft : this.draft.aside;
     const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0], aside };
     const follows = { ahead, draft, last: null };

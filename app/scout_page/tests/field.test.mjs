@@ -311,6 +311,16 @@ test("the plant in large print stays when another records it: a tap is of what i
   assert.deepEqual(field.records.map((one) => [one.plant, one.result]), [[0, "found"]]);
 });
 
+test("an undo brings back the way as it was, but for what others did since, and with the photos asked for since", async () => {
+  const { season, field } = await aField();
+  await field.tell("clean");
+  season.day = aDay([7, 8], { today: [{ plant: 10, result: "clean", who: "Ben", count: null, second: 1 }],
+    photos_asked: [{ id: "a2", plant: 12, note: "", who: "Office" }] });
+  await field.refresh();
+  await field.undo();
+  assert.deepEqual([field.plant, field.ahead], [0, [0, 1, 2, 11, 12]]);
+});
+
 test("the full planner plans the rest when the network is there", async () => {
   const { field } = await aField();
   await field.planRest();

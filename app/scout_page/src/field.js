@@ -199,6 +199,7 @@ export class Field {
 
   /** Let the full planner plan the rest. */
   async planRest() {
+    if (this.isOld()) return this.load(); // the rest of a day that is over is none of the next one
     const heard = await this.#hear((access) => fetchRest(this.ask, access, this.meant(), this.secondsLeft()));
     if (!heard) return;
     const { route, plan } = heard;

@@ -321,6 +321,14 @@ test("an undo brings back the way as it was, but for what others did since, and 
   assert.deepEqual([field.plant, field.ahead], [0, [0, 1, 2, 11, 12]]);
 });
 
+test("past midnight the rest is not planned of a day that is over: the next one is loaded", async () => {
+  const { season, field } = await aField();
+  field.clock = () => new Date("2026-11-22T22:30:00Z");
+  season.day = aDay([3, 4], { day: "2026-11-23" });
+  await field.planRest();
+  assert.deepEqual([field.day.day, field.ahead, season.asked.filter((one) => one.endsWith("/route"))], ["2026-11-23", [3, 4], []]);
+});
+
 test("the full planner plans the rest when the network is there", async () => {
   const { field } = await aField();
   await field.planRest();

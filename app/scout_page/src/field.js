@@ -13,6 +13,11 @@ const WRITING = "writing";
 // where one was longer ago is not where one is
 const FRESH_MS = 60000;
 
+/** The date in a time zone, or in the phone's own where there is none or it is too new for the phone. */
+function dateIn(zone, ms) {
+  try { return new Intl.DateTimeFormat("sv-SE", zone ? { timeZone: zone } : {}).format(ms); } catch { return dateIn("", ms); }
+}
+
 /** Whether something of a plant is in hand that is not told yet. */
 const isNoted = (draft) => Boolean(draft?.open || draft?.photos || draft?.notes);
 
@@ -421,9 +426,7 @@ export class Field {
     return shown;
   }
 
-  #today() {
-    return new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.time.best());
-  }
+  #today() { return dateIn(this.plot.zone, this.time.best()); }
 
   /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
   meant() {

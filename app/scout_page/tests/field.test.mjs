@@ -335,6 +335,14 @@ test("the full planner plans the rest when the network is there", async () => {
   assert.deepEqual([field.ahead, field.plant], [[14, 13], 14]);
 });
 
+test("a time zone that is too new for the phone stops nothing: its own is taken", async () => {
+  const { field } = await aField();
+  field.plot.zone = "Europe/Too_New";
+  assert.equal(field.isOld(), new Intl.DateTimeFormat("sv-SE").format(field.clock()) > "2026-11-22");
+  await field.tell("clean");
+  assert.equal(field.records.length, 1);
+});
+
 test("a route of yesterday is called so", async () => {
   const { field } = await aField();
   assert.equal(field.isOld(), false);

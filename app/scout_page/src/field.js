@@ -96,7 +96,9 @@ export class Field {
     // the home screen of an iPhone says the same code whenever it is opened
     if (had?.key === access.key) return;
     await this.store.allow(access);
-    await this.#change(access.season, { plot: this.plot });
+    // whose key it is is said as the day comes
+    const draft = had && isNoted(this.draft) ? { ...this.draft, by: this.draft.by ?? had.key } : null;
+    await this.#change(access.season, { plot: this.plot, draft });
   }
 
   async #begin() {
@@ -173,7 +175,9 @@ export class Field {
     this.begun = null;
     this.last = null;
     this.ahead = this.#withAsked(day.route.plants);
-    this.draft = this.#keepDraft();
+    const by = this.draft?.by;
+    if (by && !isOf(this.people, by, this.access.key)) this.draft = null;
+    this.draft = { ...this.#keepDraft(), by: null };
     await this.#keep(...KEPT, "people");
     await this.store.tidy(season, day.day);
     await this.reread();

@@ -140,6 +140,20 @@ test("a key taken back keeps everything here until there is a new one", async ()
   assert.deepEqual([season.taken.size, season.photos.size, sync.stranded.size], [1, 1, 0]);
 });
 
+test("a new code of the same person keeps the photo and the note of the plant in hand, another person's does not show them", async () => {
+  for (const [scout, inHand] of [["Ann", [1, "webs", 1]], ["Gil", [0, undefined, 0]]]) {
+    const { season, store, field, again } = await aField();
+    await field.tell("clean");
+    await field.addPhoto(field.photoOf(), PICTURE());
+    await field.note({ notes: "webs" });
+    season.day = aDay([0, 1], { scout });
+    await field.open({ season: "Gate", key: "k2", on: null });
+    await field.load();
+    for (const one of [field, await again()]) assert.deepEqual([one.plant, one.draft.notes, one.draft.photos], inHand);
+    assert.deepEqual((await store.unsent()).photos.map((one) => one.who), ["Ann"], "whose it is stays known");
+  }
+});
+
 test("another person's code brings another day, and what the first one told goes in as theirs or waits", async () => {
   const { season, store, field, sync } = await aField();
   await field.tell("clean");

@@ -163,6 +163,12 @@ _NO_DISK = """() => {
 }"""
 
 
+_FULL = """() => {
+  window.diskIsBack = true;
+  IDBObjectStore.prototype.put = () => { throw new DOMException("full", "QuotaExceededError"); };
+}"""
+
+
 def test_a_phone_that_keeps_nothing_is_said_and_work_begins_when_it_does(season, line, phone):
     invited(phone, line, season)
     line.go()
@@ -172,6 +178,11 @@ def test_a_phone_that_keeps_nothing_is_said_and_work_begins_when_it_does(season,
     phone.page.evaluate("() => { window.diskIsBack = true; }")
     phone.page.locator("#clean").wait_for()
     assert phone.page.get_by_role("alert").count() == 0
+    phone.page.add_init_script(f"({_FULL})()")
+    phone.page.goto("about:blank")
+    phone.page.goto(invitation(line.address, "Other", "a-key", str(BEGINS), "en"))
+    phone.page.locator("#note.bad", has_text="The phone is full").wait_for()
+    phone.page.locator("#clean").wait_for()  # what it has, it shows
 
 
 # a network comes, so often; each time until the page says how it went

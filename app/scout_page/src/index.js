@@ -60,11 +60,15 @@ async function begin() {
   const store = await storeOfPhone();
   const field = new Field(store);
   const page = new Page(document.getElementById("page"), field, store);
-  const [choices] = await Promise.all([store.get("choices"), field.open(access)]);
+  // a full phone cannot keep a code, but what is on it
+  let notKept = null;
+  const opened = field.open(access).catch((error) => { notKept = error; return field.open(); });
+  const [choices] = await Promise.all([store.get("choices"), opened]);
   await page.build({ language: phones(), theme: "auto", hand: "right", ...choices, ...(language && !choices ? { language } : {}) });
   page.map.look(field.plant);
   document.documentElement.dataset.ready = Math.round(performance.now());
-  await later(page, field, store, access);
+  if (notKept) page.sayNotKept(notKept);
+  await later(page, field, store, notKept ? null : access);
 }
 
 /** What a first screen does not need. */

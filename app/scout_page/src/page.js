@@ -103,14 +103,18 @@ export class Page {
       this.onStep?.();
       if (beat) navigator.vibrate?.(beat);
     } catch (error) {
-      navigator.vibrate?.([200, 100, 200]);
-      this.#say(say(error?.name === "QuotaExceededError" ? "phone_full" : "not_kept", { why: error?.message ?? "" }), true);
+      this.sayNotKept(error);
       this.#draw();
     }
     this.#drawLast();
     this.#drawBar();
     this.left = await this.store.left();
     this.#drawBar();
+  }
+
+  sayNotKept(error) {
+    navigator.vibrate?.([200, 100, 200]);
+    this.#say(say(error?.name === "QuotaExceededError" ? "phone_full" : "not_kept", { why: error?.message ?? "" }), true);
   }
 
   #draw() {

@@ -21,6 +21,9 @@ function dateIn(zone, ms) {
 /** Whether something of a plant is in hand that is not told yet. */
 const isNoted = (draft) => Boolean(draft?.open || draft?.photos || draft?.notes);
 
+/** What is noted and not told: of the plant in hand, or of the one before an undo. */
+const inHand = (draft) => (isNoted(draft) ? draft : draft?.aside);
+
 export class Field {
   #written = Promise.resolve();
   #failures = 0;
@@ -97,7 +100,7 @@ export class Field {
     if (had?.key === access.key) return;
     await this.store.allow(access);
     // whose key it is is said as the day comes
-    const draft = had && isNoted(this.draft) ? { ...this.draft, by: this.draft.by ?? had.key } : null;
+    const noted = inHand(this.draft), draft = had && noted ? { ...noted, by: this.draft.by ?? had.key } : null;
     await this.#change(access.season, { plot: this.plot, draft });
   }
 
@@ -373,8 +376,7 @@ export class Field {
     if (!one) return Promise.resolve();
     const record = { ...this.#common(this.id()), undoes: one.id };
     const ahead = this.#withAsked(this.last?.id === one.id ? this.last.ahead : [one.plant, ...this.ahead.filter((p) => p !== one.plant)], one.plant);
-    const aside = isNoted(this.draft) ? this.draft : this.draft.aside;
-    const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0], aside };
+    const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0], aside: inHand(this.draft) };
     const follows = { ahead, draft, last: null };
     return this.#step(follows, () => this.store.record(record, follows), record);
   }

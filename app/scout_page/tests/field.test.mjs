@@ -146,6 +146,7 @@ test("a new code of the same person keeps the photo and the note of the plant in
     await field.tell("clean");
     await field.addPhoto(field.photoOf(), PICTURE());
     await field.note({ notes: "webs" });
+    await field.undo();
     season.day = aDay([0, 1], { scout });
     await field.open({ season: "Gate", key: "k2", on: null });
     await field.load();

@@ -133,9 +133,10 @@ test("a key taken back keeps everything here until there is a new one", async ()
   season.keys = ["k2"];
   await assert.rejects(sync.send(), KeyEnded);
   assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [1, 1]);
+  season.day = aDay([0, 1], { scout: "ann" });
   await field.open({ season: "Gate", key: "k2", on: null });
   await field.load();
-  assert.equal(field.records.length, 1, "the same person's");
+  assert.equal(field.records.length, 1, "the same person's, as the season has it");
   await sync.send();
   assert.deepEqual([season.taken.size, season.photos.size, sync.stranded.size], [1, 1, 0]);
 });

@@ -163,6 +163,12 @@ _NO_DISK = """() => {
 }"""
 
 
+_FULL = """() => {
+  window.diskIsBack = true;
+  IDBObjectStore.prototype.put = () => { throw new DOMException("full", "QuotaExceededError"); };
+}"""
+
+
 def test_a_phone_that_keeps_nothing_is_said_and_work_begins_when_it_does(season, line, phone):
     invited(phone, line, season)
     line.go()
@@ -172,6 +178,11 @@ def test_a_phone_that_keeps_nothing_is_said_and_work_begins_when_it_does(season,
     phone.page.evaluate("() => { window.diskIsBack = true; }")
     phone.page.locator("#clean").wait_for()
     assert phone.page.get_by_role("alert").count() == 0
+    phone.page.add_init_script(f"({_FULL})()")
+    phone.page.goto("about:blank")
+    phone.page.goto(invitation(line.address, "Other", "a-key", str(BEGINS), "en"))
+    phone.page.locator("#note.bad", has_text="The phone is full").wait_for()
+    phone.page.locator("#clean").wait_for()  # what it has, it shows
 
 
 # a network comes, so often; each time until the page says how it went
@@ -246,6 +257,12 @@ def test_a_tap_is_of_the_plant_in_large_print_whoever_records_it_meanwhile(seaso
     page = phone.page
     page.locator(SENT).wait_for()
     plant = plant_of(page)
+    other = phone.window.new_page()
+    other.goto(f"{line.address}/scouting/")
+    other.locator("#found").click()
+    page.locator("#save").wait_for()  # as in the other window
+    page.locator("#cancel").click()
+    other.locator("#clean").wait_for()
     theirs = a_finding(plant, FOUND, on=BEGINS, at=utc_now())
     take(season, scouts.let_in(season, "Ann"), [theirs], utc_now())
     page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
@@ -327,16 +344,21 @@ def test_a_phone_handed_over_and_taken_to_another_plot_mixes_nothing(season, lin
     page.evaluate("() => { dispatchEvent(new Event('online')); }")
     page.locator("#clean").wait_for()
     assert page.locator("#note").inner_text() == ""
-    told_now(page, "clean")
+    there, _ = told_now(page, "clean")
+    beside = window.new_page()
+    beside.goto(f"{line.address}/scouting/")
+    beside.locator(f"#last[data-plant='{there}']").wait_for()
     page.locator("#open_menu").click()
     page.locator(".season", has_text="Gate 2026").click()
-    page.locator(f"#last[data-plant='{second[0]}']").wait_for()
+    for one in (page, beside):
+        one.locator(f"#last[data-plant='{second[0]}']").wait_for()
     # a code opened where the page is open
     code = invitation(line.address, "Other", key, str(BEGINS), "en")
     page.evaluate("code => { location.href = code; }", code)
     page.wait_for_function("() => location.hash === ''")
     page.locator("#open_menu").click()
     page.locator("dialog h2", has_text="Bea").wait_for()
+    beside.locator(f"#last[data-plant='{there}']").wait_for()
     assert problems == []
     with Season(season.path).store.reading() as db:
         assert db.execute("SELECT scout FROM tellings").fetchall() == [("Gil",)]

@@ -1,5 +1,5 @@
 // What is known of the phone's clock: it may be wrong after the battery was empty, and be set at any time.
-// The season's time, last heard, is the least that it can be; what has passed since runs on where the page stays open.
+// The season's time, last heard, is the least that it can be; what has passed since runs on where the page stays open and awake.
 
 const WRONG_MS = 120000;
 
@@ -25,12 +25,14 @@ export class Clock {
   /** The least that it can be, in milliseconds, or null where nothing was ever heard. */
   least() { return this.heard === null ? null : Math.round(this.heard + this.tick() - this.heardAt); }
 
-  /** The time as far as it is known, in milliseconds. */
-  best() { return this.isWrong() ? this.least() : this.now().getTime(); }
+  /** The time as far as it is known, in milliseconds: by the clock as far off as it was, or set right since; ticks stand still asleep. */
+  best() {
+    const now = this.now().getTime(), least = this.least();
+    if (least === null) return now;
+    const can = [now, now - this.fast].filter((one) => one > least - WRONG_MS);
+    return Math.max(least, can.length ? Math.min(...can) : least);
+  }
 
   /** Whether the clock is known to be wrong. */
-  isWrong() {
-    const least = this.least(), ahead = this.now().getTime() - least;
-    return least !== null && (ahead < -WRONG_MS || (this.fast > WRONG_MS && ahead > WRONG_MS));
-  }
+  isWrong() { return Math.abs(this.now().getTime() - this.best()) > WRONG_MS; }
 }

@@ -13,11 +13,23 @@ const WRITING = "writing";
 // where one was longer ago is not where one is
 const FRESH_MS = 60000;
 
+/** The date in a time zone, or in the phone's own where there is none or it is too new for the phone. */
+function dateIn(zone, ms) {
+  try { return new Intl.DateTimeFormat("sv-SE", zone ? { timeZone: zone } : {}).format(ms); } catch { return dateIn("", ms); }
+}
+
+/** Whether something of a plant is in hand that is not told yet. */
+const isNoted = (draft) => Boolean(draft?.open || draft?.photos || draft?.notes);
+
+/** What is noted and not told: of the plant in hand, or of the one before an undo. */
+const inHand = (draft) => (isNoted(draft) ? draft : draft?.aside);
+
 export class Field {
   #written = Promise.resolve();
   #failures = 0;
   #way = null;
   #pending = 0;
+  #steps = 0;
 
   constructor(store, { ask = (...all) => fetch(...all), clock = () => new Date(), id = () => crypto.randomUUID(), time = new Clock(() => this.clock()) } = {}) {
     Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
@@ -32,12 +44,13 @@ export class Field {
    * order. Where one cannot be written, it is taken back, and those after it with it.
    */
   #step(changes, write, record = null) {
-    const before = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
+    const before = Object.fromEntries([...KEPT, "access"].map((name) => [name, this[name]]));
     const failures = this.#failures;
     Object.assign(this, changes);
     if (record) this.records = [...this.records, { ...record, state: WRITING }];
     this.#work();
     this.#pending += 1;
+    this.#steps += 1;
     const written = this.#written.then(async () => {
       if (failures !== this.#failures) throw new Error("the step before it was not kept");
       try {
@@ -63,14 +76,16 @@ export class Field {
 
   /** Bring back what was there when the page was closed, or killed. */
   async open(access) {
-    let kept;
+    let kept, known, steps;
     do {
+      steps = this.#steps;
       await this.settled();
-      kept = await Promise.all(KEPT.map((name) => this.store.get(name)));
-    } while (this.#pending);
-    Object.assign(this, Object.fromEntries(KEPT.map((name, k) => [name, kept[k]])));
-    this.time.knew(await this.store.get("heard"));
-    this.people = (await this.store.get("people")) ?? {};
+      kept = await this.store.several([...KEPT, "people", "heard"]);
+      known = kept.season ? await this.store.access(kept.season) : null;
+    } while (this.#steps !== steps);
+    const { people = {}, heard, ...here } = kept;
+    Object.assign(this, here, { people, access: known });
+    this.time.knew(heard);
     if (access) await this.#comes(access);
     await this.#begin();
   }
@@ -84,12 +99,15 @@ export class Field {
     // the home screen of an iPhone says the same code whenever it is opened
     if (had?.key === access.key) return;
     await this.store.allow(access);
-    await this.#change(access.season, { plot: this.plot });
+    // whose key it is is said as the day comes
+    const noted = inHand(this.draft), draft = had && noted ? { ...noted, by: this.draft.by ?? had.key } : null;
+    await this.#change(access.season, { plot: this.plot, draft });
   }
 
   async #begin() {
-    this.access = this.season ? await this.store.access(this.season) : null;
-    this.seasons = (await this.store.seasons()).sort();
+    const { season } = this, [access, seasons] = await Promise.all([season ? this.store.access(season) : null, this.store.seasons()]);
+    if (this.season === season) this.access = access;
+    this.seasons = seasons.sort();
     await this.reread();
     await this.#countPhotos();
   }
@@ -102,68 +120,87 @@ export class Field {
   /** Turn to another season of this phone; the day of this one stays as it is. */
   async turnTo(season) {
     await this.settled();
-    if (season !== this.season) await this.#change(season);
-    await this.#begin();
+    try { if (season !== this.season) await this.#change(season); } finally { await this.#begin(); }
   }
 
-  /** Go on with a season as it was left, or with what is given of it. */
+  /** Go on with a season as it was left, or with what is given of it: all of it at once, whatever is tapped meanwhile. */
   async #change(season, given) {
+    const [kept, access, records] = await Promise.all([given ?? this.store.get(`of ${season}`), this.store.access(season), this.store.records(season)]);
+    await this.settled();
     const left = this.season ? { [`of ${this.season}`]: Object.fromEntries(Object.keys(EMPTY).map((name) => [name, this[name]])) } : {};
-    const kept = given ?? (await this.store.get(`of ${season}`));
-    Object.assign(this, EMPTY, kept, { season });
-    const values = Object.fromEntries(KEPT.map((name) => [name, this[name]]));
-    await this.store.put({ ...left, ...values });
+    const values = { ...EMPTY, ...kept, season };
+    this.records = this.#ownOf(records, access);
+    await this.#step({ ...values, access: access ?? null }, () => this.store.put({ ...left, ...values }));
   }
 
   /** A photo may be on the disk, and the page was killed before it was counted. */
   async #countPhotos() {
     if (!this.draft) return;
-    const photos = await this.store.drafts(this.draft.id);
-    if (photos !== (this.draft.photos ?? 0)) this.draft = { ...this.draft, photos };
+    const { id } = this.draft, photos = await this.store.drafts(id);
+    if (this.draft?.id === id && photos !== (this.draft.photos ?? 0)) this.draft = { ...this.draft, photos };
   }
 
   async reread() {
-    const before = new Set(this.records.filter((one) => one.state !== WRITING).map((one) => one.id));
-    const all = this.season ? await this.store.records(this.season) : [];
-    // what another person told on this phone is not one's own
-    const kept = all.filter((one) => isOf(this.people, one.key, this.access?.key)), ids = new Set(kept.map((one) => one.id));
+    const { season, access } = this, before = new Set(this.records.filter((one) => one.state !== WRITING).map((one) => one.id));
+    const all = season ? await this.store.records(season) : [];
+    if (this.#hasTurned(season, access)) return;
+    const kept = this.#ownOf(all, access), ids = new Set(kept.map((one) => one.id));
     // what was told while the disk was read
     const newer = this.records.filter((one) => one.season === this.season && one.key === this.access?.key && !ids.has(one.id) && !before.has(one.id));
     this.records = [...kept, ...newer];
     this.#work();
   }
 
+  /** What another person told on this phone is not one's own. */
+  #ownOf(records, access) { return records.filter((one) => isOf(this.people, one.key, access?.key)); }
+
+  /** Whether another season, or another person's key, is here than there was. */
+  #hasTurned(season, access) { return this.season !== season || this.access?.key !== access?.key; }
+
+  /** What the network answers to this season's key; null where another is here by then: it is of no use to that. */
+  async #hear(asking) {
+    const { season, access } = this;
+    const heard = access.season === season ? await asking(access) : null;
+    await this.settled();
+    return this.#hasTurned(season, access) ? null : heard;
+  }
+
   /** Load plot, plants, route, chances and hot spots, while there is a network. */
   async load() {
     // a code made for a day ahead is of that day until it is over
     if (this.access.on && this.isOld()) await this.store.allow((this.access = { ...this.access, on: null }));
-    const { day, plot } = await fetchDay(this.ask, this.access, this.plot?.digest);
-    await this.settled();
-    await this.#name(this.access.key, day.scout);
+    const heard = await this.#hear((access) => fetchDay(this.ask, access, this.plot?.digest));
+    if (!heard) return;
+    const { day, plot } = heard, { season } = this;
+    this.people = { ...this.people, [this.access.key]: day.scout };
     if (plot) this.plot = laidOut(plot, day.plot);
     this.#take(day);
     this.begun = null;
     this.last = null;
     this.ahead = this.#withAsked(day.route.plants);
-    this.draft = this.#keepDraft();
-    await this.#keep(...KEPT);
-    await this.store.tidy(this.season, day.day);
+    const by = this.draft?.by;
+    if (by && !isOf(this.people, by, this.access.key)) this.draft = null;
+    this.draft = { ...this.#keepDraft(), by: null };
+    await this.#keep(...KEPT, "people");
+    await this.store.tidy(season, day.day);
     await this.reread();
   }
 
   /** See what others found meanwhile; the way stays as it is. */
   async refresh() {
     if (!this.day) return;
-    const { day } = await fetchDay(this.ask, this.access, this.day.plot, this.day.plan);
-    if (day.day !== this.day.day || day.plot !== this.day.plot) return;
+    const { day } = (await this.#hear((access) => fetchDay(this.ask, access, this.day.plot, this.day.plan))) ?? {};
+    if (!day || day.day !== this.day.day || day.plot !== this.day.plot) return;
     const { route, plan, seconds_left } = this.day;
     const asked = new Set(this.asked().map((one) => one.id));
     this.#take({ ...day, route, plan, seconds_left, newest: day.plan });
-    const isNew = this.asked().some((one) => !asked.has(one.id));
-    this.ahead = isNew ? this.#withAsked(this.ahead) : this.ahead.filter((one) => !this.done.has(one));
+    const isNew = this.asked().some((one) => !asked.has(one.id)), { ahead, draft } = this;
+    if (isNew) this.ahead = this.#withAsked(ahead);
+    else if (ahead.some((one) => this.done.has(one))) this.ahead = ahead.filter((one) => !this.done.has(one));
     // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
-    if (this.plant < 0) this.draft = this.#keepDraft();
-    await this.#keep("day", "ahead", "draft");
+    if (this.plant < 0 && this.ahead.length > 0) this.draft = this.#keepDraft();
+    // what is as it was may be another in another window by now
+    await this.#keep("day", ...(this.ahead === ahead ? [] : ["ahead"]), ...(this.draft === draft ? [] : ["draft"]));
   }
 
   /** Whether another plan was given out since, as when somebody else's rows are to be done, too. */
@@ -174,8 +211,10 @@ export class Field {
 
   /** Let the full planner plan the rest. */
   async planRest() {
-    const { route, plan } = await fetchRest(this.ask, this.access, this.meant(), this.secondsLeft());
-    await this.settled();
+    if (this.isOld()) return this.load(); // the rest of a day that is over is none of the next one
+    const heard = await this.#hear((access) => fetchRest(this.ask, access, this.meant(), this.secondsLeft()));
+    if (!heard) return;
+    const { route, plan } = heard;
     this.day = { ...this.day, route, plan, newest: plan };
     this.ahead = this.#withAsked(route.plants);
     this.last = null;
@@ -215,11 +254,10 @@ export class Field {
     return (this.day?.photos_asked ?? []).filter((one) => !taken.has(one.plant) && (plant === null || one.plant === plant));
   }
 
-  /** The plants ahead, with those among them of which a photo is asked for. */
-  #withAsked(plants) {
-    const ahead = plants.filter((one) => !this.done.has(one));
-    const wanted = this.asked().map((one) => one.plant).filter((one) => !this.done.has(one));
-    return withAsked(this.plot, this.day, this.lastRecord()?.plant ?? -1, ahead, wanted, this.secondsLeft());
+  /** The plants ahead, with those among them of which a photo is asked for; `back` is one that is taken back. */
+  #withAsked(plants, back = -1) {
+    const isOpen = (one) => one === back || !this.done.has(one), at = back < 0 ? this.lastRecord()?.plant ?? -1 : -1;
+    return withAsked(this.plot, this.day, at, plants.filter(isOpen), this.asked().map((one) => one.plant).filter(isOpen), this.secondsLeft());
   }
 
   // -- the next plant
@@ -230,15 +268,19 @@ export class Field {
 
   #fresh(ahead) { return { id: this.id(), plant: ahead[0] ?? -1, open: false, photos: 0 }; }
 
-  #keepDraft() {
-    const had = this.draft;
-    if (!had || (had.chosen !== true && !had.open && !had.photos && !had.notes)) return this.#fresh(this.ahead);
-    return had;
+  /** What comes after the plant in hand: what was in hand before an undo, or the next of the way. */
+  #comesNext(ahead) {
+    const aside = this.draft?.aside;
+    return aside ? { ...aside, chosen: aside.plant !== ahead[0] } : this.#fresh(ahead);
   }
+
+  #keepDraft() { return this.draft?.chosen === true || isNoted(this.draft) ? this.draft : this.#comesNext(this.ahead); }
 
   /** Go to another plant than the next; whatever was noted goes along. */
   goTo(plant) {
-    return this.note({ ...(this.draft ?? this.#fresh([])), plant, chosen: plant !== this.ahead[0] });
+    const had = this.draft ?? this.#fresh([]), { aside } = had;
+    const one = aside?.plant === plant && !isNoted(had) ? aside : had;
+    return this.note({ ...one, aside: one.aside, plant, chosen: plant !== this.ahead[0] });
   }
 
   /** Back to the route. */
@@ -318,7 +360,7 @@ export class Field {
       const done = new Set([...this.done, plant]);
       ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.time.best()));
     }
-    const follows = { ahead, begun, draft: this.#fresh(ahead), last: { id, plant, ahead: this.ahead } };
+    const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
     return this.#step(follows, () => this.store.record(record, { ...follows, heard: this.time.least() }), record);
   }
 
@@ -328,13 +370,13 @@ export class Field {
     return this.records.filter((one) => one.day === this.day?.day && !one.undoes && !gone.has(one.id)).at(-1);
   }
 
-  /** Take the last record back; nothing is deleted. */
+  /** Take the last record back; nothing is deleted, and what is in hand comes again after it. */
   undo() {
     const one = this.lastRecord();
     if (!one) return Promise.resolve();
     const record = { ...this.#common(this.id()), undoes: one.id };
-    const ahead = this.last?.id === one.id ? this.last.ahead : [one.plant, ...this.ahead.filter((p) => p !== one.plant)];
-    const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0] };
+    const ahead = this.#withAsked(this.last?.id === one.id ? this.last.ahead : [one.plant, ...this.ahead.filter((p) => p !== one.plant)], one.plant);
+    const draft = { ...this.#fresh(ahead), plant: one.plant, chosen: one.plant !== ahead[0], aside: inHand(this.draft) };
     const follows = { ahead, draft, last: null };
     return this.#step(follows, () => this.store.record(record, follows), record);
   }
@@ -390,9 +432,7 @@ export class Field {
     return shown;
   }
 
-  #today() {
-    return new Intl.DateTimeFormat("sv-SE", this.plot.zone ? { timeZone: this.plot.zone } : {}).format(this.time.best());
-  }
+  #today() { return dateIn(this.plot.zone, this.time.best()); }
 
   /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
   meant() {

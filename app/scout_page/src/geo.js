@@ -21,6 +21,7 @@ export function laidOut(document, digest) {
     row: Int32Array.from(document.rows.row), aisle: Int32Array.from(document.rows.aisle), side: Int8Array.from(document.rows.side),
     rowSpacing: document.row_spacing_m, plantSpacing: document.plant_spacing_m,
   };
+  plot.gate = document.gate && metres(plot, document.gate);
   plot.boundary = rings(document.boundary).map((ring) => ring.map((at) => metres(plot, at)));
   return plot;
 }
@@ -91,6 +92,12 @@ export function neighbours(plot, plant) {
     if (across >= 0) found.push(across);
   }
   return found;
+}
+
+/** Metres from a plant to a place outside the rows: by the nearer end of its row. */
+export function metresOut(plot, plant, [x, y]) {
+  const piece = pieceOf(plot, plant), ends = [plot.start[piece], plot.start[piece + 1] - 1];
+  return Math.min(...ends.map((end) => apart(plot, plant, end) + Math.hypot(plot.x[end] - x, plot.y[end] - y)));
 }
 
 /** Seconds of the way between two plants; nobody walks through a row. */

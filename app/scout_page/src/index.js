@@ -60,21 +60,27 @@ async function begin() {
   const store = await storeOfPhone();
   const field = new Field(store);
   const page = new Page(document.getElementById("page"), field, store);
-  const [choices] = await Promise.all([store.get("choices"), field.open(access)]);
+  // a full phone cannot keep a code, but what is on it
+  let notKept = null;
+  const opened = field.open(access).catch((error) => { notKept = error; return field.open(); });
+  const [choices] = await Promise.all([store.get("choices"), opened]);
   await page.build({ language: phones(), theme: "auto", hand: "right", ...choices, ...(language && !choices ? { language } : {}) });
   page.map.look(field.plant);
   document.documentElement.dataset.ready = Math.round(performance.now());
-  await later(page, field, store, access);
+  if (notKept) page.sayNotKept(notKept);
+  await later(page, field, store, notKept ? null : access);
 }
 
 /** What a first screen does not need. */
 async function later(page, field, store, access) {
   const runner = new Runner(new Sync(store, field.ask), field, (...all) => page.sending(...all));
   const others = new BroadcastChannel("fieldmon");
-  page.onTold = () => { runner.afterTap(); others.postMessage("told"); };
-  // another window of this page told something
+  page.onTold = () => runner.afterTap();
+  page.onStep = () => others.postMessage("step");
+  // another window of this page noted or told something, or turned to another season
   others.onmessage = async () => { await field.open(); await page.refresh(); };
   if ("serviceWorker" in navigator) navigator.serviceWorker.register("worker.js", { updateViaCache: "none" }).catch(() => {});
+  if (access) page.onStep(); // a code may bring another season
   page.persisted = (await navigator.storage?.persist?.()) ?? false;
   const moved = (coords) => { field.moved(coords); page.moved(); };
   navigator.geolocation?.watchPosition(({ coords }) => moved(coords), () => moved(null), { enableHighAccuracy: true, maximumAge: 2000 });

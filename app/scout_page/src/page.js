@@ -52,6 +52,7 @@ export class Page {
 
   #laidOut = null;
   #shown = null;
+  #of = null;
 
   get theme() {
     const { theme } = this.choices;
@@ -99,16 +100,21 @@ export class Page {
     this.#draw();
     try {
       await kept;
+      this.onStep?.();
       if (beat) navigator.vibrate?.(beat);
     } catch (error) {
-      navigator.vibrate?.([200, 100, 200]);
-      this.#say(say(error?.name === "QuotaExceededError" ? "phone_full" : "not_kept", { why: error?.message ?? "" }), true);
+      this.sayNotKept(error);
       this.#draw();
     }
     this.#drawLast();
     this.#drawBar();
     this.left = await this.store.left();
     this.#drawBar();
+  }
+
+  sayNotKept(error) {
+    navigator.vibrate?.([200, 100, 200]);
+    this.#say(say(error?.name === "QuotaExceededError" ? "phone_full" : "not_kept", { why: error?.message ?? "" }), true);
   }
 
   #draw() {
@@ -180,6 +186,7 @@ export class Page {
   #layOut() {
     const { field } = this;
     this.#shown = field.day;
+    this.#of = field.season;
     if (!field.access) return this.sheet.replaceChildren(h("p", { class: "large" }, say("scan")));
     if (!field.day) {
       return this.sheet.replaceChildren(h("p", { class: "large" }, say("not_loaded", { season: field.season })),
@@ -256,8 +263,8 @@ export class Page {
   async #tell(result, beat) {
     if (performance.now() < this.rests) return;
     if (result === "found" && !this.field.isCountable()) return this.#say(say("count_whole"), true);
-    // another window of this page may have gone on
-    if (Number(this.place.dataset.plant) !== this.field.plant) return this.#draw();
+    // another window of this page may have gone on, or this one be turning to another season
+    if (this.#of !== this.field.season || Number(this.place.dataset.plant) !== this.field.plant) return this.#draw();
     this.rests = performance.now() + REST_MS;
     setTimeout(() => document.getElementById("answers")?.removeAttribute("data-resting"), REST_MS);
     const kept = this.#act(() => this.field.tell(result), beat);
@@ -268,7 +275,7 @@ export class Page {
 
   /** Count, stage, leaves and a note of a find. */
   #details() {
-    const { draft } = this.field, save = (changes) => { const kept = this.field.note(changes); kept.catch(() => this.#act(() => kept)); };
+    const { draft } = this.field, save = (changes) => { const kept = this.field.note(changes); kept.then(() => this.onStep?.(), () => this.#act(() => kept)); };
     const number = (name) => {
       const input = h("input", { type: "number", inputmode: "numeric", min: "1", max: "1000000", id: name, value: draft[name] ?? "",
         oninput: () => save({ [name]: input.value === "" ? null : Math.max(0, Number(input.value)) }) });
@@ -400,7 +407,7 @@ export class Page {
 
   async #turnTo(season) {
     this.menu.close();
-    await this.field.turnTo(season);
+    await this.#act(() => this.field.turnTo(season));
     await this.refresh();
     this.#look();
     if (this.field.day) this.onTold?.();
@@ -415,16 +422,18 @@ export class Page {
 
   async #network(work) {
     if (this.menu.open) this.menu.close();
+    const { season } = this.field;
     this.#say(say("loading"));
-    try {
-      await work();
-      this.#say("");
-    } catch (error) {
+    let why = "";
+    try { await work(); } catch (error) {
       const known = error instanceof KeyEnded ? "state_ended" : error instanceof NotNow ? "no_network" : null;
-      this.#say(known ? say(known) : error.message, true);
+      why = known ? say(known) : error.message;
     }
+    if (this.field.season !== season) return; // it is of what is not seen any more
+    this.#say(why, why !== "");
     await this.refresh();
     this.#look();
+    this.onStep?.();
     this.onTold?.();
   }
 

@@ -1,10 +1,10 @@
 // The rest of the route on the phone: what comes next after a find, and what still fits the hours.
 
-import { apart, neighbours, walkSeconds } from "./geo.js";
+import { apart, metres, metresOut, neighbours, walkSeconds } from "./geo.js";
 
 const legsSaid = new WeakMap();
 
-/** Seconds that the plants ahead take from where one stands; what the server said of a leg holds. */
+/** Seconds that the plants ahead take from where one stands, the way back included; what the server said of a leg holds. */
 export function secondsAhead(plot, day, at, ahead) {
   const leg = legs(plot, day);
   let total = 0, here = at;
@@ -12,7 +12,16 @@ export function secondsAhead(plot, day, at, ahead) {
     total += leg(here, plant) + day.robot.visit_s;
     here = plant;
   }
-  return total;
+  return total + (ahead.length ? secondsBack(plot, day, here) : 0);
+}
+
+/** Seconds of the way back from a plant: as the server said of its last one, else to where its line ends, or to the gate. */
+function secondsBack(plot, day, plant) {
+  const { plants, walk_s, end_s, line } = day.route, { returns, speed_m_s, visit_s } = day.robot;
+  if (!returns) return 0;
+  if (plant === plants.at(-1)) return Math.max(0, end_s - walk_s.reduce((a, b) => a + b, plants.length * visit_s));
+  const gate = line.length ? metres(plot, line.at(-1)) : plot.gate;
+  return gate ? metresOut(plot, plant, gate) / speed_m_s : 0;
 }
 
 /** Returns what tells the seconds of a way between two plants. */
@@ -68,7 +77,7 @@ export function afterFind(plot, day, ahead, plant, done, left) {
     const one = [...open].sort((a, b) => apart(plot, here, a) - apart(plot, here, b) || a - b)[0];
     open.delete(one);
     const cost = walkSeconds(plot, day.robot, here, one) + day.robot.visit_s;
-    if (spent + cost > left) break;
+    if (spent + cost + secondsBack(plot, day, one) > left) break;
     spent += cost;
     next.push(one);
     here = one;
@@ -77,16 +86,16 @@ export function afterFind(plot, day, ahead, plant, done, left) {
   return fitting(plot, day, plant, rest, Math.max(left, spent), next.length);
 }
 
-/** As many of the plants ahead as fit, at least `least`. */
+/** As many of the plants ahead as fit with the way back, at least `least`. */
 function fitting(plot, day, at, ahead, left, least) {
   const leg = legs(plot, day);
-  let total = 0, here = at, k = 0;
-  for (; k < ahead.length; k++) {
+  let total = 0, here = at, fit = least;
+  for (let k = 0; k < ahead.length; k++) {
     total += leg(here, ahead[k]) + day.robot.visit_s;
-    if (total > left && k >= least) break;
     here = ahead[k];
+    if (total + secondsBack(plot, day, here) <= left) fit = Math.max(fit, k + 1);
   }
-  return ahead.slice(0, k);
+  return ahead.slice(0, fit);
 }
 
 /** Results that count, by plant: of this phone's records, the last one not taken back. */

@@ -24,6 +24,12 @@ export class Store {
 
   get(name) { return this.db.get("kept", name); }
 
+  /** Several values as they are at one moment, whatever another window writes. */
+  async several(names) {
+    const { store } = this.db.transaction("kept"), values = await Promise.all(names.map((name) => store.get(name)));
+    return Object.fromEntries(names.map((name, k) => [name, values[k]]));
+  }
+
   async put(values) {
     const change = this.db.transaction("kept", "readwrite", STRICT);
     for (const [name, value] of Object.entries(values)) change.store.put(value, name);

@@ -9,8 +9,8 @@ export class KeyEnded extends Error {}
 /** What waits under the key of another person than the one who has the phone now. */
 class Stranded extends Error {}
 
-/** Whether two keys are the same person's. */
-export const isOf = (people, one, other) => one === other || (people[one] !== undefined && people[one] === people[other]);
+/** Whether two keys are the same person's: the season tells no names apart by their capitals. */
+export const isOf = (people, one, other) => one === other || (people[one] !== undefined && people[one].toLowerCase() === people[other]?.toLowerCase());
 export class NotNow extends Error {}
 
 export class Sync {

@@ -29,6 +29,23 @@ test("a clock is wrong if it is behind what was heard, or was ahead when it was 
   assert.equal(clock.isWrong(), false);
 });
 
+for (const off of [3 * 60000, 24 * HOUR, -3 * HOUR, -20000 * HOUR]) {
+  test(`a clock that is off runs on while the phone sleeps, until it is set right: by ${off / HOUR} h`, async () => {
+    const { phone, clock, hear, said } = aPhone();
+    phone.now = said + off;
+    await hear(said);
+    for (let k = 1; k <= 120; k++) {
+      phone.now += 60000;
+      phone.tick += 10000; // awake for ten seconds of each minute
+      assert.equal(clock.best(), said + k * 60000);
+      assert.equal(clock.isWrong(), true);
+    }
+    phone.now -= off;
+    if (Math.abs(off) < 2 * HOUR) await hear(phone.now); // set by less than it slept, that alone tells
+    assert.deepEqual([clock.best(), clock.isWrong()], [said + 2 * HOUR, false]);
+  });
+}
+
 test("what was heard is known after the battery was empty", async () => {
   const { phone, clock, hear, said } = aPhone();
   await hear(said);

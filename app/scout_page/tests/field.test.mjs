@@ -45,6 +45,26 @@ test("a find brings its neighbours, and undo brings back what was before", async
   assert.equal((await again()).records.length, 2, "nothing is deleted");
 });
 
+test("an undo keeps the photo and the note of the plant in hand: it comes again after the one taken back", async () => {
+  const { season, field, sync, again } = await aField();
+  await field.tell("clean");
+  await field.addPhoto(field.photoOf(), PICTURE());
+  await field.note({ notes: "webs" });
+  const inHand = field.draft;
+  await field.undo();
+  await field.undo();
+  assert.deepEqual([field.plant, field.draft.photos, field.draft.notes], [0, 0, undefined]);
+  const other = await again();
+  await other.goTo(1);
+  assert.deepEqual([other.draft.id, other.draft.photos, other.draft.aside], [inHand.id, 1, undefined], "at once, where one goes to it");
+  await field.tell("found");
+  assert.deepEqual([field.plant, field.draft.id, field.draft.photos, field.draft.notes], [1, inHand.id, 1, "webs"]);
+  await field.tell("clean");
+  assert.deepEqual([field.plant, field.draft.photos], [5, 0]);
+  await sync.send();
+  assert.deepEqual([season.taken.get(inHand.id).plant, season.taken.get(inHand.id).notes, season.photos.size], [1, "webs", 1]);
+});
+
 test("a free find is off the route, and the route goes on", async () => {
   const { field } = await aField();
   await field.goTo(14);
@@ -113,11 +133,27 @@ test("a key taken back keeps everything here until there is a new one", async ()
   season.keys = ["k2"];
   await assert.rejects(sync.send(), KeyEnded);
   assert.deepEqual(await store.left().then(({ records, photos }) => [records, photos]), [1, 1]);
+  season.day = aDay([0, 1], { scout: "ann" });
   await field.open({ season: "Gate", key: "k2", on: null });
   await field.load();
-  assert.equal(field.records.length, 1, "the same person's");
+  assert.equal(field.records.length, 1, "the same person's, as the season has it");
   await sync.send();
   assert.deepEqual([season.taken.size, season.photos.size, sync.stranded.size], [1, 1, 0]);
+});
+
+test("a new code of the same person keeps the photo and the note of the plant in hand, another person's does not show them", async () => {
+  for (const [scout, inHand] of [["Ann", [1, "webs", 1]], ["Gil", [0, undefined, 0]]]) {
+    const { season, store, field, again } = await aField();
+    await field.tell("clean");
+    await field.addPhoto(field.photoOf(), PICTURE());
+    await field.note({ notes: "webs" });
+    await field.undo();
+    season.day = aDay([0, 1], { scout });
+    await field.open({ season: "Gate", key: "k2", on: null });
+    await field.load();
+    for (const one of [field, await again()]) assert.deepEqual([one.plant, one.draft.notes, one.draft.photos], inHand);
+    assert.deepEqual((await store.unsent()).photos.map((one) => one.who), ["Ann"], "whose it is stays known");
+  }
 });
 
 test("another person's code brings another day, and what the first one told goes in as theirs or waits", async () => {
@@ -175,6 +211,84 @@ test("two seasons on one phone: each goes on where it was left", async () => {
   assert.deepEqual([other.day.scout, other.access.key, other.records[0].plant], ["Bea", "k9", 7]);
 });
 
+/** Two seasons on one plot, the first shown; what the network says of it comes when it is let go. */
+async function twoSeasons() {
+  const days = { Gate: aDay([0, 1, 2]), Other: aDay([7, 8], { season: "Other", scout: "Bea" }) };
+  const { season, field, ...more } = await aField();
+  await field.open({ season: "Other", key: "k9", on: null });
+  season.day = days.Other;
+  await field.load();
+  await field.turnTo("Gate");
+  let go;
+  const gone = new Promise((done) => { go = done; }), ask = season.ask;
+  field.ask = async (address, ...rest) => {
+    const of = address.split("/")[4];
+    if (of === "Gate") await gone;
+    season.day = days[of];
+    return ask(address, ...rest);
+  };
+  return { season, field, go, days, ...more };
+}
+
+for (const asking of ["load", "refresh", "planRest"]) {
+  test(`what comes of a season after one turned to another is not that one's: ${asking}`, async () => {
+    const { season, store, field, sync, go, days } = await twoSeasons();
+    days.Gate = aDay([4, 5], { found: [3] });
+    const asked = field[asking]();
+    await field.turnTo("Other");
+    go();
+    await asked;
+    assert.deepEqual([field.season, field.day.scout, field.day.found, field.ahead, field.access.key], ["Other", "Bea", [], [7, 8], "k9"]);
+    assert.deepEqual([field.people, await store.get("people")], [{ k1: "Ann", k9: "Bea" }, { k1: "Ann", k9: "Bea" }]);
+    await field.tell("clean");
+    await sync.send();
+    assert.deepEqual([...season.by], [["k9", 1]]);
+    await field.turnTo("Gate");
+    assert.deepEqual(field.ahead, [0, 1, 2, 10, 11], "and the other one is as it was left");
+  });
+}
+
+test("a season is turned to whole: what is noted meanwhile is of one or of the other", async () => {
+  const { field } = await twoSeasons(), noted = {}, of = { Gate: ["k1", "Ann"], Other: ["k9", "Bea"] };
+  for (const season of ["Other", "Gate", "Other", "Gate"]) {
+    const turned = field.turnTo(season);
+    for (let k = 0; k < 12; k++) {
+      assert.deepEqual([field.access.key, field.day.scout], of[field.season]);
+      noted[field.season] = `${season} ${k}`;
+      field.note({ notes: noted[field.season] });
+      await new Promise((done) => setImmediate(done));
+    }
+    await turned;
+    assert.deepEqual([field.season, field.draft.notes], [season, noted[season]]);
+  }
+});
+
+test("what is noted in one window of the page is not undone by the news that another one hears", async () => {
+  const { season, field, again } = await aField();
+  const other = await again();
+  await field.note({ notes: "webs", open: true, count: 12 });
+  await other.refresh();
+  const later = await again();
+  assert.deepEqual([later.draft.notes, later.draft.count, later.plant], ["webs", 12, 0]);
+  season.day = aDay([0, 1], { today: [{ plant: 10, result: "found", who: "Ben", count: null, second: 1 }] });
+  await other.refresh();
+  assert.deepEqual((await again()).ahead, [0, 1, 2, 11]);
+});
+
+test("what is noted and where one turns while a window reads the disk again is not lost", async () => {
+  const { store, field } = await twoSeasons();
+  for (let k = 0; k < 12; k++) {
+    const opened = field.open(), to = field.season === "Gate" ? "Other" : "Gate";
+    for (let n = 0; n < k; n++) await new Promise((done) => setImmediate(done));
+    await field.note({ notes: `note ${k}` });
+    await field.turnTo(to);
+    await opened;
+    assert.deepEqual([field.season, await store.get("season"), field.access.key], [to, to, to === "Gate" ? "k1" : "k9"]);
+    const left = await store.get(`of ${to === "Gate" ? "Other" : "Gate"}`);
+    assert.equal(left.draft.notes, `note ${k}`);
+  }
+});
+
 test("what others found is seen, and not inspected twice; the way stays", async () => {
   const { season, field } = await aField();
   await field.tell("clean");
@@ -213,10 +327,36 @@ test("the plant in large print stays when another records it: a tap is of what i
   assert.deepEqual(field.records.map((one) => [one.plant, one.result]), [[0, "found"]]);
 });
 
+test("an undo brings back the way as it was, but for what others did since, and with the photos asked for since", async () => {
+  const { season, field } = await aField();
+  await field.tell("clean");
+  season.day = aDay([7, 8], { today: [{ plant: 10, result: "clean", who: "Ben", count: null, second: 1 }],
+    photos_asked: [{ id: "a2", plant: 12, note: "", who: "Office" }] });
+  await field.refresh();
+  await field.undo();
+  assert.deepEqual([field.plant, field.ahead], [0, [0, 1, 2, 11, 12]]);
+});
+
+test("past midnight the rest is not planned of a day that is over: the next one is loaded", async () => {
+  const { season, field } = await aField();
+  field.clock = () => new Date("2026-11-22T22:30:00Z");
+  season.day = aDay([3, 4], { day: "2026-11-23" });
+  await field.planRest();
+  assert.deepEqual([field.day.day, field.ahead, season.asked.filter((one) => one.endsWith("/route"))], ["2026-11-23", [3, 4], []]);
+});
+
 test("the full planner plans the rest when the network is there", async () => {
   const { field } = await aField();
   await field.planRest();
   assert.deepEqual([field.ahead, field.plant], [[14, 13], 14]);
+});
+
+test("a time zone that is too new for the phone stops nothing: its own is taken", async () => {
+  const { field } = await aField();
+  field.plot.zone = "Europe/Too_New";
+  assert.equal(field.isOld(), new Intl.DateTimeFormat("sv-SE").format(field.clock()) > "2026-11-22");
+  await field.tell("clean");
+  assert.equal(field.records.length, 1);
 });
 
 test("a route of yesterday is called so", async () => {

@@ -23,6 +23,22 @@ test("what does not fit the hours is left out at the end, and neighbours only co
   assert.deepEqual(afterFind(plot, day, [1, 2], 0, new Set([0]), 0), []);
 });
 
+test("after a find the hours do for the way back, too: as the server said it, to where its line ends, or to the gate", () => {
+  const route = { plants: [1, 2, 3, 4], walk_s: [2, 2, 2, 2], end_s: 4 * 37 + 30, line: [[35, 30], [34.9997, 30]] };
+  const at = { ...plot, gate: [plot.x[0] - 28.95, plot.y[0]] }, done = new Set([0, 1, 6]); // 0.0003 degrees of longitude
+  const withLine = aDay([], { route }), withGate = aDay([], { route: { ...route, line: [] } });
+  const stays = aDay([], { route, robot: { ...withLine.robot, returns: false } });
+  for (const [one, day] of [[plot, withLine], [at, withGate]]) {
+    const fits = (left) => afterFind(one, day, [2, 3, 4], 1, done, left);
+    assert.deepEqual([fits(140), fits(141)], [[2, 3], [2, 3, 4]]);
+    assert.deepEqual([fits(108), fits(110)], [[2], [2, 3]]);
+    assert.ok(Math.abs(secondsAhead(one, day, 1, [2, 3]) - (2 * 37 + 35)) < 0.5);
+    assert.deepEqual([fits(69), fits(71)], [[], [2]]);
+  }
+  assert.deepEqual(afterFind(plot, stays, [2, 3, 4], 1, done, 111), [2, 3, 4]);
+  assert.deepEqual(afterFind(plot, withLine, [], 1, new Set([0, 1]), 40), [], "neighbours neither");
+});
+
 test("legs take what the server said; others are reckoned", () => {
   assert.equal(secondsAhead(plot, day, -1, [0, 1, 2]), 3 * 37);
   assert.ok(Math.abs(secondsAhead(plot, day, 0, [4]) - (8 + 35)) < 0.2);

@@ -28,6 +28,20 @@ test("what is tapped while something is sent goes a second later, not a minute",
   assert.equal(sent, 2);
 });
 
+test("news is asked for each minute, though the clock is set back by an hour", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  let wall = 1e12, asked = 0;
+  t.mock.method(Date, "now", () => wall);
+  const field = { reread: async () => {}, refresh: async () => { asked += 1; }, day: {} };
+  new Runner({ send: async () => {}, stranded: new Map() }, field, () => {}).now();
+  for (const [passed, times] of [[0, 1], [60000, 2], [60000 - 3600000, 3], [60000, 4]]) {
+    wall += passed;
+    t.mock.timers.tick(times === 1 ? 0 : 60000);
+    await turns();
+    assert.equal(asked, times);
+  }
+});
+
 test("a network that is lost is tried again by and by, and at once after a tap", async (t) => {
   t.mock.timers.enable({ apis: ["setTimeout", "Date"] });
   let sent = 0;

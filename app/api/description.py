@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from fieldmon.compute.ranges import MOST_COUNTED
 from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.io.readers import phone_file
 from fieldmon.monitoring import findings, photos
 
 #: findings in one request
@@ -21,7 +21,7 @@ PATH = f"/api/v{VERSION}"
 ID: dict[str, Any] = {
     "type": "string",
     "format": "uuid",
-    "pattern": "^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$",
+    "pattern": f"^{phone_file.ID}$",
     "description": "Made where the record is made, once: sending it again changes nothing.",
 }
 _MOMENT = {
@@ -30,11 +30,19 @@ _MOMENT = {
     # an empty battery sets a clock to 1970
     "pattern": r"^(19[7-9]|2\d\d)\d-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$",
 }
-_PLACE = {
-    "lon": {"type": ["number", "null"], "minimum": -180, "maximum": 180},
-    "lat": {"type": ["number", "null"], "minimum": -90, "maximum": 90},
-    "accuracy_m": {"type": ["number", "null"], "minimum": 0, "maximum": 1e7},
-}
+
+
+def _within(name: str, kind: str | list[str] | None = None) -> dict[str, Any]:
+    """Return a number of a finding: what it may be where a phone's file is read, too."""
+    least, most = phone_file.LEAST_MOST[name]
+    return {"type": kind or ["number", "null"], "minimum": least, "maximum": most}
+
+
+def _text(name: str) -> dict[str, Any]:
+    return {"type": "string", "maxLength": phone_file.LONGEST[name]}
+
+
+_PLACE = {name: _within(name) for name in ("lon", "lat", "accuracy_m")}
 _DATE = {"type": ["string", "null"], "pattern": r"^20\d\d-\d\d-\d\d$"}
 
 FINDING: dict[str, Any] = {
@@ -45,22 +53,13 @@ FINDING: dict[str, Any] = {
     "properties": {
         "id": ID,
         "at": _MOMENT | {"description": "When, by the clock of the phone."},
-        "plant": {
-            "type": ["integer", "null"],
-            "minimum": 0,
-            "maximum": 2**31 - 1,
-            "description": "From 0, as in plot.",
-        },
+        "plant": _within("plant", ["integer", "null"]) | {"description": "From 0, as in plot."},
         "result": {"enum": [*RESULT_NAMES.values(), None]},
-        "count": {
-            "type": ["number", "null"],
-            "minimum": 0,
-            "maximum": MOST_COUNTED,
-            "description": "Pests of a find: whole, from 1. Anything else does not count.",
-        },
-        "stage": {"type": "string", "maxLength": 60},
-        "leaves": {"type": ["number", "null"], "minimum": 0, "maximum": 1e9},
-        "notes": {"type": "string", "maxLength": 2000},
+        "count": _within("count")
+        | {"description": "Pests of a find: whole, from 1. Anything else does not count."},
+        "stage": _text("stage"),
+        "leaves": _within("leaves"),
+        "notes": _text("notes"),
         **_PLACE,
         "on": _DATE
         | {"description": "The day meant; it has no time where that is not the day of `at`."},
@@ -95,7 +94,7 @@ ASKED_PHOTO: dict[str, Any] = {
     "required": ["plant"],
     "additionalProperties": False,
     "properties": {
-        "plant": {"type": "integer", "minimum": 0, "maximum": 2**31 - 1},
+        "plant": _within("plant", "integer"),
         "note": {"type": "string", "maxLength": 200, "description": "What is to be seen on it."},
     },
 }

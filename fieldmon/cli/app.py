@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +12,7 @@ import typer
 
 from fieldmon.cli.app_package import app_package
 from fieldmon.cli.numbers import within
+from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import SettingError
 
@@ -18,46 +20,95 @@ _GOODBYE_S = 10
 _HERE = "127.0.0.1"
 
 
-def open_app(  # noqa: PLR0913, PLR0917 - the command's options
-    port: Annotated[
-        int, typer.Option(help="Port on this machine.", callback=within(1, 65535))
-    ] = 8501,
+@dataclass(frozen=True)
+class AppOptions:
+    """What `fieldmon app` is told."""
+
+    port: Annotated[int, typer.Option(help="Port on this machine.", callback=within(1, 65535))] = (
+        8501
+    )
     address: Annotated[
         str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
-    ] = _HERE,
+    ] = _HERE
     seasons: Annotated[
         Path, typer.Option(help="Folder in which seasons are kept; made when one begins.")
-    ] = Path("seasons"),
+    ] = Path("seasons")
     name: Annotated[
         list[str] | None,
         typer.Option(
             help="Name by which browsers ask for this machine, in a network or behind a proxy; "
             "may be repeated. Its own name and numbers are known."
         ),
-    ] = None,
-    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,  # noqa: FBT002
-    lan: Annotated[  # noqa: FBT002 - typer's way
+    ] = None
+    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True
+    lan: Annotated[
         bool,
         typer.Option(
             "--lan",
             help="Let phones on the local network in: encrypted, behind a password, with codes to "
             "scan.",
         ),
-    ] = False,
+    ] = False
     reached_at: Annotated[
         str,
         typer.Option(help="Address at which others reach the app behind a server of your own."),
-    ] = "",
-) -> None:
-    """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
-    import socket
+    ] = ""
 
+    def of_others(self) -> dict[str, str]:
+        """Return what tells the server of other devices; raise `SettingError` if it cannot be."""
+        at = self.reached_at
+        if at and not at.startswith("https://"):
+            raise SettingError(
+                "The address at which others reach the app must begin with https://, for phones "
+                f"give no position to others, but it is {at!r}."
+            )
+        if at.rstrip("/").count("/") > 2:  # two are those of https://
+            raise SettingError(
+                "The address at which others reach the app must be a name, and perhaps a port, "
+                f"without a path, but it is {at!r}. Give the app a name of its own, as "
+                "https://field.example."
+            )
+        told = {"FIELDMON_ADDRESS": at.rstrip("/")} if at else {}
+        if self.lan:
+            told["FIELDMON_LAN"] = "" if self.address == _HERE else self.address
+        return told
+
+    def names(self) -> str:
+        """Return the names by which browsers may ask, that of a server before us among them."""
+        names = self.name or os.environ.get("FIELDMON_NAMES", "").split(",")
+        before = self.reached_at.partition("://")[2].partition("/")[0].partition(":")[0]
+        return ",".join([*names, before] if before else names)
+
+
+@with_options
+def open_app(options: AppOptions) -> None:
+    """Open the app in the browser. It needs no internet; stop it with Ctrl-C."""
     from fieldmon.io.sandbox.process import own_path
 
     server = f"{app_package()[0]}.startup.serve"
-    others = _others(lan, address, reached_at)
-    if lan:
-        address = _HERE
+    others = options.of_others()
+    address = _HERE if options.lan else options.address
+    _must_be_free(address, options.port)
+    typer.echo(f"fieldmon is at http://{address}:{options.port} (stop it with Ctrl-C)")
+    # -P: -m looks in the folder one stands in first, which need not be where the app is
+    command = [sys.executable, "-P", "-m", server, *(["--browser"] if options.browser else [])]
+    # everything else is set, with reasons, in the app's own .streamlit/config.toml
+    env = os.environ | {
+        "STREAMLIT_SERVER_ADDRESS": address,
+        "STREAMLIT_SERVER_PORT": str(options.port),
+        "FIELDMON_SEASONS": str(options.seasons.absolute()),
+        "FIELDMON_NAMES": options.names(),
+        "PYTHONPATH": own_path(),
+        **others,
+    }
+    with WAITING.silent():
+        raise typer.Exit(_run(command, env))
+
+
+def _must_be_free(address: str, port: int) -> None:
+    """Raise `SettingError` where something else listens."""
+    import socket
+
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -67,46 +118,6 @@ def open_app(  # noqa: PLR0913, PLR0917 - the command's options
                 f"Port {port} at {address} must be free, but it is not ({error.strerror}). "
                 "Close what uses it, or choose another with --port."
             ) from error
-    typer.echo(f"fieldmon is at http://{address}:{port} (stop it with Ctrl-C)")
-    # -P: -m looks in the folder one stands in first, which need not be where the app is
-    command = [sys.executable, "-P", "-m", server, *(["--browser"] if browser else [])]
-    # everything else is set, with reasons, in the app's own .streamlit/config.toml
-    env = os.environ | {
-        "STREAMLIT_SERVER_ADDRESS": address,
-        "STREAMLIT_SERVER_PORT": str(port),
-        "FIELDMON_SEASONS": str(seasons.absolute()),
-        "FIELDMON_NAMES": _names(name, reached_at),
-        "PYTHONPATH": own_path(),
-        **others,
-    }
-    with WAITING.silent():
-        raise typer.Exit(_run(command, env))
-
-
-def _others(lan: bool, address: str, reached_at: str) -> dict[str, str]:  # noqa: FBT001
-    """Return what tells the server of other devices; raise `SettingError` if it cannot be so."""
-    if reached_at and not reached_at.startswith("https://"):
-        raise SettingError(
-            "The address at which others reach the app must begin with https://, for phones give "
-            f"no position to others, but it is {reached_at!r}."
-        )
-    if reached_at.rstrip("/").count("/") > 2:  # two are those of https://
-        raise SettingError(
-            "The address at which others reach the app must be a name, and perhaps a port, without "
-            f"a path, but it is {reached_at!r}. Give the app a name of its own, as "
-            "https://field.example."
-        )
-    told = {"FIELDMON_ADDRESS": reached_at.rstrip("/")} if reached_at else {}
-    if lan:
-        told["FIELDMON_LAN"] = "" if address == _HERE else address
-    return told
-
-
-def _names(told: list[str] | None, reached_at: str) -> str:
-    """Return the names by which browsers may ask, that of a server before us among them."""
-    names = told or os.environ.get("FIELDMON_NAMES", "").split(",")
-    before = reached_at.partition("://")[2].partition("/")[0].partition(":")[0]
-    return ",".join([*names, before] if before else names)
 
 
 def _run(command: list[str], env: dict[str, str]) -> int:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.numbers import within
+from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.times import day
 from fieldmon.compute.arguments import RATE_L_HA
@@ -17,121 +18,13 @@ from fieldmon.decisions.sprayer import COSTS, SWITCHED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from datetime import date
 
+    from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
     from fieldmon.decisions.thresholds import Threshold
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.advice import Advice
-
-Level = Annotated[
-    str, typer.Option(help="Threshold: a share of the plants (5%), or the name of a published one.")
-]
-Own = Annotated[
-    Path | None, typer.Option(help="CSV of thresholds of your own: name,measure,level,source.")
-]
-Sure = Annotated[
-    float, typer.Option(help="How sure a verdict must be, 0.5 to 1.", callback=within(SURE))
-]
-Leaves = Annotated[
-    int,
-    typer.Option(
-        help="Leaves inspected, for a threshold of leaves.", callback=within(0, MOST_COUNTED)
-    ),
-]
-Counted = Annotated[
-    float,
-    typer.Option(
-        help="Of these leaves: how many are infested, or animals counted on them.",
-        callback=within(0, MOST_COUNTED),
-    ),
-]
-Rate = Annotated[
-    float,
-    typer.Option(
-        help="Litres per hectare in the zones, for the files.", callback=within(RATE_L_HA)
-    ),
-]
-Product = Annotated[str, typer.Option(help="What is sprayed, for the files.")]
-Outputs = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "-o", "--output",
-        help="Zones to write: .xml.zip, .grid1.xml.zip, .shp.zip, .gpkg, .geojson, .kml, .tif; "
-        "or .pdf.",
-    ),
-]  # fmt: skip
-Presence = Annotated[
-    bool, typer.Option("--presence", help="For a mean: --counted is the number of infested leaves.")
-]
-Boom = Annotated[
-    float,
-    typer.Option(help="Width of the boom, metres; with --sections.", callback=within(0, 1000)),
-]
-Sections = Annotated[int, typer.Option(help="Sections of the boom.", callback=within(1, 10_000))]
-Ring = Annotated[
-    int,
-    typer.Option(
-        help="Knapsack: how many plants around each are sprayed with it.",
-        callback=within(SWITCHED["ring"]),
-    ),
-]
-Reserve = Annotated[
-    float,
-    typer.Option(
-        help="Share of the plot that is never sprayed, for predators, 0 to 1.",
-        callback=within(COSTS["reserve"]),
-    ),
-]
-Rows = Annotated[
-    int,
-    typer.Option(
-        help="Rows that a section covers; 0: a knapsack sprayer.", callback=within(SWITCHED["rows"])
-    ),
-]
-LeastOn = Annotated[
-    float,
-    typer.Option(
-        help="Least length of a zone along the rows, metres.",
-        callback=within(SWITCHED["least_on_m"]),
-    ),
-]
-LeastOff = Annotated[
-    float,
-    typer.Option(
-        help="Least gap between two zones, metres.", callback=within(SWITCHED["least_off_m"])
-    ),
-]
-PerHa = Annotated[
-    float,
-    typer.Option(
-        help="Cost of product, water and work per hectare.", callback=within(COSTS["per_ha"])
-    ),
-]
-PerZone = Annotated[
-    float,
-    typer.Option(
-        help="Cost of switching on and off, per zone.", callback=within(COSTS["per_zone"])
-    ),
-]
-Loss = Annotated[
-    float,
-    typer.Option(
-        help="Loss per plant that is infested for a day.",
-        callback=within(COSTS["infested_plant_day"]),
-    ),
-]
-Days = Annotated[
-    float,
-    typer.Option(
-        help="Days that an untreated plant stays infested.", callback=within(COSTS["days"])
-    ),
-]
-Works = Annotated[
-    float,
-    typer.Option(
-        help="Chance that treating cleans a plant, 0 to 1.", callback=within(COSTS["works"])
-    ),
-]
 
 _LEAVES_OF_PLANTS = (
     "--leaves, --counted and --presence answer a threshold of leaves, but {} is a share of the "
@@ -142,77 +35,237 @@ _LEAVES_OF_PLANTS = (
 _PAPER = (".pdf", ".html")
 
 
-def decide(  # noqa: PLR0913, PLR0917 - the command's options
-    season: SeasonFile,
-    threshold: Level,
-    thresholds: Own = None,
-    on: LastDate = None,
-    sure: Sure = 0.9,
-    leaves: Leaves = 0,
-    counted: Counted = 0.0,
-    presence: Presence = False,  # noqa: FBT002 - a flag of the command
-    rate: Rate = 300.0,
-    product: Product = "",
-    output: Outputs = None,
-    section_rows: Rows = 2,
-    least_on: LeastOn = 6.0,
-    least_off: LeastOff = 6.0,
-    boom: Boom = 0.0,
-    sections: Sections = 1,
-    ring: Ring = 0,
-    per_ha: PerHa = 100.0,
-    per_zone: PerZone = 0.5,
-    loss: Loss = 0.1,
-    days: Days = 14.0,
-    works: Works = 0.9,
-    reserve: Reserve = 0.0,
+@dataclass(frozen=True)
+class DecideOptions:
+    """What is asked of the season."""
+
+    season: SeasonFile
+    threshold: Annotated[
+        str,
+        typer.Option(help="Threshold: a share of the plants (5%), or the name of a published one."),
+    ]
+    thresholds: Annotated[
+        Path | None, typer.Option(help="CSV of thresholds of your own: name,measure,level,source.")
+    ] = None
+    on: LastDate = None
+    sure: Annotated[
+        float, typer.Option(help="How sure a verdict must be, 0.5 to 1.", callback=within(SURE))
+    ] = 0.9
+
+
+@dataclass(frozen=True)
+class LeafOptions:
+    """What was seen on leaves, for a threshold of those."""
+
+    leaves: Annotated[
+        int,
+        typer.Option(
+            help="Leaves inspected, for a threshold of leaves.", callback=within(0, MOST_COUNTED)
+        ),
+    ] = 0
+    counted: Annotated[
+        float,
+        typer.Option(
+            help="Of these leaves: how many are infested, or animals counted on them.",
+            callback=within(0, MOST_COUNTED),
+        ),
+    ] = 0.0
+    presence: Annotated[
+        bool,
+        typer.Option("--presence", help="For a mean: --counted is the number of infested leaves."),
+    ] = False
+
+    def given(self) -> bool:
+        """Return whether any of it was told."""
+        return bool(self.leaves or self.counted or self.presence)
+
+    def idle(self) -> Iterator[tuple[object, str]]:
+        """Yield whether a part of it would be passed over, and what to say then."""
+        says = "--counted says what was found on leaves: give --leaves N too."
+        yield self.counted and not self.leaves, says
+
+
+@dataclass(frozen=True)
+class ZoneFileOptions:
+    """What is written, and what it says of the product."""
+
+    rate: Annotated[
+        float,
+        typer.Option(
+            help="Litres per hectare in the zones, for the files.", callback=within(RATE_L_HA)
+        ),
+    ] = 300.0
+    product: Annotated[str, typer.Option(help="What is sprayed, for the files.")] = ""
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "-o", "--output",
+            help="Zones to write: .xml.zip, .grid1.xml.zip, .shp.zip, .gpkg, .geojson, .kml, .tif; "
+            "or .pdf.",
+        ),
+    ] = None  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SprayerOptions:
+    """What the sprayer can switch."""
+
+    section_rows: Annotated[
+        int,
+        typer.Option(
+            help="Rows that a section covers; 0: a knapsack sprayer.",
+            callback=within(SWITCHED["rows"]),
+        ),
+    ] = 2
+    least_on: Annotated[
+        float,
+        typer.Option(
+            help="Least length of a zone along the rows, metres.",
+            callback=within(SWITCHED["least_on_m"]),
+        ),
+    ] = 6.0
+    least_off: Annotated[
+        float,
+        typer.Option(
+            help="Least gap between two zones, metres.", callback=within(SWITCHED["least_off_m"])
+        ),
+    ] = 6.0
+    boom: Annotated[
+        float,
+        typer.Option(help="Width of the boom, metres; with --sections.", callback=within(0, 1000)),
+    ] = 0.0
+    sections: Annotated[
+        int, typer.Option(help="Sections of the boom.", callback=within(1, 10_000))
+    ] = 1
+    ring: Annotated[
+        int,
+        typer.Option(
+            help="Knapsack: how many plants around each are sprayed with it.",
+            callback=within(SWITCHED["ring"]),
+        ),
+    ] = 0
+
+    def idle(self) -> Iterator[tuple[object, str]]:
+        """Yield whether a part of it would be passed over, and what to say then."""
+        says = "--sections are those of a boom: give --boom METRES too."
+        yield self.sections > 1 and not self.boom, says
+        says = "--ring is of a knapsack: give --section-rows 0 too."
+        yield self.ring and (self.boom or self.section_rows), says
+
+    def sprayer(self, row_spacing_m: float) -> Sprayer:
+        """Return what it can switch on rows so far apart."""
+        from fieldmon.decisions.sprayer import Sprayer
+
+        rows = self.section_rows
+        if self.boom:
+            rows = Sprayer.of_boom(self.boom, self.sections, row_spacing_m).rows
+        return Sprayer(rows, self.least_on, self.least_off, self.ring)
+
+
+@dataclass(frozen=True)
+class CostOptions:
+    """What treating costs and saves."""
+
+    per_ha: Annotated[
+        float,
+        typer.Option(
+            help="Cost of product, water and work per hectare.", callback=within(COSTS["per_ha"])
+        ),
+    ] = 100.0
+    per_zone: Annotated[
+        float,
+        typer.Option(
+            help="Cost of switching on and off, per zone.", callback=within(COSTS["per_zone"])
+        ),
+    ] = 0.5
+    loss: Annotated[
+        float,
+        typer.Option(
+            help="Loss per plant that is infested for a day.",
+            callback=within(COSTS["infested_plant_day"]),
+        ),
+    ] = 0.1
+    days: Annotated[
+        float,
+        typer.Option(
+            help="Days that an untreated plant stays infested.", callback=within(COSTS["days"])
+        ),
+    ] = 14.0
+    works: Annotated[
+        float,
+        typer.Option(
+            help="Chance that treating cleans a plant, 0 to 1.", callback=within(COSTS["works"])
+        ),
+    ] = 0.9
+    reserve: Annotated[
+        float,
+        typer.Option(
+            help="Share of the plot that is never sprayed, for predators, 0 to 1.",
+            callback=within(COSTS["reserve"]),
+        ),
+    ] = 0.0
+
+    def costs(self) -> TreatmentCosts:
+        """Return them as decisions take them."""
+        from fieldmon.decisions.sprayer import TreatmentCosts
+
+        return TreatmentCosts(
+            self.per_ha, self.per_zone, self.loss, self.days, self.works, self.reserve
+        )
+
+
+@with_options
+def decide(
+    asked: DecideOptions,
+    leaves: LeafOptions,
+    files: ZoneFileOptions,
+    sprayer: SprayerOptions,
+    costs: CostOptions,
 ) -> None:
     """Say whether to spray, and where it pays; write the zones for the sprayer.
 
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
     from fieldmon.decisions.leaves import of_leaves
-    from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
     from fieldmon.decisions.thresholds import threshold_of
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.advice import AdviceSettings
 
-    asked = threshold_of(threshold, _own(thresholds))
-    for path in output or []:
+    threshold = threshold_of(asked.threshold, _own(asked.thresholds))
+    for path in files.output or []:
         _check_name(path)
-    of_plants = asked.measure == "share of plants"
+    of_plants = threshold.measure == "share of plants"
     _refuse_idle(
-        (of_plants and (leaves or counted or presence), _LEAVES_OF_PLANTS.format(threshold)),
-        (counted and not leaves, "--counted says what was found on leaves: give --leaves N too."),
-        (sections > 1 and not boom, "--sections are those of a boom: give --boom METRES too."),
-        (ring and (boom or section_rows), "--ring is of a knapsack: give --section-rows 0 too."),
+        (of_plants and leaves.given(), _LEAVES_OF_PLANTS.format(asked.threshold)),
+        *leaves.idle(),
+        *sprayer.idle(),
     )
-    kept = Season(season)
-    when = day(on) or kept.last_date()
-    rows_m = kept.plot.grid.row_spacing_m
-    rows = Sprayer.of_boom(boom, sections, rows_m).rows if boom else section_rows
-    level = {"level": asked.level} if of_plants else {}
+    kept = Season(asked.season)
+    when = day(asked.on) or kept.last_date()
+    level = {"level": threshold.level} if of_plants else {}
     advice = kept.advice(
         when,
         AdviceSettings(
-            sure=sure,
-            sprayer=Sprayer(rows, least_on, least_off, ring),
-            costs=TreatmentCosts(per_ha, per_zone, loss, days, works, reserve),
-            rate_l_ha=rate,
+            sure=asked.sure,
+            sprayer=sprayer.sprayer(kept.plot.grid.row_spacing_m),
+            costs=costs.costs(),
+            rate_l_ha=files.rate,
             **level,
         ),
     )
-    if level:
+    if of_plants:
         said, short = [advice.headline(), *advice.reasons()], advice.in_short()
     else:
-        named = "" if leaves else " (--leaves, --counted)"
-        said = [of_leaves(asked, leaves, counted, presence=presence) + named]
+        named = "" if leaves.leaves else " (--leaves, --counted)"
+        said = [
+            of_leaves(threshold, leaves.leaves, leaves.counted, presence=leaves.presence) + named
+        ]
         short = " ".join([*said, advice.zones.sentence()])
-    where = advice.said_of_zones(above=bool(level))
-    typer.echo("\n".join([f"{when}, after the day's work.", asked.sentence(), *said, *where]))
+    where = advice.said_of_zones(above=of_plants)
+    typer.echo("\n".join([f"{when}, after the day's work.", threshold.sentence(), *said, *where]))
     kept.advise(when, short)
-    if output:
-        _write(_AdviceAsked(kept, when, advice, product), output)
+    if files.output:
+        _write(_AdviceAsked(kept, when, advice, files.product), files.output)
 
 
 def _refuse_idle(*each: tuple[object, str]) -> None:

@@ -32,7 +32,7 @@ def with_options(command: Callable[..., R]) -> Callable[..., R]:
     @wraps(command)
     def called(**told: Any) -> R:  # noqa: ANN401 - what a command is told is of any type
         made = {name: _made(group, told) for name, group in groups.items()}
-        return command(**{name: told[name] for name in hints if name in told}, **made)
+        return command(**{name: told[name] for name in hints if name in told} | made)
 
     called.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
     called.__annotations__ = {each.name: each.annotation for each in parameters}

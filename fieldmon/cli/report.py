@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.report_languages import Language, spoken
 from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
@@ -25,40 +27,58 @@ class Paper(StrEnum):
     letter = "letter"
 
 
-Output = Annotated[
-    Path, typer.Option("--output", "-o", help="File to write, ending in .pdf or .html.")
-]
-OneDay = Annotated[
-    str | None,
-    typer.Option("--date", help="Report this day on one page, YYYY-MM-DD; else the season."),
-]
-Until = Annotated[
-    str | None,
-    typer.Option("--until", help="Report the season up to this day; else up to its last one."),
-]
-Seasons = Annotated[
-    list[Path],
-    typer.Argument(help="The season's file, made by fieldmon init; several with --certification."),
-]
-ForCertifier = Annotated[
-    bool,
-    typer.Option(
-        "--certification",
-        help="Write the record for a certifier: treatments as GLOBALG.A.P. asks, inspections, log.",
-    ),
-]
-OnPaper = Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")]
+@dataclass(frozen=True)
+class ReportOptions:
+    """What `fieldmon report` is told."""
+
+    seasons: Annotated[
+        list[Path],
+        typer.Argument(
+            help="The season's file, made by fieldmon init; several with --certification."
+        ),
+    ]
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="File to write, ending in .pdf or .html.")
+    ] = Path("report.pdf")
+    on: Annotated[
+        str | None,
+        typer.Option("--date", help="Report this day on one page, YYYY-MM-DD; else the season."),
+    ] = None
+    until: Annotated[
+        str | None,
+        typer.Option("--until", help="Report the season up to this day; else up to its last one."),
+    ] = None
+    paper: Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")] = Paper.a4
+    certification: Annotated[
+        bool,
+        typer.Option(
+            "--certification",
+            help="Write the record for a certifier: treatments as GLOBALG.A.P. asks, inspections, "
+            "log.",
+        ),
+    ] = False
+    language: Language = None
+
+    def must_fit(self) -> None:
+        """Raise `SettingError` where the options exclude each other."""
+        if self.on is not None and self.until is not None:
+            raise SettingError(
+                "A report must be of one day or of the season, but both --date and --until were "
+                "given. Leave one away."
+            )
+        if self.certification and self.on is not None:
+            raise SettingError(
+                "A record for a certifier is of seasons, not of --date. Leave it away."
+            )
+        if not self.certification and len(self.seasons) > 1:
+            raise SettingError(
+                f"A report is of one season, but {len(self.seasons)} are given. Several go into "
+                "one with --certification."
+            )
 
 
-def report(  # noqa: PLR0913, PLR0917 - the command's options
-    seasons: Seasons,
-    output: Output = Path("report.pdf"),
-    on: OneDay = None,
-    until: Until = None,
-    paper: OnPaper = Paper.a4,
-    certification: ForCertifier = False,  # noqa: FBT002 - a flag
-    language: Language = None,
-) -> None:
+@with_options
+def report(options: ReportOptions) -> None:
     """Write a season on four pages, or one of its days on one; the season is not changed.
 
     With --certification it is the record of one season or several for a certifier. It is written
@@ -67,26 +87,18 @@ def report(  # noqa: PLR0913, PLR0917 - the command's options
     Example: fieldmon report season.gpkg -o report.pdf
     Example: fieldmon report season.gpkg -o report.pdf --language he
     """
-    if on is not None and until is not None:
-        raise SettingError(
-            "A report must be of one day or of the season, but both --date and --until were given. "
-            "Leave one away."
-        )
-    if certification and on is not None:
-        raise SettingError("A record for a certifier is of seasons, not of --date. Leave it away.")
-    if not certification and len(seasons) > 1:
-        raise SettingError(
-            f"A report is of one season, but {len(seasons)} are given. Several go into one with "
-            "--certification."
-        )
+    options.must_fit()
     from fieldmon.cli.season_files import opened
     from fieldmon.reports.write import checked_ending, write_report
 
-    checked_ending(output)
-    kept = opened(seasons)
-    spoken_in, units = spoken(language, kept[0].settings.language)
-    made = _certified(kept, until, units) if certification else _made(kept[0], on, until, units)
-    to = write_report(made.said_in(spoken_in), output, paper.value)
+    checked_ending(options.output)
+    kept = opened(options.seasons)
+    spoken_in, units = spoken(options.language, kept[0].settings.language)
+    if options.certification:
+        made = _certified(kept, options.until, units)
+    else:
+        made = _made(kept[0], options.on, options.until, units)
+    to = write_report(made.said_in(spoken_in), options.output, options.paper.value)
     typer.echo(f"Report written to {to}")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import fields
 from typing import TYPE_CHECKING
@@ -14,6 +13,7 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.import_report import Imported, seen
 from fieldmon.io.options import Upload, source_name
 from fieldmon.io.parse.columns import plain
+from fieldmon.io.parse.own_table import own_table
 from fieldmon.io.parse.text import decode
 from fieldmon.io.parse.values import could_be_thousands, number
 
@@ -70,23 +70,19 @@ def read_labels(source: Path | Upload) -> Imported[tuple[ProductLabel, ...]]:
             )
         ) from error
     text, messages = decode(data)
-    lines = [line for line in text.splitlines() if not line.startswith("#")]
-    head = lines[0] if lines else ""
-    delimiter = max(",;\t", key=head.count)
-    table = csv.reader(lines, delimiter=delimiter)
-    names = next(table, [])
-    at = _columns(name, names)
-    unread = [own for k, own in enumerate(names) if k not in at.values() and own.strip()]
+    table = own_table(text, name)
+    column_of = _columns(name, table.columns)
+    unread = [own for own in table.columns if own and own not in column_of.values()]
     if unread:
         messages = [
             *messages,
             seen(worded("Columns that say nothing of labels: {names}.", names=", ".join(unread))),
         ]
     made: list[ProductLabel] = []
-    for line, cells in enumerate(table, 2):
-        said = {role: cells[k].strip() for role, k in at.items() if k < len(cells)}
+    for where, cells in table.lines:
+        said = {role: cells[column] for role, column in column_of.items()}
         if any(said.values()):
-            made.append(_label(said, f"{name}, line {line}"))
+            made.append(_label(said, where))
     if not made:
         raise FileProblem(worded("{name} must hold a label or more, but it holds none.", name=name))
     if len(made) > _MOST_LINES:
@@ -102,9 +98,9 @@ def read_labels(source: Path | Upload) -> Imported[tuple[ProductLabel, ...]]:
     return Imported(tuple(dict.fromkeys(made)), tuple(messages))
 
 
-def _columns(name: str, names: list[str]) -> dict[str, int]:
+def _columns(name: str, names: tuple[str, ...]) -> dict[str, str]:
     """Return which column says what."""
-    called = {plain(column): k for k, column in reversed(list(enumerate(names)))}
+    called = {plain(column): column for column in reversed(names)}
     at = {
         role: called[word]
         for role, words in _CALLED.items()
@@ -164,7 +160,7 @@ def _number(said: Mapping[str, str], role: str) -> float | None:
             )
         )
     value = number(cell, "," if "," in cell and "." not in cell else ".")
-    if math.isnan(value):
+    if not math.isfinite(value):
         raise SettingError(
             worded("{role} must be a number, but it is {cell!r}.", role=role, cell=cell)
         )

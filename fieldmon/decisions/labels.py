@@ -126,29 +126,43 @@ def irac_groups(said: str) -> tuple[str, ...]:
 
 
 def label_for(
-    labels: Iterable[ProductLabel], product: str, crop: str = "", pest: str = ""
+    labels: Iterable[ProductLabel],
+    product: str,
+    crop: str = "",
+    pest: str = "",
+    *,
+    dose: Dose | None = None,
+    water_l_ha: float | None = None,
 ) -> ProductLabel | None:
     """Return what the labels of a product allow; None: there is none of it.
 
     Where several lines hold, since nobody said the crop or the pest, the strictest of each counts.
+    Which dose is the strictest is seen from the `dose` used and its water: without, none is.
     """
     fit = [one for one in labels if one.fits(product, crop, pest)]
     if len(fit) < 2:
         return fit[0] if fit else None
     doses = [one.max_dose for one in fit if one.max_dose is not None]
-    least = doses[0] if doses else None
-    for one in doses[1:]:
-        share = one.share_of(doses[0])
-        if share is not None and least is not None and share < (least.share_of(doses[0]) or 1.0):
-            least = one
     return ProductLabel(
-        fit[0].product, crop, pest, least,
+        fit[0].product, crop, pest, _strictest(doses, dose, water_l_ha),
         max((one.waiting_days for one in fit if one.waiting_days is not None), default=None),
         max((one.reentry_hours for one in fit if one.reentry_hours is not None), default=None),
         tuple(dict.fromkeys(group for one in fit for group in one.irac_groups)),
         min((one.max_uses for one in fit if one.max_uses is not None), default=None),
         "; ".join(dict.fromkeys(one.source for one in fit if one.source)),
     )  # fmt: skip
+
+
+def _strictest(doses: list[Dose], used: Dose | None, water_l_ha: float | None) -> Dose | None:
+    """Return the dose that what was used is most above, else one it cannot be compared with."""
+    if used is None:
+        return None
+
+    def strictness(most: Dose) -> tuple[int, float]:
+        share = used.share_of(most, water_l_ha)
+        return (1, 0.0) if share is None else (2 if share > 1.0 else 0, share)
+
+    return max(doses, key=strictness, default=None)
 
 
 def plain_name(name: str) -> str:

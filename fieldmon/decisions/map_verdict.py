@@ -78,16 +78,66 @@ class MapVerdict:
         )  # fmt: skip
 
 
-def map_verdict(  # noqa: PLR0913 - two of them have to be named
+@dataclass(frozen=True)
+class AskedVerdict:
+    """What is asked of a verdict.
+
+    Parameters
+    ----------
+    level
+        Share of the plants from which on treating pays, between 0 and 1.
+    sure
+        A verdict needs this chance of being right, between 0.5 and 1.
+    doubt
+        How far the expected share may be off beyond what the chances say, as a share of it
+        (`Belief.doubt_of_rates`).
+
+    Raises
+    ------
+    SettingError
+        If the level or `sure` cannot be.
+    """
+
+    level: float
+    sure: float = 0.9
+    doubt: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.level < 1.0:
+            raise SettingError(
+                worded(
+                    "The share of plants from which treating pays must lie between 0 and 1, but it "
+                    "is {level:g}.",
+                    level=self.level,
+                )
+            )
+        if not 0.5 < self.sure < 1.0:
+            raise SettingError(
+                worded(
+                    "A verdict must be asked to be right with a chance between 0.5 and 1, but it "
+                    "is {sure:g}.",
+                    sure=self.sure,
+                )
+            )
+
+    def of(self, shares: Floats, share: float) -> MapVerdict:
+        """Return the verdict on drawn shares ``(draws,)`` of plants, `share` of them expected."""
+        above = float(np.mean(shares >= self.level))
+        verdict: Verdict = (
+            TREAT if above >= self.sure else LEAVE if above <= 1 - self.sure else LOOK_ON
+        )
+        low, high = np.quantile(shares, [0.5 - self.sure / 2, 0.5 + self.sure / 2])
+        return MapVerdict(verdict, self.level, above, share, float(low), float(high), self.sure)
+
+
+def map_verdict(
     grid: PlantGrid,
     chance: Floats,
-    level: float,
+    asked: AskedVerdict,
     pair_chance: Floats | None = None,
     *,
     plants: NDArray[np.bool_] | None = None,
-    sure: float = 0.9,
     key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
-    doubt: float = 0.0,
 ) -> MapVerdict:
     """Return whether a plot, or a part of it, has to be treated.
 
@@ -100,43 +150,37 @@ def map_verdict(  # noqa: PLR0913 - two of them have to be named
         The plants.
     chance
         ``(n,)`` chance that each plant is infested.
-    level
-        Share of the plants from which on treating pays, between 0 and 1.
+    asked
+        From which share on treating pays, and how sure the answer must be.
     pair_chance
         ``(e,)`` chance that two neighbours are both infested; None: as records have it.
     plants
         ``(n,)`` the part of the plot that is asked about; None: all.
-    sure
-        A verdict needs this chance of being right, between 0.5 and 1.
     key
         Which fields are drawn: the same key, the same answer.
-    doubt
-        How far the expected share may be off beyond that, as a share of it
-        (`Belief.doubt_of_rates`).
 
     Raises
     ------
     SettingError
-        If the level or `sure` cannot be, or no plant is asked about.
+        If no plant is asked about.
 
     Examples
     --------
     >>> import numpy as np, fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> chance = np.full(plot.n_plants, 0.002)
-    >>> map_verdict(plot.grid, chance, 0.05).verdict
+    >>> map_verdict(plot.grid, chance, AskedVerdict(0.05)).verdict
     'do not treat'
     """
-    _check(level, sure)
-    asked = np.ones(len(grid), bool) if plants is None else _asked(plants, len(grid))
-    if not asked.any():
+    of = np.ones(len(grid), bool) if plants is None else _asked(plants, len(grid))
+    if not of.any():
         raise SettingError(
             worded("A verdict must be about a plant or more, but the area holds none.")
         )
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
-    weights = csc_array(asked[:, None] / np.count_nonzero(asked))
-    shares = _drawn(grid, (chance, pairs), weights, (key, doubt))
-    return _verdict(shares[:, 0], float(chance[asked].mean()), level, sure)
+    weights = csc_array(of[:, None] / np.count_nonzero(of))
+    shares = _drawn(grid, (chance, pairs), weights, asked.doubt, key)
+    return asked.of(shares[:, 0], float(chance[of].mean()))
 
 
 def _asked(plants: object, n: int) -> NDArray[np.bool_]:
@@ -180,8 +224,8 @@ def zone_verdicts(
     grid: PlantGrid,
     believed: tuple[Floats, Floats | None],
     zones: NDArray[np.int64],
-    asked: tuple[float, float, float],
-    doubt: float = 0.0,
+    asked: AskedVerdict,
+    works: float,
 ) -> ZoneVerdicts:
     """Return the verdict of each zone, and the chance that treating them all is enough.
 
@@ -194,18 +238,11 @@ def zone_verdicts(
     zones
         ``(n,)`` the zone of each plant, from 0; -1: none.
     asked
-        Share of the plants from which on treating pays, of a zone and of the plot; how sure a
-        verdict must be; and the chance that treating cleans an infested plant.
-    doubt
-        As of `map_verdict`.
-
-    Raises
-    ------
-    SettingError
-        If the level or `sure` cannot be.
+        From which share on treating pays, of a zone and of the plot, and how sure a verdict must
+        be.
+    works
+        Chance that treating cleans an infested plant.
     """
-    level, sure, works = asked
-    _check(level, sure)
     chance, pair_chance = believed
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
     n, count = len(grid), int(zones.max(initial=-1)) + 1
@@ -222,51 +259,24 @@ def zone_verdicts(
         ),
         (n, count + 1),
     )
-    shares = _drawn(grid, (chance, pairs), weights, (np.uint64(0), doubt))
+    shares = _drawn(grid, (chance, pairs), weights, asked.doubt)
     expected = chance @ weights
-    made = [_verdict(shares[:, k], float(expected[k]), level, sure) for k in range(count)]
-    return ZoneVerdicts(tuple(made), float(np.mean(shares[:, count] < level)))
-
-
-def _check(level: float, sure: float) -> None:
-    if not 0.0 < level < 1.0:
-        raise SettingError(
-            worded(
-                "The share of plants from which treating pays must lie between 0 and 1, but it "
-                "is {level:g}.",
-                level=level,
-            )
-        )
-    if not 0.5 < sure < 1.0:
-        raise SettingError(
-            worded(
-                "A verdict must be asked to be right with a chance between 0.5 and 1, but it "
-                "is {sure:g}.",
-                sure=sure,
-            )
-        )
-
-
-def _verdict(shares: Floats, share: float, level: float, sure: float) -> MapVerdict:
-    """Return the verdict on drawn shares ``(draws,)``."""
-    above = float(np.mean(shares >= level))
-    verdict: Verdict = TREAT if above >= sure else LEAVE if above <= 1 - sure else LOOK_ON
-    low, high = np.quantile(shares, [0.5 - sure / 2, 0.5 + sure / 2])
-    return MapVerdict(verdict, level, above, share, float(low), float(high), sure)
+    made = [asked.of(shares[:, k], float(expected[k])) for k in range(count)]
+    return ZoneVerdicts(tuple(made), float(np.mean(shares[:, count] < asked.level)))
 
 
 def _drawn(
     grid: PlantGrid,
     believed: tuple[Floats, Floats],
     weights: csc_array,
-    which: tuple[np.uint64, float],
+    doubt: float,
+    key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
 ) -> Floats:
     """Return sums over the infested plants of each drawn field, ``(draws, k)``.
 
-    `weights` ``(n, k)`` is what each plant counts in each sum; `which` names the fields, and says
-    how far the expected numbers may be off.
+    `weights` ``(n, k)`` is what each plant counts in each sum; `doubt` says how far the expected
+    numbers may be off, and `key` names the fields.
     """
-    key, doubt = which
     at_once = int(np.clip(_CELLS_AT_ONCE // len(grid), 1, _DRAWS))
     sums = np.empty((_DRAWS, weights.shape[1]))
     for first in range(0, _DRAWS, at_once):

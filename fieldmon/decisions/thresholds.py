@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import csv
+from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
 from fieldmon.io.packaged import packaged_table
+from fieldmon.io.parse.own_table import own_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 #: what a threshold counts; a share lies between 0 and 1, a mean is animals a leaf
 MEASURES = ("share of plants", "share of leaves", "mean per leaf")
 _OWN = "your own"
+_PREDATORS = {"yes": True, "no": False, "": None}
 _COLUMNS = ("name", "measure", "level", "source")
 
 
@@ -115,7 +117,7 @@ def read_thresholds(source: Path | Upload) -> tuple[Threshold, ...]:
     name = source_name(source)
     try:
         data = source.data if isinstance(source, Upload) else source.read_bytes()
-        lines = data.decode("utf-8-sig").splitlines()
+        text = data.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise FileProblem(
             worded(
@@ -124,8 +126,8 @@ def read_thresholds(source: Path | Upload) -> tuple[Threshold, ...]:
                 error=error,
             )
         ) from error
-    table = csv.DictReader(line for line in lines if not line.startswith("#"))
-    missing = [name for name in _COLUMNS if name not in (table.fieldnames or ())]
+    table = own_table(text, name)
+    missing = [name for name in _COLUMNS if name not in table.columns]
     if missing:
         raise FileProblem(
             worded(
@@ -135,7 +137,21 @@ def read_thresholds(source: Path | Upload) -> tuple[Threshold, ...]:
                 names_2=" and no ".join(missing),
             )
         )
-    return tuple(_read(name, number, row) for number, row in enumerate(table, 1))
+    read = tuple(_read(where, cells) for where, cells in table.lines)
+    if not read:
+        raise FileProblem(
+            worded("{name} must hold a threshold or more, but it holds none.", name=name)
+        )
+    called = Counter(one.name for one in read).most_common(1)[0]
+    if called[1] > 1:
+        raise FileProblem(
+            worded(
+                "{name}: two thresholds are called {called!r}. Give each its own name.",
+                name=name,
+                called=called[0],
+            )
+        )
+    return read
 
 
 def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Threshold:
@@ -180,37 +196,39 @@ def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Thresho
     )
 
 
-def _read(name: str, number: int, row: Mapping[str, str]) -> Threshold:
+def _read(where: str, row: Mapping[str, str]) -> Threshold:
     try:
         return _of_row(row)
     except ValueError as error:
         raise FileProblem(
             worded(
-                "{name}, threshold {number}: the level must be a number, but it is {level!r}.",
-                name=name,
-                number=number,
-                level=row["level"],
+                "{where}: {name} must be a number, but it is {text!r}.",
+                where=where,
+                name="level",
+                text=row["level"],
             )
         ) from error
     except SettingError as error:
         raise FileProblem(
-            worded(
-                "{name}, threshold {number}: {error}",
-                name=name,
-                number=number,
-                error=error,
-            )
+            worded("{where}: {problem}", where=where, problem=error.args[0])
         ) from error
 
 
 def _of_row(row: Mapping[str, str]) -> Threshold:
     words = {name: row.get(name) or "" for name in ("crop", "pest", "when")}
-    predators = {"yes": True, "no": False}.get((row.get("predators") or "").strip().lower())
+    predators = row.get("predators", "").casefold()
+    if predators not in _PREDATORS:
+        raise SettingError(
+            worded(
+                "predators must be yes, no or nothing, but it is {predators!r}.",
+                predators=predators,
+            )
+        )
     return Threshold(
         row["name"],
         row["measure"],
-        float(row["level"]),
+        float(row["level"].replace(",", ".")),
         row["source"] or _OWN,
-        predators=predators,
+        predators=_PREDATORS[predators],
         **words,
     )

@@ -9,7 +9,7 @@ far jumps go, and how many were there at first and arrive, is estimated by that 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from fieldmon.infestation.landing import landing_of
 from fieldmon.infestation.latency import HIDDEN_NIGHTS
 from fieldmon.infestation.origins import ARRIVE, SIGMAS, Estimate
 from fieldmon.infestation.squares import NOBODY
-from fieldmon.infestation.unseen_offspring import stays_unseen, unseen_now
+from fieldmon.infestation.unseen_offspring import Unseen, stays_unseen, unseen_now
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.floating[Any]]
+    _Finds = tuple[NDArray[np.int64], NDArray[np.int64]]
 
 # In a night, rates are estimated after so many draws of few sweeps each, and after a last one of
 # many, by which chances are told: days 0, 1, 2 and later. In the first nights there are two rounds,
@@ -325,6 +326,137 @@ def _with_finds(of: Ancestry) -> Ancestry:
     return replace(of, infestations=made, last_find=last_find, new=())
 
 
+class _Inspected(NamedTuple):
+    """What inspections say of infestations by the morning on which they begin, ``(t, n)`` each.
+
+    Parameters
+    ----------
+    missed
+        How likely all from that morning on overlook one, if nothing hides, as a logarithm.
+    overlooked
+        How likely they do, if it hides as it may.
+    unseen
+        How likely nothing is seen of it and of what comes from it.
+    """
+
+    missed: Floats
+    overlooked: Floats
+    unseen: Unseen
+
+    @classmethod
+    def by(cls, of: Ancestry, landing: Landing) -> _Inspected:
+        """Return what the inspections up to the last night say."""
+        t, n = BEFORE + len(of.sends) + 1, len(of.grid)
+        # half the digits: on a large plot it is memory that takes the time
+        taken = np.zeros((t, n), np.float32)
+        taken[: len(of.taken)] = of.taken
+        missed = np.zeros((t, n), np.float32)
+        np.cumsum(of.missed[::-1], axis=0, out=missed[BEFORE:-1][::-1])
+        missed[:BEFORE] = missed[BEFORE]
+        overlooked = _overlooked(missed, of.hiding)
+        alone = overlooked.copy()
+        alone[np.arange(t)[:, None] <= of.last_find + BEFORE] = 0.0
+        unseen = stays_unseen(alone, taken, of.sent(of.rates), of.rates.shares, landing)
+        return cls(missed, overlooked, unseen)
+
+
+@dataclass(frozen=True, eq=False)
+class _Draws:
+    """Ancestries that are drawn in a night, each from the one before, in place.
+
+    Parameters
+    ----------
+    of, landing
+        What is known, and where jumps land.
+    inspected
+        What inspections say.
+    infestations, at
+        The ancestry drawn last, and which infestation not found is at each plant.
+    finds
+        The mornings and plants of finds, ``(k,)`` each.
+    lasting
+        As `Weights` has it.
+    drawn
+        Sums over the ancestries of the last draw.
+    """
+
+    of: Ancestry
+    landing: Landing
+    inspected: _Inspected
+    infestations: Infestations
+    at: NDArray[np.int64]
+    finds: _Finds
+    lasting: Floats
+    drawn: DrawnSums
+
+    @classmethod
+    def begun(cls, of: Ancestry, landing: Landing) -> _Draws:
+        """Return none yet."""
+        inspected, infestations = _Inspected.by(of, landing), of.infestations.copied(0)
+        found = infestations.there & infestations.found
+        finds = infestations.ends[found], infestations.plant[found]
+        t, n = inspected.missed.shape
+        lasting = np.ones((n + len(found), t), np.float32)
+        np.multiply(inspected.overlooked.T, inspected.unseen.offspring.T, out=lasting[:n])
+        lasting[n:][found] = _until_found(
+            inspected.missed, inspected.unseen.offspring, finds, of.hiding
+        )
+        np.maximum(lasting, _TINY, out=lasting)
+        drawn = DrawnSums.none(t, n, landing.kernels.shape[1])
+        at = _places(infestations, n)
+        return cls(of, landing, inspected, infestations, at, finds, lasting, drawn)
+
+    def weights(self, rates: Rates) -> Weights:
+        """Return what ancestries are weighed by at such rates."""
+        t = len(self.inspected.missed)
+        kernel = np.einsum("k,kij->ij", rates.shares, self.landing.kernels)
+        roots = rates.roots(self.of.start, self.landing.at_edge, t)
+        return Weights(
+            self.landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), self.of.sent(rates),
+            np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED, self.lasting,
+        )  # fmt: skip
+
+    def draw(self, weights: Weights, seed: int, sweeps: int) -> int:
+        """Draw anew, and sum up; but for who was active, return means. Return of how many."""
+        for sums in self.drawn:
+            sums.fill(0.0)
+        draws = seed, sweeps, int(_LEFT_OUT * sweeps)
+        last_find = self.of.last_find + BEFORE
+        kept = draw_ancestries(self.infestations, self.at, weights, last_find, draws, self.drawn)
+        for sums in self.drawn[1:]:
+            np.divide(sums, kept, out=sums)
+        return kept
+
+    def counted(self, kept: int, weights: Weights, shares: Floats) -> _Counted:
+        """Return what the last draw says of each plant, of so many ancestries."""
+        active = self.drawn.active
+        active /= kept
+        taken = active.copy()
+        taken[self.finds] = 1.0
+        unfound = unseen_now(
+            self.inspected.unseen, active, weights.roots.T, weights.sends, shares, self.landing
+        )
+        return _Counted(active, taken, unfound)
+
+
+class _Counted(NamedTuple):
+    """What drawn ancestries say of each plant on each morning, ``(t, n)`` each.
+
+    Parameters
+    ----------
+    active
+        How likely it sends something out in the night.
+    taken
+        How likely it is infested already by the ancestry of finds.
+    unfound
+        How many infestations of which nothing was seen are expected there.
+    """
+
+    active: Floats
+    taken: Floats
+    unfound: Floats
+
+
 def _drawn(
     of: Ancestry, landing: Landing, nth: int, arrive: float
 ) -> tuple[Ancestry, Floats, NDArray[np.float64]]:
@@ -333,71 +465,36 @@ def _drawn(
     Return also how likely each plant is infested as the ancestor of a find, and how many
     infestations of which nothing was seen are expected there.
     """
-    t, n, rates = BEFORE + len(of.sends) + 1, len(of.grid), of.rates
-    # half the digits: on a large plot it is memory that takes the time
-    taken = np.zeros((t, n), np.float32)
-    taken[: len(of.taken)] = of.taken
-    missed = np.zeros((t, n), np.float32)
-    # of all inspections from a morning on, as a logarithm
-    np.cumsum(of.missed[::-1], axis=0, out=missed[BEFORE:-1][::-1])
-    missed[:BEFORE] = missed[BEFORE]
-    overlooked = _overlooked(missed, of.hiding)
-    alone = overlooked.copy()
-    alone[np.arange(t)[:, None] <= of.last_find + BEFORE] = 0.0
-    unseen = stays_unseen(alone, taken, of.sent(rates), rates.shares, landing)
-    seen = 1.0 - unseen.chance
-    infestations = of.infestations.copied(0)
-    at = _places(infestations, n)
-    found = infestations.there & infestations.found
-    lasting = np.ones((n + len(found), t), np.float32)
-    np.multiply(overlooked.T, unseen.offspring.T, out=lasting[:n])
-    finds = infestations.ends[found], infestations.plant[found]
-    lasting[n:][found] = _until_found(missed, unseen.offspring, finds, of.hiding)
-    np.maximum(lasting, _TINY, out=lasting)
-    drawn = DrawnSums.none(t, n, landing.kernels.shape[1])
-    day = len(of.sends) - 1
+    draws, rates, day = _Draws.begun(of, landing), of.rates, len(of.sends) - 1
+    drawn, seen = draws.drawn, 1.0 - draws.inspected.unseen.chance
     sweeps = of.sweeps
     for k, many in enumerate(sweeps):
-        sends = of.sent(rates)
-        kernel = np.einsum("k,kij->ij", rates.shares, landing.kernels)
-        roots = rates.roots(of.start, landing.at_edge, t)
-        weights = Weights(
-            landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), sends,
-            np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED, lasting,
-        )  # fmt: skip
-        for sums in drawn:
-            sums.fill(0.0)
-        seed = int(np.ravel_multi_index((day, nth, k), _SEEDS))
-        draws = seed, many, int(_LEFT_OUT * many)
-        kept = draw_ancestries(infestations, at, weights, of.last_find + BEFORE, draws, drawn)
-        for sums in drawn[1:]:
-            np.divide(sums, kept, out=sums)
+        weights = draws.weights(rates)
+        kept = draws.draw(weights, int(np.ravel_multi_index((day, nth, k), _SEEDS)), many)
         # between the first draw and the last, nothing hangs on these
         if k in (0, len(sweeps) - 1):
-            active = drawn.active
-            active /= kept
-            taken = active.copy()
-            taken[finds] = 1.0
-            unfound = unseen_now(unseen, active, roots, sends, rates.shares, landing)
+            counted = draws.counted(kept, weights, rates.shares)
         night = DrawnEvidence(
-            of.start, sends, kernel, seen, taken, drawn, active, unfound, arrive, of.earlier
-        )
+            of.start, weights.sends, weights.kernel, seen, counted.taken, drawn, counted.active,
+            counted.unfound, arrive, of.earlier,
+        )  # fmt: skip
         if k == 0:
             exposure = rates.exposure(night, landing)
         rates = rates.after(night, exposure, landing)
+    # several may have come to one plant
+    unfound_at_start = float(-np.expm1(-counted.unfound[BEFORE]).sum())
     made = replace(
         of,
-        infestations=infestations,
-        taken=taken.astype(np.float16),
+        infestations=draws.infestations,
+        taken=counted.taken.astype(np.float16),
         rates=rates,
         at_start=of.at_start
         if of.began_anew
-        # several may have come to one plant
-        else _at_start(drawn, infestations, float(-np.expm1(-unfound[BEFORE]).sum())),
+        else _at_start(drawn, draws.infestations, unfound_at_start),
         arrived=float(drawn.roots[1].sum()),
         taught=rates.taught(night, exposure, landing),
     )
-    return made, drawn.hidden, unfound[-1].astype(np.float64)
+    return made, drawn.hidden, counted.unfound[-1].astype(np.float64)
 
 
 def _at_start(drawn: DrawnSums, infestations: Infestations, unfound: float) -> Floats:
@@ -436,7 +533,7 @@ def _overlooked(missed: Floats, hiding: Floats) -> Floats:
 def _until_found(
     missed: Floats,
     offspring: Floats,
-    finds: tuple[NDArray[np.int64], NDArray[np.int64]],
+    finds: _Finds,
     hiding: Floats,
 ) -> Floats:
     """Return how likely it is to find what was found, when it was, ``(k, t)``, by its beginning.

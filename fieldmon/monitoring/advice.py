@@ -18,7 +18,7 @@ from fieldmon.compute.wording import (
     share_figure,
     worded,
 )
-from fieldmon.decisions.map_verdict import map_verdict, zone_verdicts
+from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, outlines
@@ -356,16 +356,13 @@ def advice(
     done
         What was treated that day.
     """
-    plot = map_verdict(
-        grid, evening.chance, asked.level, evening.pair_chance,
-        sure=asked.sure, doubt=evening.doubt_of_rates,
-    )  # fmt: skip
+    question = AskedVerdict(asked.level, asked.sure, evening.doubt_of_rates)
+    plot = map_verdict(grid, evening.chance, question, evening.pair_chance)
     spared = np.logical_or.reduce([one.plants for one in done]) if done else None
     zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs, spared)
     said = zone_verdicts(
-        grid, (evening.chance, evening.pair_chance), zones.zone,
-        (asked.level, asked.sure, asked.costs.works), evening.doubt_of_rates,
-    )  # fmt: skip
+        grid, (evening.chance, evening.pair_chance), zones.zone, question, asked.costs.works
+    )
     more = None
     if scene is not None and plot.verdict == LOOK_ON:
         more = inspections_to_verdict(evening, scene, asked)
@@ -381,10 +378,8 @@ def inspections_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings)
 
     def verdict(looks: int, *, found: bool) -> Verdict:
         after = evening.learn(order[:looks], np.full(looks, found), learning)
-        return map_verdict(
-            scene.grid, after.chance, asked.level, after.pair_chance, sure=asked.sure,
-            doubt=after.doubt_of_rates,
-        ).verdict  # fmt: skip
+        question = AskedVerdict(asked.level, asked.sure, after.doubt_of_rates)
+        return map_verdict(scene.grid, after.chance, question, after.pair_chance).verdict
 
     return MoreInspections(
         _first(lambda looks: verdict(looks, found=False) == LEAVE, len(order)),

@@ -93,7 +93,11 @@ def cautions(
 def label_of(one: KeptTreatment, labels: Iterable[ProductLabel]) -> ProductLabel | None:
     """Return what the label of a treatment's product allows; None: there is none of it."""
     said = one.application
-    return label_for(labels, said.product, said.crop, said.pest) if said.product else None
+    if not said.product:
+        return None
+    return label_for(
+        labels, said.product, said.crop, said.pest, dose=said.dose, water_l_ha=said.water_l_ha
+    )
 
 
 def waits(one: KeptTreatment, label: ProductLabel | None) -> WaitingPeriod:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
-from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import SKIPPED
@@ -102,10 +102,10 @@ class SeasonEstimates(OpenSeason):
         """
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.in_hindsight(morning, day)
+        asked = AskedVerdict(level, sure, evening.doubt_of_rates)
         return map_verdict(
-            contents.history.grid, evening.chance, level, evening.pair_chance,
-            plants=plants, sure=sure, doubt=evening.doubt_of_rates,
-        )  # fmt: skip
+            contents.history.grid, evening.chance, asked, evening.pair_chance, plants=plants
+        )
 
     def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:
         """Return whether to treat after a day's work, where, and how many looks decide.

@@ -20,6 +20,8 @@ from fieldmon.errors import PlotError, SettingError
 Float = NDArray[np.float64]
 G = TypeVar("G", bound=shapely.Geometry)
 _FARTHEST_M = 200_000.0
+#: roughly, of latitude anywhere and of longitude at the equator
+M_PER_DEGREE = 111_320.0
 # longitudes that differ by more lie on both sides of 180, unless they are wrong
 _ROUND_DEG = 350.0
 

@@ -49,6 +49,8 @@ def test_only_the_product_is_needed_and_what_says_nothing_is_told(tmp_path):
         (f"{NAMES}\n,tomato,,,,,,,,\n", "line 2: A label must name its product"),
         (f"{NAMES}\nA,,,much,l/ha,,,,,\n", "line 2: max_dose must be a number, but it is 'much'"),
         (f'{NAMES}\nA,,,"1,500",g/ha,,,,,\n', "line 2: max_dose is 1,500: is that 1500 or 1.5"),
+        (f"# ours\n{NAMES}\nA,,,,,inf,,,,\n", "line 3: waiting_days must be a number"),
+        (f"{NAMES}\nA,,,1,5,l/ha,,,,,,x\n", "line 2 has 12 cells, but there are 10 columns"),
         (f"{NAMES}\nA,,,2,,,,,,\n", "line 2: the dose is 2, but of which unit is not said"),
         (f"{NAMES}\nA,,,2,buckets,,,,,\n", "line 2: The unit of a dose must be"),
         (f"{NAMES}\nA,,,,,-1,,,,\n", "line 2: A waiting period must be 0 to"),

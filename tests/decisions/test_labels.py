@@ -26,9 +26,25 @@ def test_where_nobody_said_crop_or_pest_the_strictest_counts():
     rose = ProductLabel("acarol", "rose", "", Dose(20, "ml/dunam"), 1, 24.0, ("6",), 5, "rose")
     assert label_for([FULL, rose], "ACAROL", "Tomato") == FULL
     assert label_for([FULL, rose], "soap") is None
-    both = label_for([FULL, rose], "Acarol")
+    both = label_for([FULL, rose], "Acarol", dose=Dose(0.1, "l/ha"))
     assert (both.max_dose, both.waiting_days, both.reentry_hours) == (rose.max_dose, 3, 24.0)
     assert (both.max_uses, both.irac_groups) == (2, ("4A", "28", "6"))
+
+
+@pytest.mark.parametrize(
+    ("used", "water", "strictest"),
+    [
+        ("1.5 l/ha", 500, "0.1 %"), ("5 l/ha", 500, "0.1 %"), ("5 l/ha", 5000, "2 l/ha"),
+        ("1.5 l/ha", None, "0.1 %"), ("2.5 l/ha", None, "2 l/ha"), ("3 kg/ha", 500, None),
+    ],
+)  # fmt: skip
+def test_of_doses_on_an_area_and_in_water_the_strictest_counts_in_any_order(used, water, strictest):
+    value, _, unit = used.partition(" ")
+    lines = [ProductLabel("oil", "vine", max_dose=Dose(2, "l/ha")),
+             ProductLabel("oil", "rose", max_dose=Dose(0.1, "%"))]  # fmt: skip
+    for order in (lines, lines[::-1]):
+        label = label_for(order, "oil", dose=Dose(float(value), unit), water_l_ha=water)
+        assert strictest in {None, str(label.max_dose)}
 
 
 @pytest.mark.parametrize(("days", "hours"), [(3651, None), (1.5, None), (None, -1), (None, 1e9)])

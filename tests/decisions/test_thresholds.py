@@ -5,6 +5,8 @@ import pytest
 from fieldmon.decisions.thresholds import Threshold, published, read_thresholds, threshold_of
 from fieldmon.errors import FileProblem, SettingError
 
+NAMES = "name,measure,level,source"
+
 
 def test_the_published_ones_are_those_of_their_sources():
     almond = threshold_of("almond")
@@ -34,19 +36,27 @@ def test_what_is_no_threshold_is_refused(said):
 
 def test_ones_own_are_read_from_a_file(tmp_path):
     path = tmp_path / "own.csv"
-    path.write_text("# ours\nname,measure,level,source\ntomato,share of plants,0.04,our adviser\n")
+    path.write_text(
+        "# ours\nname;measure;level;predators;source\ntomato;share of plants;0,04;Yes;ours\n",
+        encoding="utf-8-sig",
+    )
     (own,) = read_thresholds(path)
     assert threshold_of("tomato", [own]) is own
-    assert own.source == "our adviser"
+    assert own == Threshold("tomato", "share of plants", 0.04, "ours", predators=True)
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         ("name,level\na,1\n", "no measure and no source"),
-        ("name,measure,level,source\na,share of plants,much,b\n", "threshold 1: the level must be"),
-        ("name,measure,level,source\na,mites,1,b\n", "threshold 1: .*must count one of"),
-        ("name,measure,level,source\na,share of plants,4,b\n", "must be above 0 and below 1"),
+        (f"{NAMES}\na,share of plants,much,b\n", "line 2: level must be"),
+        (f"{NAMES}\na,share of plants\n", "line 2: level must be a number, but it is ''"),
+        (f"{NAMES}\na,share of plants,nan\n", "line 2: .*must be above 0"),
+        (f"{NAMES}\na,mites,1,b\n", "line 2: .*must count one of"),
+        (f"{NAMES}\na,share of plants,4,b\n", "must be above 0 and below 1"),
+        (f"{NAMES},predators\na,share of plants,0.1,b,some\n", "line 2: predators must be yes"),
+        (f"{NAMES}\na,share of plants,0.1,\na,share of plants,0.2,\n", "two thresholds are called"),
+        (f"{NAMES}\n", "must hold a threshold or more"),
     ],
 )
 def test_a_file_that_is_wrong_says_where(tmp_path, text, said):

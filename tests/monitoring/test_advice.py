@@ -11,7 +11,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted
-from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
@@ -111,10 +111,8 @@ def test_one_look_less_would_not_decide(season):
     for looks, found, verdict in ((more.if_clean, False, LEAVE), (more.if_found, True, TREAT)):
         for k in (looks - 1, looks):
             after = evening.learn(order[:k], np.full(k, found), learning)
-            said = map_verdict(
-                scene.grid, after.chance, level, after.pair_chance, sure=asked.sure,
-                doubt=after.doubt_of_rates,
-            )  # fmt: skip
+            question = AskedVerdict(level, asked.sure, after.doubt_of_rates)
+            said = map_verdict(scene.grid, after.chance, question, after.pair_chance)
             assert (said.verdict == verdict) == (k == looks)
 
 

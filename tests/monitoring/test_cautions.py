@@ -110,6 +110,12 @@ def test_a_dose_above_the_label_is_warned_of(dose, water, said):
     assert all(said in one.sentence for one in told)
 
 
+def test_of_two_labels_the_one_in_water_counts_where_it_is_stricter():
+    labels = [replace(LABEL, crop="vine"), replace(LABEL, crop="rose", max_dose=Dose(0.1, "%"))]
+    (told,) = found([treated(0, dose=Dose(0.4, "l/ha"), water_l_ha=300.0)], labels)
+    assert told.sentence.endswith("is more than its label allows, 0.1 %.")
+
+
 def test_more_uses_than_the_label_allows_are_warned_of_where_they_overlap():
     other = ("28",)
     uses = [treated(0, irac_groups=other), treated(0, EAST, irac_groups=other)]

@@ -10,6 +10,7 @@ import numpy as np
 from pydeck import Layer
 
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.projection import M_PER_DEGREE
 
 from ...words import texts
 from .colours import FOUND
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
     from .colours import Colour, Shade
 
-_METRES_PER_DEGREE = 111_320.0
 # plots are not changed once laid; where their plants are goes when they do
 _PLACES: WeakKeyDictionary[PlantGrid, bytes] = WeakKeyDictionary()
 
@@ -83,7 +83,7 @@ def _places(grid: PlantGrid) -> bytes:
         lonlat = grid.lonlat()
         first = lonlat[0]
         label = row_label(grid, np.arange(len(grid)))
-        step = max(grid.plant_spacing_m, grid.row_spacing_m) / _METRES_PER_DEGREE
+        step = max(grid.plant_spacing_m, grid.row_spacing_m) / M_PER_DEGREE
         head = np.array([len(grid), *first, step, 0.0, 0.0], "<f8")
         offsets = (lonlat - first).T.astype("<f4")
         names = np.stack([label.line, label.number]).astype("<i4")

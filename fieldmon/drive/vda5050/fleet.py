@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
@@ -35,6 +37,7 @@ _AGAIN_S = 5.0
 _POLL_S = 0.2
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
+_DAY_S = AllowedRange(0.0, 86_400.0)
 
 
 class Vda5050Robot:
@@ -77,7 +80,7 @@ class Vda5050Robot:
         self._known: dict[str, Any] = {"orderId": order_id, "orderUpdateId": -1, "node": None}
         self._patience_s, self._least_battery = patience_s, least_battery
         self._state: dict[str, Any] | None = None
-        self._told = ""
+        self._told, self._odd_clock = "", False
         self._traffic = traffic
 
     def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:
@@ -261,9 +264,19 @@ class Vda5050Robot:
 
     def _at_s(self, told_s: object) -> float:
         """Return the robot's own clock if it says one, which never goes backwards; else ours."""
+        if told_s is None:
+            return self._now_s()
         try:
             at_s = float(str(told_s))
         except ValueError:
+            at_s = math.nan
+        if _DAY_S.broken(at_s):
+            if not self._odd_clock:
+                self._odd_clock = True
+                self._say(
+                    "The robot's day_s must be the seconds since its day began, 0 to 86400, but it "
+                    f"is {str(told_s)[:20]}. Where it is not, our own clock counts."
+                )
             return self._now_s()
         if self._own_clock or at_s >= self._gone_s:
             self._own_clock = True

@@ -21,6 +21,7 @@ from fieldmon.io.parse.crs import (
     transformation_from,
     utm_zone,
 )
+from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
     import pyproj
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
     from fieldmon.io.options import ReadOptions
 
-_DEGREE_M = 111_320.0
 _EARTH_KM = 6371.0
 #: from here a file is doubted that should lie near a place, and from here it is asked about
 _FAR_KM, _ASKED_KM = 20.0, 1000.0
@@ -93,7 +93,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     lonlat = through.lonlat(xy)
     _check_landing(lonlat, crs)
     _check_near(xy, lonlat, through.code, options)
-    step_m = _step(xy) * (_DEGREE_M if crs.is_geographic else 1.0)
+    step_m = _step(xy) * (M_PER_DEGREE if crs.is_geographic else 1.0)
     doubts = [*_outside(xy, lonlat, crs, options), *_distance(lonlat, options)]
     return Georeferenced(lonlat, step_m, (*messages, *more, *through.messages(), *doubts))
 

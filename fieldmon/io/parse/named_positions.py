@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,14 @@ if TYPE_CHECKING:
     from fieldmon.io.options import ReadOptions
 
 
+class _NamingColumns(NamedTuple):
+    """The columns that name plots, rows and plants; None, or an empty name: there is none."""
+
+    plot: str | None
+    row: str | None
+    plant: str
+
+
 def placed_by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> PlacedByName:
     """Return where records lie that name a plant or a plot."""
     row = options.column("row") or find("row", layer.columns)
@@ -36,7 +44,7 @@ def placed_by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> P
     # where plots are known but no plants, a record is somewhere on the plot that it names
     no_plants = places.plants is None and not places.plants_of
     if plant and (row or not plot) and not (plot and places.plots and no_plants):
-        return _by_plant(layer, (plot, row, plant), options, places)
+        return _by_plant(layer, _NamingColumns(plot, row, plant), options, places)
     if plot and places.plants is not None and not places.plots:
         return by_plant(None, layer.column(plot), places.plants)
     if plot:
@@ -75,41 +83,32 @@ def could_be_positions(layer: Layer, options: ReadOptions) -> tuple[str, ...]:
 
 
 def _by_plant(
-    layer: Layer,
-    names: tuple[str | None, str | None, str],
-    options: ReadOptions,
-    places: NamedPlaces,
+    layer: Layer, names: _NamingColumns, options: ReadOptions, places: NamedPlaces
 ) -> PlacedByName:
-    """Return where records lie that name plants, on the plot that they name or on the only one.
-
-    `names` are those of the columns of plots, rows and plants.
-    """
+    """Return where records lie that name plants, on the plot that they name or on the only one."""
     if places.plants is None and not places.plants_of:
-        raise _plants_needed(layer, names[0])
-    row, plant = None if names[1] is None else layer.column(names[1]), layer.column(names[2])
+        raise _plants_needed(layer, names.plot)
+    row, plant = None if names.row is None else layer.column(names.row), layer.column(names.plant)
     of_block = _block_column(layer, names, options, places)
     block = None if of_block is None else layer.column(of_block)
-    if of_block is not None and of_block == names[0]:
-        names = (None, *names[1:])
+    if of_block is not None and of_block == names.plot:
+        names = names._replace(plot=None)
     by_hand = options.plot if isinstance(options, RecordOptions) else None
-    if names[0]:
-        plot = layer.column(names[0])
+    if names.plot:
+        plot = layer.column(names.plot)
         if places.plants is None or plots_called({text(v) for v in plot}, places.plots):
             return by_plot_and_plant(plot, row, plant, places, block)
     elif by_hand is not None:
         plot = np.full(len(layer), by_hand, dtype=object)
         return by_plot_and_plant(plot, row, plant, places, block)
     if places.plants is None:
-        raise _plants_needed(layer, names[0])
-    _check_one_plot(layer, names[0])
+        raise _plants_needed(layer, names.plot)
+    _check_one_plot(layer, names.plot)
     return by_plant(row, plant, places.plants, block)
 
 
 def _block_column(
-    layer: Layer,
-    names: tuple[str | None, str | None, str],
-    options: ReadOptions,
-    places: NamedPlaces,
+    layer: Layer, names: _NamingColumns, options: ReadOptions, places: NamedPlaces
 ) -> str | None:
     """Return the column that names blocks of plots that have several; None: there is none.
 
@@ -121,9 +120,9 @@ def _block_column(
     known = [places.plants, *places.plants_of.values()]
     if all(plants is None or plants.block is None for plants in known):
         return None
-    taken = frozenset(name for name in names[1:] if name)
+    taken = frozenset(name for name in (names.row, names.plant) if name)
     found = find("block", layer.columns, taken)
-    if found is not None and found == names[0]:
+    if found is not None and found == names.plot:
         of_plots = plots_called({text(v) for v in layer.column(found)}, places.plots)
         return None if of_plots else found
     return found

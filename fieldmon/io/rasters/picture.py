@@ -13,8 +13,9 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, seen
 from fieldmon.io.rasters.opening import band_named, open_raster
-from fieldmon.io.rasters.pixels import M_PER_DEGREE, RasterPart, ReadPixels, part_of, read_pixels
+from fieldmon.io.rasters.pixels import RasterPart, ReadPixels, part_of, read_pixels
 from fieldmon.io.rasters.values import Backdrop, map_xy
+from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -16,6 +16,7 @@ from fieldmon.io.import_report import ImportMessage, Remedy, guessed, seen
 from fieldmon.io.parse.crs import km_between
 from fieldmon.io.rasters.values import Affine, map_xy, pixel_xy, projected
 from fieldmon.io.sandbox import limits
+from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 # about a plot, this much more of the raster is read: of its size, and metres
 _MARGIN = 0.25
 _MARGIN_M = 30.0
-#: at the equator
-M_PER_DEGREE = 111_320.0
 # what people write for no value and forget to declare
 _SENTINELS = (-9999.0, -99999.0, -32768.0, -999999.0)
 _HUGE = 1e30

@@ -12,8 +12,8 @@ from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import Imported, seen
 from fieldmon.io.rasters.opening import band_named, open_raster
 from fieldmon.io.rasters.picture import corners_on_map, encoded, read_for_picture
-from fieldmon.io.rasters.pixels import M_PER_DEGREE
 from fieldmon.io.rasters.values import Backdrop, map_xy
+from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

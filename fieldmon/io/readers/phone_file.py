@@ -32,9 +32,11 @@ if TYPE_CHECKING:
 #: as `unsent` of `app/scout_page/src/store.js` writes it
 KIND = "fieldmon findings"
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
-_ID = re.compile(r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}")
-_LONGEST = {"stage": 60, "notes": 2000, "who": 60, "season": 200}
-_LEAST_MOST = {
+#: how a phone names a finding or a photo
+ID = r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}"
+#: letters that a text of a finding may have, and the least and the most that a number may be
+LONGEST = {"stage": 60, "notes": 2000, "who": 60, "season": 200}
+LEAST_MOST = {
     "plant": (0, 2**31 - 1), "count": (0, MOST_COUNTED), "leaves": (0, 1e9), "lon": (-180, 180),
     "lat": (-90, 90), "accuracy_m": (0, 1e7),
 }  # fmt: skip
@@ -184,13 +186,13 @@ def _each(
 def _must_be_so(one: Any) -> None:  # noqa: ANN401 - from a file
     """Raise `ValueError` or what its kind raises unless what is said is of its kind."""
     for name in ("id", *({"undoes", "finding"} & {k for k, v in one.items() if v})):
-        if not _ID.fullmatch(one[name]):
+        if not re.fullmatch(ID, one[name]):
             raise ValueError(name)
-    for name, longest in _LONGEST.items():
+    for name, longest in LONGEST.items():
         text = one.get(name)
         if text is not None and (not isinstance(text, str) or len(text) > longest):
             raise ValueError(name)
-    for name, (least, most) in _LEAST_MOST.items():
+    for name, (least, most) in LEAST_MOST.items():
         number = one.get(name)
         if number is None:
             continue

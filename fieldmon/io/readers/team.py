@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import csv
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
+from fieldmon.io.parse.own_table import own_table
 from fieldmon.plot.robot import broken_rule
 
 if TYPE_CHECKING:
@@ -63,9 +64,8 @@ def read_team(path: Path) -> tuple[StatedMember, ...]:
                 path=path,
             )
         ) from error
-    delimiter = ";" if text.partition("\n")[0].count(";") else ","
-    table = csv.DictReader(text.splitlines(), delimiter=delimiter)
-    columns = [(name or "").strip().casefold() for name in table.fieldnames or ()]
+    table = own_table(text, str(path), comments=False)  # a robot may be #2
+    columns = [name.casefold() for name in table.columns]
     unknown = [name for name in columns if name not in COLUMNS]
     if "name" not in columns or unknown:
         raise FileProblem(
@@ -76,11 +76,10 @@ def read_team(path: Path) -> tuple[StatedMember, ...]:
                 names_2=", ".join(columns) or "none",
             )
         )
-    members = []
-    for number, line in enumerate(table, 2):
-        values = {k: (v or "").strip() for k, v in zip(columns, line.values(), strict=False)}
-        if any(values.values()):
-            members.append(_member(values, f"{path}, line {number}"))
+    members = [
+        _member(dict(zip(columns, cells.values(), strict=True)), where)
+        for where, cells in table.lines
+    ]
     if not members:
         raise FileProblem(
             worded(
@@ -141,8 +140,10 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
 
 def _number(text: str, name: str, where: str) -> float:
     try:
-        return float(text.replace(",", "."))
-    except ValueError as error:
+        value = float(text.replace(",", "."))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
         raise FileProblem(
             worded(
                 "{where}: {name} must be a number, but it is {text!r}.",
@@ -150,4 +151,5 @@ def _number(text: str, name: str, where: str) -> float:
                 name=name,
                 text=text,
             )
-        ) from error
+        )
+    return value

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.io.writers.day_file import DECIMALS
 from fieldmon.plot.grid import block_label, row_label
 from fieldmon.plot.projection import goes_round
 
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan, RouteNotes
 
-# RFC 7946 positions are degrees; 8 decimals are about a millimetre
-_DECIMALS = 8
 _AHEAD = ("expected", "low", "high")
 
 
@@ -64,10 +63,10 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
     ``found``, ``count``, ``who`` and ``notes`` are empty, to be filled in by whoever inspects;
     of one of a team ``who`` is its name.
     """
-    line_lonlat = np.round(route.line_lonlat(), _DECIMALS)
+    line_lonlat = np.round(route.line_lonlat(), DECIMALS)
     features = [_line_feature(route, notes, line_lonlat), *_stop_features(route, notes)]
     collection: dict[str, Any] = {"type": "FeatureCollection", "features": features}
-    everything = np.concatenate([line_lonlat, np.round(route.stops_lonlat(), _DECIMALS)])
+    everything = np.concatenate([line_lonlat, np.round(route.stops_lonlat(), DECIMALS)])
     if len(everything):
         collection["bbox"] = _bbox(everything)
     return json.dumps(collection, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
@@ -109,7 +108,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
     grid = route.aisles.grid
     label = row_label(grid, route.plant)
     columns = zip(
-        route.stops_lonlat().round(_DECIMALS).tolist(),
+        route.stops_lonlat().round(DECIMALS).tolist(),
         route.plant.tolist(),
         label.line.tolist(),
         label.number.tolist(),

@@ -12,6 +12,7 @@ import shapely
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.sandbox import limits
+from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
-_METRES_A_DEGREE = 111_320.0
 # cells across the narrowest thing that must be told apart
 _ACROSS = 2.0
 #: where nothing is said of a cell: outside the plot
@@ -96,8 +96,8 @@ def zone_cells(
     whole = shapely.union_all(list(zones))
     # rows reach past an assumed outline by half a spacing
     west, south, east, north = shapely.total_bounds([boundary, whole])
-    east_size = cell_m / (_METRES_A_DEGREE * np.cos(np.radians((south + north) / 2)))
-    north_size = cell_m / _METRES_A_DEGREE
+    east_size = cell_m / (M_PER_DEGREE * np.cos(np.radians((south + north) / 2)))
+    north_size = cell_m / M_PER_DEGREE
     columns = max(1, int(np.ceil((east - west) / east_size)))
     rows = max(1, int(np.ceil((north - south) / north_size)))
     limits.check("pixels", rows * columns, limits.WRITTEN_PIXELS, "the map of rates")
@@ -116,7 +116,7 @@ def narrowest_m(zones: Iterable[MultiPolygon]) -> float:
     parts = shapely.get_parts(list(zones))
     lat = np.radians(shapely.get_y(shapely.centroid(parts)))
     scaled = shapely.transform(
-        parts, lambda xy: xy * [_METRES_A_DEGREE * np.cos(float(lat.mean())), _METRES_A_DEGREE]
+        parts, lambda xy: xy * [M_PER_DEGREE * np.cos(float(lat.mean())), M_PER_DEGREE]
     )
     boxes = shapely.oriented_envelope(scaled)
     around, area = shapely.length(boxes), shapely.area(boxes)

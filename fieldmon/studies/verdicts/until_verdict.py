@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.decisions.map_plan import MapPlan
-from fieldmon.decisions.map_verdict import map_verdict
+from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
 from fieldmon.decisions.sequential import IwaoPlan, Verdict, WaldPlan
 from fieldmon.decisions.stopping import decided
 from fieldmon.errors import SettingError
@@ -275,10 +275,8 @@ def _map_verdicts(plot: _Plot, rng: np.random.Generator) -> tuple[Verdict, int]:
     for first in range(0, len(plants), _LOOKS_A_CHECK):
         now = slice(first, first + _LOOKS_A_CHECK)
         belief = belief.learn(plants[now], found[now], learning)
-        said = map_verdict(
-            grid, belief.chance, plot.level, belief.pair_chance,
-            sure=1 - WRONG, doubt=belief.doubt_of_rates,
-        )  # fmt: skip
+        asked = AskedVerdict(plot.level, 1 - WRONG, belief.doubt_of_rates)
+        said = map_verdict(grid, belief.chance, asked, belief.pair_chance)
         if said.verdict != "look on":
             return said.verdict, min(first + _LOOKS_A_CHECK, len(plants))
     return "look on", len(plants)

@@ -41,7 +41,7 @@ def test_thresholds_of_ones_own_are_brought_and_the_answer_takes_them(season_app
     season_app.file_uploader(key="thresholds_file").set_value([]).run()
     season_app.file_uploader(key="thresholds_file").upload("bad.csv", wrong, "text/csv").run()
     press(season_app, texts.DECIDE_OWN_TAKE)
-    assert "bad.csv, threshold 1" in season_app.error[0].value
+    assert "bad.csv, line 2" in season_app.error[0].value
 
 
 def test_zones_that_were_treated_are_noted_with_what_was_advised(season_app, season):

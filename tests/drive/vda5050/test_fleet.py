@@ -2,6 +2,7 @@
 
 import threading
 from contextlib import nullcontext
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -88,6 +89,17 @@ def test_a_plant_that_could_not_be_looked_at_stays_unknown(broker, plot, robot, 
     assert skipped
     assert all(one.stop.plant % 2 for one in skipped)
     assert len(day.plants) == len(driven.stops) - len(skipped)
+
+
+@pytest.mark.parametrize("odd", ["nan", "inf", "1.79e9", "-5", "noon"])
+def test_a_clock_that_counts_no_day_is_said_once_and_ours_goes_on(plot, odd):
+    said = []
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "clock", said.append)
+    driver.begin(plot.aisles, np.zeros(2), 100.0)
+    assert driver._at_s("110") == 110.0
+    assert 110.0 <= driver._at_s(odd) <= driver._at_s(odd) < 86_400.0
+    assert driver._at_s("86400") == 86_400.0
+    assert [odd in one for one in said] == [True]
 
 
 def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot, monitor):

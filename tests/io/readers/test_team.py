@@ -7,10 +7,10 @@ from fieldmon.io.readers.team import read_team
 
 
 def test_a_name_alone_is_a_robot(tmp_path):
-    (tmp_path / "t.csv").write_text("name\nr1\n\nr2\n", encoding="utf-8-sig")
+    (tmp_path / "t.csv").write_text("name\nr1\n\n#2\n", encoding="utf-8-sig")
     first, second = read_team(tmp_path / "t.csv")
     assert first == ("r1", False, {}, None, None)
-    assert second.name == "r2"
+    assert second.name == "#2"
 
 
 def test_what_is_stated_is_said_in_the_words_of_a_robot(tmp_path):
@@ -26,4 +26,18 @@ def test_what_is_stated_is_said_in_the_words_of_a_robot(tmp_path):
 def test_a_file_that_is_no_text_is_refused(tmp_path):
     (tmp_path / "t.csv").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(FileProblem, match="must be a readable table"):
+        read_team(tmp_path / "t.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("name,lon,lat\n\na,35.1,nan\n", "line 3: lat must be a number, but it is 'nan'"),
+        ("name,speed_km_h,hours\na,3,6,8\n", "line 2 has 4 cells, but there are 3 columns"),
+        ("name,hours,hours\na,3,4,5\n", "two columns are called hours"),
+    ],
+)
+def test_a_table_that_is_wrong_says_where(tmp_path, text, said):
+    (tmp_path / "t.csv").write_text(text)
+    with pytest.raises(FileProblem, match=f"t.csv.*{said}"):
         read_team(tmp_path / "t.csv")

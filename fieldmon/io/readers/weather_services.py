@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 # warmer in degrees it is nowhere where these services measure
 _SURELY_TENTHS = 60.0
+_FARTHEST_ZONE_S = 14 * 3600
 _TENTHS = {"c": "0.1c", "m/s": "0.1m/s", "mm": "0.1mm"}
 
 
@@ -204,7 +205,7 @@ def _of_nasa(above: str) -> tuple[tzinfo | None, list[ImportMessage]]:
     if re.search(r"\bin UTC\b", above):
         return UTC, [_said_above("UTC")]
     place = re.search(r"longitude\s*([-+]?\d+(?:\.\d+)?)", above, re.IGNORECASE)
-    if not re.search(r"\bin LST\b", above) or place is None:
+    if not re.search(r"\bin LST\b", above) or place is None or abs(float(place[1])) > 180.0:
         return None, []
     hours = round(float(place[1]) / 15.0)
     zone = timezone(timedelta(hours=hours))
@@ -224,4 +225,5 @@ def _seconds_ahead(above: str) -> int | None:
         return None
     facts = {name.strip(): value.strip() for name, value in zip(*lines, strict=False)}
     told = facts.get("utc_offset_seconds", "")
-    return int(told) if re.fullmatch(r"-?\d{1,5}", told) else None
+    ahead_s = int(told) if re.fullmatch(r"-?\d{1,5}", told) else None
+    return ahead_s if ahead_s is not None and abs(ahead_s) <= _FARTHEST_ZONE_S else None

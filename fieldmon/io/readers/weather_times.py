@@ -23,6 +23,7 @@ from fieldmon.io.import_report import ImportMessage, Remedy, dropped, guessed, s
 from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.values import dates, number, numbers
+from fieldmon.io.readers.date_doubts import mixed_dates
 from fieldmon.io.readers.weather_rows import utc_times
 from fieldmon.io.readers.weather_services import NO_SERVICE, WeatherService, read_as_lst, told_zone
 
@@ -189,6 +190,7 @@ def times_of(
         stated[i] = clock is not None and clock.offset is not None
     by_day = all(clock is None for clock in clocks.values())
     ends, messages = _hours_that_end(layer, columns, service, clocks)
+    messages = [*mixed_dates(read), *messages]
     if ends:
         local -= np.timedelta64(_HOUR_S, "s")
     if by_day or np.isnat(local).all():
@@ -267,9 +269,10 @@ def _clocks(layer: Layer, name: str) -> list[str]:
     cells = [text(v) for v in layer.columns[name]]
     filled = [cell for cell in cells if cell]
     if filled and all(_HHMM.fullmatch(cell) for cell in filled):
-        most = max(number(cell) for cell in filled)
+        whole = [int(re.split("[.,]", cell)[0]) if cell else None for cell in cells]
+        most = max(one for one in whole if one is not None)
         by = 100 if plain(name) == "hhmm" or most > 24 else 1
-        return [f"{int(number(c)) // by:02d}:{int(number(c)) % by:02d}" if c else "" for c in cells]
+        return ["" if one is None else f"{one // by:02d}:{one % by:02d}" for one in whole]
     shares = [number(cell) for cell in filled]
     if filled and all(0.0 <= share < 1.0 for share in shares):
         seconds = [round(number(cell) * _DAY_S) if cell else 0 for cell in cells]

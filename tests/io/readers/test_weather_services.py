@@ -156,3 +156,12 @@ def test_open_meteo_s_times_are_as_far_ahead_as_its_first_lines_say(read_weather
     assert weather.wind_speed_m_s[0] == pytest.approx(2)
     assert weather.rain_mm.sum() == pytest.approx(12)
     assert "Times are in UTC+03:00, as the lines above the table say" in said(imported)
+
+
+@pytest.mark.parametrize("facts", ["99999", "-1e3", ""])
+def test_facts_that_are_none_leave_the_plot_s_zone(read_weather, facts):
+    table = f"latitude,utc_offset_seconds\n30,{facts}\n\ntime,temp (C)\n"
+    rows = "".join(f"2026-11-{d}T{h:02d}:00,{h}\n" for d, h in HOURS)
+    assert read_weather(table + rows).value.at[0] == np.datetime64("2026-11-17T22:00:00")
+    nasa = NASA.format(zone="LST", lon=9999) + NASA_ROWS
+    assert read_weather(nasa).value.at[0] == np.datetime64("2026-11-17T22:00:00")

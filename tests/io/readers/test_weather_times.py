@@ -134,6 +134,11 @@ def test_a_station_whose_clock_is_never_put_forward_is_in_standard_time(read_wea
     assert "Clocks skip 2026-03-27 02:00, but it was measured" in said(imported)
 
 
+def test_days_and_months_in_both_orders_are_told(read_weather):
+    days = "".join(f"{day},20\n" for day in ("13/11/2026", "12/11/2026", "11/14/2026"))
+    assert "day first and month first in one column" in said(read_weather(f"date,temp (C)\n{days}"))
+
+
 def test_several_stations_in_a_file_are_asked_for(read_weather):
     rows = "".join(
         f"{s},2026-11-18 {h:02d}:00,{h + 10 * (s == 'B')}\n" for s in "AB" for h in range(24)

@@ -273,7 +273,8 @@ DAYS_FILLED = Plural(
 )
 DEVELOPMENT_NOTE = (
     "Counted from the first find, or the season's first day until there is one. Beyond the "
-    "weather's end it goes on as in its last seven days (dashed)."
+    "weather's end it goes on as in the same week of other years, or in its last seven days "
+    "(dashed)."
 )
 DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."

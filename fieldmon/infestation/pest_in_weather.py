@@ -13,6 +13,8 @@ import numpy as np
 from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.infestation.spread import Spread
 from fieldmon.pests.degree_days import Thresholds, degree_days_of_hours
+from fieldmon.pests.usual import LEAST_HOURS, UsualDays
+from fieldmon.pests.weather import HOUR_S
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,8 +32,6 @@ _HOURS = 24
 _WARMEST = 15.0
 # temperature of a pest that no weather and no figure of its own gives one (our choice)
 _MILD_C = 20.0
-# the usual of a date: the same days of other years, so many to each side; else the last ones known
-_ABOUT, _LATELY = 7, 7
 # winds are told apart by metres a second, so that a few kernels serve a season
 _WIND_STEP_M_S = 0.5
 # a two-dimensional Cauchy jump's median, over its scale
@@ -142,24 +142,26 @@ class PestInWeather:
     def day(self, number: int) -> DayWeather:
         """Return the weather of a day: of its date, or the usual of it."""
         on = self.begins + timedelta(days=number)
-        return self._known.get(on) or self.usual(on)
+        known = self._known.get(on)
+        if known is None:
+            return self.usual(on)
+        unknown = np.isnan(known.temperature_c)
+        if not unknown.any():
+            return known
+        warm = np.where(unknown, self.usual(on).temperature_c, known.temperature_c)
+        return known._replace(temperature_c=_filled(warm))
 
     def known(self, number: int) -> bool:
         """Tell whether the weather of a day was measured or forecast."""
         return self.begins + timedelta(days=number) in self._known
 
     def usual(self, on: date) -> DayWeather:
-        """Return the mean of the same days of other years, else of the last days known."""
-        of_year = on.timetuple().tm_yday
-        about = [
-            weather
-            for day, weather in self._known.items()
-            if day.year != on.year and _apart(day.timetuple().tm_yday, of_year) <= _ABOUT
-        ]
-        if not about:
-            earlier = [day for day in self._known if day < on] or list(self._known)
-            about = [self._known[day] for day in earlier[-_LATELY:]]
-        return _mean(about) if about else DayWeather.unknown()
+        """Return the mean of the days that stand for a day without weather, see `UsualDays`."""
+        days, usual = self._usual
+        if not days:
+            return DayWeather.unknown()
+        stand_ins = usual.of(np.datetime64(on, "D"))
+        return _mean([days[one] for one in stand_ins.which], stand_ins.weight)
 
     def night(self, number: int, frame: Frame) -> Spell:
         """Return a day and its night as one spell."""
@@ -213,6 +215,13 @@ class PestInWeather:
     def _known(self) -> dict[date, DayWeather]:
         """Every local day of the weather, in order."""
         return {} if self.weather is None else _days(self.weather)
+
+    @cached_property
+    def _usual(self) -> tuple[list[DayWeather], UsualDays]:
+        """Return the days whose warmth is known, all of them if that of none is."""
+        warm = {on: day for on, day in self._known.items() if not np.isnan(day.temperature_c).any()}
+        days = warm or self._known
+        return list(days.values()), UsualDays(np.array(list(days), "datetime64[D]"))
 
 
 def hours_of_movement(movement: Movement) -> Floats:
@@ -289,23 +298,46 @@ def _days(weather: Weather) -> dict[date, DayWeather]:
     # from where the wind comes, the other way round
     to = np.deg2rad(weather.wind_from_deg + 180.0)
     east, north = weather.wind_speed_m_s * np.sin(to), weather.wind_speed_m_s * np.cos(to)
-    hour = _local_hours(weather)
     dates = weather.local_days()
     made: dict[date, DayWeather] = {}
-    for k, on in enumerate(dates.astype(object).tolist()):
-        day = made.setdefault(on, DayWeather.unknown())
-        if weather.hourly:
-            values = weather.temperature_c[k], weather.rain_mm[k], east[k], north[k]
-            for part, value in zip(day, values, strict=True):
-                part[hour[k]] = value
-        else:
-            day.temperature_c[:] = _curve(weather, k)
-            day.rain_mm[:], day.east_m_s[:], day.north_m_s[:] = (
-                weather.rain_mm[k] / _HOURS, east[k], north[k],
-            )  # fmt: skip
-    for day in made.values():
-        _fill(day.temperature_c)
+    for on in dates.astype(object).tolist():
+        made.setdefault(on, DayWeather.unknown())
+    if weather.hourly:
+        _put_hours(list(made.values()), weather, east, north)
+        return made
+    for k, day in enumerate(made[on] for on in dates.astype(object).tolist()):
+        day.temperature_c[:] = _curve(weather, k)
+        day.rain_mm[:], day.east_m_s[:], day.north_m_s[:] = (
+            weather.rain_mm[k] / _HOURS, east[k], north[k],
+        )  # fmt: skip
     return made
+
+
+def _put_hours(days: list[DayWeather], weather: Weather, east: Floats, north: Floats) -> None:
+    """Put hours into their local days, in place; where clocks change one comes twice or never."""
+    dates = weather.local_days()
+    _, of_day = np.unique(dates, return_inverse=True)
+    at = _HOURS * of_day + _local_hours(weather)
+    columns = weather.temperature_c, weather.rain_mm, east, north
+    for name, values in zip(DayWeather._fields, columns, strict=True):
+        known = ~np.isnan(values)
+        n = np.bincount(at[known], minlength=_HOURS * len(days))
+        total = np.bincount(at[known], values[known], minlength=len(n))
+        # rain of the hour that comes twice in autumn is the sum of both
+        each = np.where(n > 0, total / (1 if name == "rain_mm" else np.maximum(n, 1)), np.nan)
+        for day, hours in zip(days, each.reshape(-1, _HOURS), strict=True):
+            getattr(day, name)[:] = hours
+    # the hour that clocks skip in spring lacks no rain
+    one_later = np.diff(weather.at).astype(np.int64) == HOUR_S
+    for skipped in at[1:][one_later & (np.diff(at) == 2)] - 1:
+        rain = days[skipped // _HOURS].rain_mm
+        if not np.isnan(rain).all():
+            rain[skipped % _HOURS] = 0.0
+    for day in days:
+        known = np.flatnonzero(~np.isnan(day.temperature_c))
+        # of a day that begins or ends with its weather the other hours are not as the last known
+        if known.size and known[-1] - known[0] >= LEAST_HOURS - 1:
+            day.temperature_c[:] = _filled(day.temperature_c)
 
 
 def _local_hours(weather: Weather) -> NDArray[np.int64]:
@@ -328,24 +360,20 @@ def _curve(weather: Weather, k: int) -> Floats:
     return curve
 
 
-def _fill(hours: Floats) -> None:
-    """Fill the hours that were not measured from those about them, in place."""
+def _filled(hours: Floats) -> Floats:
+    """Return hours ``(24,)`` of which those not measured are as those about them."""
     known = np.flatnonzero(~np.isnan(hours))
-    if 0 < known.size < hours.size:
-        hours[:] = np.interp(np.arange(hours.size), known, hours[known])
+    return np.interp(np.arange(_HOURS), known, hours[known]) if known.size else hours
 
 
-def _apart(one: int, other: int) -> int:
-    """Return how many days of the year lie between two, over the new year too."""
-    return min(abs(one - other), 365 - abs(one - other))
-
-
-def _mean(days: Sequence[DayWeather]) -> DayWeather:
-    """Return the mean of some days, hour by hour, of what is known of each."""
+def _mean(days: Sequence[DayWeather], weight: Floats) -> DayWeather:
+    """Return the weighed mean of some days, hour by hour, of what is known of each."""
     parts = []
     for values in zip(*days, strict=True):
         each = np.array(values)
         known = ~np.isnan(each)
-        total = np.where(known, each, 0.0).sum(axis=0)
-        parts.append(np.where(known.any(axis=0), total / np.maximum(known.sum(axis=0), 1), np.nan))
+        counts = known * weight[:, None]
+        total = (np.where(known, each, 0.0) * counts).sum(axis=0)
+        with np.errstate(invalid="ignore"):
+            parts.append(total / counts.sum(axis=0))
     return DayWeather(*parts)

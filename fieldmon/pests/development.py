@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.pests.degree_days import Thresholds, degree_days, degree_days_of_hours
+from fieldmon.pests.usual import LEAST_HOURS, UsualDays
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Days = NDArray[np.datetime64]
 
-# beyond its end the weather goes on as in so many of its last days
-_LAST_DAYS = 7
-# a day of hours is known if so many of them are
-_LEAST_HOURS = 18
 _FARTHEST = 366
 
 
@@ -40,8 +37,7 @@ class DailyWarmth:
     degree_days
         ``(d,)`` that each brings.
     guessed
-        ``(d,)`` whether it was filled in: as the days about it, or after the weather's end as in
-        its last seven days.
+        ``(d,)`` whether it was filled in by the days that stand for it, see `UsualDays`.
     """
 
     days: Days
@@ -135,12 +131,9 @@ def daily_warmth(
     known = ~np.isnan(warmth)
     if not known.any():
         return DailyWarmth(days, np.zeros(len(days)), np.ones(len(days), np.bool_))
-    at, values = measured[known].astype(np.int64), warmth[known]
-    wanted = days.astype(np.int64)
-    made = np.interp(wanted, at, values)
-    made[wanted > at[-1]] = values[-_LAST_DAYS:].mean()
-    made[wanted < at[0]] = values[:_LAST_DAYS].mean()
-    return DailyWarmth(days, made, ~np.isin(wanted, at))
+    usual, values = UsualDays(measured[known]), warmth[known]
+    made = np.array([usual.of(day).mean(values) for day in days])
+    return DailyWarmth(days, made, ~np.isin(days, usual.known))
 
 
 def _measured(
@@ -158,7 +151,7 @@ def _measured(
     n = np.bincount(of_day[known], minlength=len(distinct))
     total = np.bincount(of_day[known], each[known], minlength=len(distinct))
     # a day of 23 or 25 hours is a day, and so is one that lacks a few
-    whole = np.where(n >= _LEAST_HOURS, total * 24 / np.maximum(n, 1), np.nan)
+    whole = np.where(n >= LEAST_HOURS, total * 24 / np.maximum(n, 1), np.nan)
     return distinct, whole
 
 

@@ -1,13 +1,12 @@
 """Weather becomes warmth, movement and wind along the rows, hour by hour and night by night."""
 
 from dataclasses import replace
-from datetime import date
+from datetime import date, timedelta
 
 import numpy as np
 import pytest
 
 from fieldmon.infestation.pest_in_weather import (
-    _LATELY,
     PestInWeather,
     along_rows,
     hours_of_movement,
@@ -120,6 +119,42 @@ def test_a_disease_of_splashes_moves_in_rain_only_and_unmeasured_rain_holds_noth
     assert dry.night(0, FRAME).sends > 0.0
 
 
+@pytest.mark.parametrize(("first", "n"), [("2026-03-26T22:00", 23), ("2026-10-24T21:00", 25)])
+def test_no_rain_is_missing_from_a_day_on_which_clocks_change(first, n):
+    """Israel's clocks skip the hour from two in March, and repeat the one from one in October."""
+    splash = Pest("splash", movement=Movement("adjacent", 0.3, least_rain_mm=2.0))
+    at = np.datetime64(first, "s") + 3600 * np.arange(n)
+    on = date.fromisoformat(first[:10]) + timedelta(days=1)
+
+    def day_of(**rain):
+        warm = np.full(n, 20.0)
+        return PestInWeather(
+            splash, weather_of(at, 3600, "Asia/Jerusalem", temperature_c=warm, **rain), on
+        )
+
+    for rain, moves in ((np.zeros(n), False), (np.where(np.arange(n) == 1, 2.5, 0.0), True),
+                        (np.full(n, 2.001 / n), True)):  # fmt: skip
+        there = day_of(rain_mm=rain)
+        assert there.day(0).rain_mm.sum() == pytest.approx(rain.sum())
+        assert (there.night(0, FRAME).sends > 0.0) == moves
+    assert day_of().night(0, FRAME).sends > 0.0
+
+
+def test_hours_of_a_day_that_is_hardly_known_are_those_of_the_days_that_stand_for_it():
+    """On the last day the thermometer was read until three at night; on the second it was not."""
+    warm = np.tile(np.where(np.arange(24) < 6, 10.0, 25.0), 4)
+    warm[24:48] = warm[75:] = np.nan
+    in_weather = PestInWeather(MITE, hourly(4, temperature_c=warm), BEGINS)
+    for day in range(4):
+        assert in_weather.day(day).temperature_c == pytest.approx(warm[:24])
+    # where no day is known well, each is as its own hours
+    seldom = np.tile(np.where(np.arange(24) < 8, 12.0, np.nan), 4)
+    assert (
+        PestInWeather(MITE, hourly(4, temperature_c=seldom), BEGINS).day(1).temperature_c[20]
+        == 12.0
+    )
+
+
 def test_the_chance_map_is_told_the_same_rate_wind_and_warmth():
     windy = daily(temperature_c=[25.0], wind_speed_m_s=[4.0], wind_from_deg=[270.0])
     pest_in_weather = PestInWeather(MITE, windy, BEGINS)
@@ -189,8 +224,8 @@ def test_a_night_is_what_its_hours_bring_one_by_one(seed, by_hour, wind):
 
 
 @pytest.mark.parametrize("day", [-3, 5, 30])
-def test_a_day_nobody_measured_is_the_mean_of_the_last_days_hour_by_hour(day):
-    """Of the days before it where there are some, else of all; of each hour what is known."""
+def test_a_day_nobody_measured_is_the_mean_of_the_nearest_days_hour_by_hour(day):
+    """Of the first seven before the weather, of the last seven after it; of each what is known."""
     weather, columns = a_station(7, days=20)
     in_weather = PestInWeather(MITE, weather, date(2026, 6, 1))
     assert in_weather.known(day) == (0 <= day < 20)
@@ -203,7 +238,11 @@ def test_a_day_nobody_measured_is_the_mean_of_the_last_days_hour_by_hour(day):
     if day == 5:
         return
     usual = in_weather.day(day)
-    rain = columns["rain_mm"].reshape(20, 24)[-_LATELY:]
+    rain = (
+        columns["rain_mm"].reshape(20, 24)[:7]
+        if day < 0
+        else columns["rain_mm"].reshape(20, 24)[-7:]
+    )
     assert usual.rain_mm == pytest.approx(np.nanmean(rain, axis=0), nan_ok=True)
 
 

@@ -34,6 +34,8 @@ class Layer:
         As the file states it (authority code, WKT or PROJJSON); None where it does not.
     messages
         What reading it had to say.
+    above
+        What stands above the column names of a table.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Layer:
     geometry: NDArray[np.object_] | None = None
     crs: str | None = None
     messages: tuple[ImportMessage, ...] = ()
+    above: str = ""
 
     def __len__(self) -> int:
         """Return the number of features or records."""
@@ -56,6 +59,7 @@ class Layer:
             None if self.geometry is None else self.geometry[which],
             self.crs,
             self.messages,
+            self.above,
         )
 
     def saying(self, *more: ImportMessage) -> Layer:

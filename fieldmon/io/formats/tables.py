@@ -77,7 +77,9 @@ def _told_delimiter(content: str) -> tuple[str, str | None]:
 
 def _delimiter(content: str) -> str:
     """Return the delimiter that cuts the most lines into the same number of cells, above one."""
-    start = content[: 64 * 1024]
+    lines = content[: 64 * 1024].splitlines(keepends=True)
+    # what is remarked above a table is cut by other marks
+    start = "".join(line for line in lines if not line.startswith("#")) or "".join(lines)
     best, best_score = ",", (0, 0)
     for delimiter in _DELIMITERS:
         try:
@@ -125,6 +127,8 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
         )
         messages.append(doubtful(said))
     body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
+    if _is_remark(rows[head]):
+        body = [row for row in body if text(row[0]) != "#" or any(map(_is_filled, row[1:]))]
     if not body:
         raise FileProblem(
             worded("{name} must hold records below its column names, but holds none.", name=name)
@@ -140,7 +144,8 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
                 )
             )
         )
-    return Layer(name, _columns(names, body), messages=tuple(messages))
+    above = "\n".join(", ".join(text(v) for v in row) for row in rows[:head])
+    return Layer(name, _columns(names, body), messages=tuple(messages), above=above)
 
 
 def _headed(rows: list[list[Any]], name: str, header: str | None) -> tuple[list[list[Any]], int]:
@@ -229,15 +234,47 @@ def _cell(value: object) -> object:
 
 def _head_row(rows: list[list[Any]]) -> int | None:
     """Return which row names the columns: known words, or the first full one."""
-    looked_at = rows[:_LOOKED_AT]
+    remarked = _named_in_remarks(rows)
+    if remarked is not None:
+        return remarked
+    start = _after_facts(rows)
+    looked_at = rows[start : start + _LOOKED_AT]
     filled = [sum(bool(text(v)) for v in row) for row in looked_at]
     if not any(filled):
         return None
     known = [len(recognised(text(v) for v in row)) for row in looked_at]
     if max(known) >= 2:
-        return known.index(max(known))
+        return start + known.index(max(known))
     widest = max(filled)
-    return next(i for i, n in enumerate(filled) if n >= max(2, widest - 1) or n == widest)
+    return start + next(i for i, n in enumerate(filled) if n >= max(2, widest - 1) or n == widest)
+
+
+def _is_remark(row: list[Any]) -> bool:
+    return bool(row) and text(row[0]).startswith("#")
+
+
+def _named_in_remarks(rows: list[list[Any]]) -> int | None:
+    """Return which of the lines with # above a table names its columns: the last as wide as it."""
+    first = next((i for i, row in enumerate(rows) if any(map(_is_filled, row))), None)
+    if first is None or not _is_remark(rows[first]):
+        return None
+    body = next((i for i, row in enumerate(rows) if any(map(_is_filled, row))
+                 and not _is_remark(row)), None)  # fmt: skip
+    if body is None or len(rows[body]) < 2:
+        return None
+    named = [
+        i for i in range(body)
+        if len(rows[i]) == len(rows[body]) and not any(_kind(value) in _DATA for value in rows[i])
+    ]  # fmt: skip
+    return named[-1] if named else None
+
+
+def _after_facts(rows: list[list[Any]]) -> int:
+    """Return where a table begins: after two lines of facts about its place and an empty one."""
+    empty = [not any(map(_is_filled, row)) for row in rows[:5]]
+    if empty != [False, False, True, False, False]:
+        return 0
+    return 3 if all(_kind(value) in {"word", "nothing"} for value in rows[3]) else 0
 
 
 def _names(row: Iterable[Any]) -> list[str]:

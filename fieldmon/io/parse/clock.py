@@ -41,7 +41,10 @@ def zone_of(name: str) -> tzinfo:
 
 
 class ClockTime(NamedTuple):
-    """A time of day: seconds since midnight, and how far ahead of UTC its zone is if it says."""
+    """A time of day: seconds since midnight, and how far ahead of UTC its zone is if it says.
+
+    24:00 is the midnight at the end of a day.
+    """
 
     seconds: int
     offset: timedelta | None
@@ -57,7 +60,7 @@ def clock_time(cell: str) -> ClockTime | None:
     hour, minute, second = (int(part or 0) for part in found.groups()[:3])
     half = (found.group(4) or "").replace(".", "").casefold()
     hour = hour % 12 + 12 * (half == "pm") if half else hour
-    if hour > 23 or minute > 59 or second > 60:
+    if minute > 59 or second > 60 or hour > 24 - bool(half or minute or second):
         return None
     zone = found.group(5)
     if zone is None:

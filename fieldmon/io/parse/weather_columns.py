@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.io.parse.columns import plain
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
 
 class WeatherUnit(NamedTuple):
-    """A unit: of what it is one, and how it becomes ours: ``value * factor + offset``."""
+    """A unit: of what it is one, and how it becomes ours: ``value * factor + offset``.
+
+    What is per so many seconds becomes a sum over those of each measurement.
+    """
 
     kind: str
     factor: float = 1.0
     offset: float = 0.0
+    per_s: int = 0
+
+    def ours(self, values: NDArray[np.float64], step_s: float) -> NDArray[np.float64]:
+        """Return values in our unit, measured every `step_s` seconds."""
+        over = step_s / self.per_s if self.per_s else 1.0
+        return values * (self.factor * over) + self.offset
 
 
 _C = WeatherUnit("temperature")
@@ -34,11 +47,19 @@ UNITS = {
     **dict.fromkeys(("km/h", "kmh", "kph", "kmph", "kmh-1", "km/hr", "קמ/ש", "كم/س"), _KMH),
     **dict.fromkeys(("mph", "mi/h", "miles/h"), _MPH),
     **dict.fromkeys(("kn", "kt", "kts", "knot", "knots"), _KN),
-    **dict.fromkeys(("mm", "l/m2", "l/m²", "mm/h", "מ״מ", 'מ"מ', "מממ", "مم", "ملم"), _MM),
+    **dict.fromkeys(("mm", "l/m2", "l/m²", "מ״מ", 'מ"מ', "מממ", "مم", "ملم"), _MM),
+    **dict.fromkeys(("mm/h", "mm/hr", "mm/hour"), WeatherUnit("rain", per_s=3600)),
+    **dict.fromkeys(("mm/d", "mm/day"), WeatherUnit("rain", per_s=86_400)),
+    **dict.fromkeys(("mm/10min", "mm/10minutes"), WeatherUnit("rain", per_s=600)),
     **dict.fromkeys(("cm",), WeatherUnit("rain", 10.0)),
+    **dict.fromkeys(("0.1c", "0.1°c"), WeatherUnit("temperature", 0.1)),
+    **dict.fromkeys(("0.1f", "0.1°f"), WeatherUnit("temperature", 0.1 * 5 / 9, -160 / 9)),
+    "0.1m/s": WeatherUnit("speed", 0.1),
+    "0.1mm": WeatherUnit("rain", 0.1),
     **dict.fromkeys(("in", "inch", "inches", '"', "in."), _INCH),
     **dict.fromkeys(("%", "pct", "percent", "%rh", "rh%", "prozent"), WeatherUnit("humidity")),
     **dict.fromkeys(("°", "º", "deg", "degrees", "grad", "grados"), WeatherUnit("direction")),
+    **dict.fromkeys(("10sdeg", "10deg", "10°"), WeatherUnit("direction", 10.0)),
     **dict.fromkeys(
         ("hpa", "mbar", "mb", "kpa", "pa", "inhg", "mmhg", "w/m2", "w/m²", "wm-2", "v", "volts"),
         _OTHER,
@@ -64,14 +85,18 @@ _TEMPERATURE = (
     *("tmin", "tmax", "mint", "maxt"),
 )
 _EXACT = {
-    **dict.fromkeys(("t", "ta", "tm", "tg", "tmk", "ttu", "tmp", "tmpc", "tmpf"), "temperature_c"),
+    **dict.fromkeys(
+        ("t", "ta", "tm", "tg", "tmk", "tttu", "tt10", "tmp", "tmpc", "tmpf"), "temperature_c"
+    ),
     **dict.fromkeys(("tn", "tnk"), "low_c"),
     **dict.fromkeys(("tx", "txk"), "high_c"),
     **dict.fromkeys(("ws", "ff", "fm", "u2", "wspd", "ws2m", "ws10m", "awnd"), "wind_speed_m_s"),
     **dict.fromkeys(("sknt", "fh", "fg", "u10"), "wind_speed_m_s"),
     **dict.fromkeys(("wd", "dd", "wdir", "drct", "wd2m", "wd10m", "ddvec"), "wind_from_deg"),
     **dict.fromkeys(("rr", "rsk", "prcp", "ppt", "p01i", "r1", "precip"), "rain_mm"),
-    **dict.fromkeys(("rh", "rh2m", "upm", "hr", "ur", "relh", "rf", "rhavg"), "humidity_pct"),
+    **dict.fromkeys(
+        ("rh", "rh2m", "upm", "hr", "ur", "relh", "rf", "rftu", "rf10", "rhavg"), "humidity_pct"
+    ),
 }
 _LOW = (
     *("min", "low", "tief", "laag", "bassa", "baja", "נמוכ", "מינימ", "صغر"),
@@ -142,26 +167,30 @@ def weather_column(name: str, unit: str = "") -> WeatherColumn | None:
     measure = _measure(plain(bare) or plain(name))
     if measure is None:
         return None
-    return WeatherColumn(name, measure, _unit(unit) or stated)
+    return WeatherColumn(name, measure, unit_named(unit) or stated)
 
 
 def _split(name: str) -> tuple[str, str]:
     """Return a name without its unit, and the unit, as in ``Temp (°C)`` or ``wind_m_s``."""
     if bracket := re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", name):
-        return name[: bracket.start()] + name[bracket.end() :], _unit(bracket[1]) or bracket[1]
+        bare = name[: bracket.start()] + name[bracket.end() :]
+        unit = unit_named(bracket[1])
+        # Temp, °C (LGR S/N: 10)
+        inner = ("", "") if unit else _split(bare)
+        return inner if inner[1] else (bare, unit or bracket[1])
     spread = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     parts = [part for part in re.split(r"[\s_\-,.:;]+", spread) if part]
     for n in (2, 1):
         if len(parts) > n:
             for between in ("/", ""):
-                unit = _unit(between.join(parts[-n:]))
+                unit = unit_named(between.join(parts[-n:]))
                 # T2M_MIN is no number of minutes
                 if unit and UNITS[unit] is not _OTHER:
                     return " ".join(parts[:-n]), unit
     return name, ""
 
 
-def _unit(text: str) -> str:
+def unit_named(text: str) -> str:
     """Return a unit as `UNITS` has it; empty if it is none."""
     bare = text.strip().casefold().replace(" ", "").replace("_", "/")
     return next((one for one in (bare, bare.strip(".")) if one in UNITS), "")

@@ -8,14 +8,13 @@ Decisions
   is told, for nothing tells it; rain is taken as mm, and it is said.
 - Values that no weather on earth has are left out if they are few. If they are many, the unit or
   the column is wrong, and the file is refused.
-- Times that name no zone are the plot's. A time is when its hour begins.
+- What services leave unsaid of their tables is in `weather_services`, times are in `weather_times`.
 """
 
 from __future__ import annotations
 
 import re
-from datetime import UTC
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,9 +23,8 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.open_layer import open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, Remedy, dropped, guessed, seen
-from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
-from fieldmon.io.parse.columns import find, plain
-from fieldmon.io.parse.values import dates, numbers
+from fieldmon.io.parse.columns import plain
+from fieldmon.io.parse.values import numbers
 from fieldmon.io.parse.weather_columns import (
     KIND_OF,
     UNITS,
@@ -35,13 +33,13 @@ from fieldmon.io.parse.weather_columns import (
     weather_columns,
 )
 from fieldmon.io.readers.weather_json import is_weather_json, rows_of_json
-from fieldmon.io.readers.weather_rows import WeatherRows, utc_times
+from fieldmon.io.readers.weather_rows import WeatherRows
+from fieldmon.io.readers.weather_services import columns_of_service, service_of
+from fieldmon.io.readers.weather_times import is_time_name, time_columns, times_of
 from fieldmon.io.sandbox.unpack import members
 from fieldmon.pests.weather import MEASURED
 
 if TYPE_CHECKING:
-    from datetime import tzinfo
-
     from numpy.typing import NDArray
 
     from fieldmon.io.formats.layer import Layer
@@ -53,10 +51,14 @@ if TYPE_CHECKING:
 # as a share of what was measured: more than so much nonsense is a wrong unit
 _MOST_NONSENSE = 0.05
 # without a unit: no place is warmer than this on average, or ever
-_WARMEST_MEAN_C, _WARMEST_C, _SURELY_F = 35.0, 50.0, 60.0
-# no station measured before, and nobody forecasts so far
-_FIRST_DAY, _LAST_DAY = np.datetime64("1850-01-01"), np.datetime64("2150-01-01")
-_CALM = frozenset({"calm", "---", "windstill", "רגוע"})
+_WARMEST_MEAN_C, _WARMEST_C, _SURELY_F, _WARMEST_F = 35.0, 50.0, 60.0, 135.0
+# numbers that stand for what is missing: no weather is ever so
+_MARKS = (-99999.0, -9999.9, -9999.0, -999.9, -999.0, -99.9, -99.0, 999.0, 999.9, 9999.0, 9999.9,
+          99999.0)  # fmt: skip
+_MARKS_OF_TENTHS = (-99999.0, -9999.0, -999.0, 9999.0, 99999.0)
+_CALM = frozenset({"calm", "---", "windstill", "רגוע", "vrb"})
+# a direction that turned all the time
+_VARIABLE = 990.0
 _POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
            "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")  # fmt: skip
 _FORECAST_COLUMN = re.compile(r"forecast|prognos|vorhersage|prevision|pronostico|תחזית|توقع")
@@ -92,133 +94,77 @@ def weather_in(source: Source, options: WeatherOptions, workroom: Workroom) -> I
 
 def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, list[ImportMessage]]:
     """Return the measurements of a table, in our units."""
+    layer, messages = _first_table(layer)
     layer, units = _without_units(layer)
-    names = [*layer.columns]
-    columns = weather_columns(names, units)
-    timed = _times(layer, options, {one.name for one in columns})
-    measured, messages = {}, list(timed.messages)
+    service = service_of(layer)
+    when = time_columns(layer, {one.name for one in weather_columns([*layer.columns], units)})
+    names = [name for name in layer.columns if name not in when.names]
+    columns, said = columns_of_service(layer, names, service, options)
+    measures = {one.measure for one in columns}
+    others = weather_columns([n for n in names if n not in {one.name for one in columns}], units)
+    columns += [one for one in others if one.measure not in measures]
+    names_read = ", ".join(one.name for one in columns) or "none"
+    messages += [seen(worded("Columns of weather: {names}.", names=names_read)), *said]
+    timed = times_of(layer, when, options, service)
+    messages += timed.messages
+    measured, step_s = {}, _step_s(timed.at)
     for column in columns:
         if column.measure == "wind_from_deg":
-            measured[column.measure] = _directions(layer, column)
+            measured[column.measure] = _directions(layer, column, options)
             continue
-        values = numbers(layer.columns[column.name], options.decimal)
+        values, none = _without_marks(numbers(layer.columns[column.name], options.decimal), column)
         unit, said = _unit_of(column, values, options)
-        messages += said
+        messages += [*none, *said]
         if unit:
-            own = UNITS[unit]
-            measured[column.measure] = values * own.factor + own.offset
-    names_read = ", ".join(one.name for one in columns) or "none"
-    messages.insert(0, seen(worded("Columns of weather: {names}.", names=names_read)))
+            measured[column.measure] = UNITS[unit].ours(values, step_s)
+    if service.tenths and "rain_mm" in measured:
+        # -1 is less than could be measured
+        measured["rain_mm"] = np.maximum(measured["rain_mm"], 0.0)
     forecast = _forecast(layer)
     return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
 
 
-class _TimesRead(NamedTuple):
-    """Times ``(n,)`` UTC, the zone of the place, and what there is to say."""
-
-    at: NDArray[np.datetime64]
-    zone: tzinfo
-    messages: list[ImportMessage]
-
-
-def _times(layer: Layer, options: WeatherOptions, taken: set[str]) -> _TimesRead:
-    zone = zone_of(options.zone) if options.zone else UTC
-    cells, is_utc = _time_cells(layer, frozenset(taken))
-    distinct = np.array(cells, dtype=object)
-    read = dates(distinct, options.date_order)
-    if read.is_ambiguous:
-        raise ChoiceNeeded(
-            worded(
-                "Dates of {name} could be day or month first ({example}). Which is it?",
-                name=layer.name,
-                example=cells[0],
-            ),
-            "date_order",
-            ("dmy", "mdy"),
-        )
-    clocks = {cell: clock_time(cell) for cell in set(cells)}
-    local = np.full(len(cells), "NaT", "datetime64[s]")
-    stated = np.zeros(len(cells), bool)
-    for i, cell in enumerate(cells):
-        clock = clocks[cell]
-        if np.isnat(read.day[i]) or not _FIRST_DAY <= read.day[i] < _LAST_DAY:
-            continue
-        local[i] = read.day[i] if clock is None else local_time(read.day[i], clock, UTC)
-        stated[i] = clock is not None and clock.offset is not None
-    by_day = all(clock is None for clock in clocks.values())
-    is_utc = is_utc and not by_day
-    at = np.where(stated | is_utc, local, utc_times(local, zone))
-    messages = []
-    if not by_day and not options.zone and not (stated.all() or is_utc):
-        remedy = Remedy("zone", "+02:00", worded("Name the time zone"))
-        messages.append(guessed(worded("Times name no zone; read as UTC."), None, remedy))
-    if read.n_broken:
-        shown = ", ".join(repr(cell) for cell in read.broken[:3])
-        messages.append(
-            dropped(
-                worded("{n} {n:time is|times are} none ({shown}).", n=read.n_broken, shown=shown)
-            )
-        )
-    return _TimesRead(at, zone, messages)
+def _first_table(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
+    """Return a table without names that stand again in it, until those of another begin."""
+    named = np.zeros(len(layer), bool)
+    for name in layer.columns:
+        if is_time_name(name):
+            named |= np.array([is_time_name(text(v)) for v in layer.columns[name]], bool)
+    if not named.any():
+        return layer, []
+    rows = zip(*layer.columns.values(), strict=True)
+    again = np.array([
+        one and all(text(v) in {name, ""} for name, v in zip(layer.columns, row, strict=True))
+        for one, row in zip(named, rows, strict=True)
+    ])  # fmt: skip
+    other = named & ~again
+    end = int(np.argmax(other)) if other.any() else len(layer)
+    kept = layer.take(np.flatnonzero(~again[:end]))
+    if not other.any():
+        return kept, []
+    said = worded("Another table begins after record {n}; it was left out.", n=len(kept))
+    return kept, [dropped(said)]
 
 
-def _time_cells(layer: Layer, taken: frozenset[str]) -> tuple[list[str], bool]:
-    """Return the text of each row's time, put together from two columns or three, and if UTC."""
-    free = [name for name in layer.columns if name not in taken]
-    clock = next((name for name in free if plain(name) in _CLOCKS), None)
-    day = next((name for name in free if plain(name) in _DAYS), None)
-    day = day or find("date", [name for name in free if name != clock])
-    if day is None and clock is None:
-        parts = [find(part, free) for part in ("year", "month", "day")]
-        parts = parts if all(parts) else [next((n for n in free if plain(n) == p), None)
-                                          for p in ("year", "mo", "dy")]  # fmt: skip
-        if all(parts):
-            columns = [[text(v) for v in layer.columns[str(name)]] for name in parts]
-            hours = [text(v) for v in layer.columns[h]] if (h := _hour_column(free)) else None
-            return [_put_together(cells, hours, i) for i, cells in
-                    enumerate(zip(*columns, strict=True))], False  # fmt: skip
-        raise FileProblem(
-            worded(
-                "{name} must have a column of dates or times, but has {columns}.",
-                name=layer.name,
-                columns=", ".join(layer.columns) or "none",
-            )
-        )
-    days = [text(v) for v in layer.columns[day]] if day else [""] * len(layer)
-    clocks = [text(v) for v in layer.columns[clock]] if clock else [""] * len(layer)
-    is_utc = any(re.search(r"utc|gmt|zulu", name or "", re.IGNORECASE) for name in (day, clock))
-    cells = [
-        f"{one} {at}".strip() if one and at and is_clock_alone(at) else (one or at)
-        for one, at in zip(days, clocks, strict=True)
-    ]
-    return cells, is_utc
+def _step_s(at: NDArray[np.datetime64]) -> float:
+    """Return how many seconds lie between measurements; of one, an hour."""
+    steps = np.diff(np.unique(at[~np.isnat(at)])).astype(np.int64)
+    return float(np.median(steps)) if len(steps) else 3600.0
 
 
-_CLOCKS = frozenset(
-    {"time", "hour", "hora", "heure", "uhrzeit", "zeit", "ora", "uur", "שעה", "الوقت", "الساعة"}
-    | {"timeutc", "hourutc", "hhmm", "tijd"}
-)
-_DAYS = frozenset(
-    {"datetime", "timestamp", "date", "dateutc", "datetimeutc", "timestamputc", "datumzeit"}
-    | {"messdatum", "valid", "validutc", "zeitstempel", "fechahora", "dateheure", "datahora"}
-    | {"dataora", "תאריךושעה", "تاريخ", "التاريخ", "observationtime", "localtime", "yyyymmdd"}
-)
-
-
-def _hour_column(names: list[str]) -> str | None:
-    return next(
-        (name for name in names if plain(name) in {"hour", "hr", "hh", "hora", "שעה"}), None
+def _without_marks(values: Floats, column: WeatherColumn) -> tuple[Floats, list[ImportMessage]]:
+    """Return values without numbers that mark what is missing, and what is to be said."""
+    marks = _MARKS_OF_TENTHS if column.unit.startswith("0.1") else _MARKS
+    missing = np.isin(values, marks)
+    if not missing.any():
+        return values, []
+    said = worded(
+        "{n} {n:value|values} of {name} {n:is|are} missing, marked by {marks}.",
+        n=int(np.count_nonzero(missing)),
+        name=column.name,
+        marks=", ".join(f"{mark:g}" for mark in np.unique(values[missing])),
     )
-
-
-def _put_together(cells: tuple[str, ...], hours: list[str] | None, row: int) -> str:
-    """Return a date of three cells, and its hour if there is one."""
-    try:
-        year, month, day = (int(float(cell)) for cell in cells)
-        at = f" {int(float(hours[row])):02d}:00" if hours else ""
-    except ValueError:
-        return ""
-    return f"{year:04d}-{month:02d}-{day:02d}{at}"
+    return np.where(missing, np.nan, values), [seen(said)]
 
 
 def _without_units(layer: Layer) -> tuple[Layer, dict[str, str]]:
@@ -239,7 +185,7 @@ def _unit_of(
 ) -> tuple[str, list[ImportMessage]]:
     """Return the unit of a column, empty where it must be left out, and what is to be said."""
     kind = KIND_OF[column.measure]
-    told = column.unit.casefold() or options.unit(kind)
+    told = column.unit.casefold().replace(" ", "") or options.unit(kind)
     if told:
         if told not in UNITS or UNITS[told].kind != kind:
             raise FileProblem(
@@ -267,15 +213,28 @@ def _unit_of(
 
 def _temperature_unit(column: WeatherColumn, values: Floats) -> tuple[str, list[ImportMessage]]:
     """Return the unit that temperatures tell; ask where they could be either."""
-    known = values[~np.isnan(values)]
-    most = float(known.max()) if len(known) else 0.0
+    known = np.sort(values[~np.isnan(values)])
+    # a few broken ones tell nothing of the others
+    known = known[: len(known) - int(_MOST_NONSENSE * len(known))]
+    most = float(known[-1]) if len(known) else 0.0
+    if most > _WARMEST_F:
+        raise ChoiceNeeded(
+            worded(
+                "{name} has no unit and goes up to {most:g}, which is neither Celsius nor "
+                "Fahrenheit. Is it in tenths?",
+                name=column.name,
+                most=most,
+            ),
+            "temperature_unit",
+            ("0.1 C", "0.1 F", "K"),
+        )
     if most > _SURELY_F:
         said = worded(
             "{name} has no unit; read as Fahrenheit, for it goes up to {most:g}.",
             name=column.name,
             most=most,
         )
-        remedy = Remedy("temperature_unit", "C", worded("Read as Celsius"))
+        remedy = Remedy("temperature_unit", "C", worded("Read as Celsius"), ("0.1 C",))
         return "f", [guessed(said, None, remedy)]
     if most > _WARMEST_C or (len(known) and float(known.mean()) > _WARMEST_MEAN_C):
         raise ChoiceNeeded(
@@ -291,11 +250,14 @@ def _temperature_unit(column: WeatherColumn, values: Floats) -> tuple[str, list[
     return "c", [guessed(said, None, remedy)]
 
 
-def _directions(layer: Layer, column: WeatherColumn) -> Floats:
+def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) -> Floats:
     """Return where the wind came from, degrees; compass points are read too, calm is none."""
     cells = [text(v) for v in layer.columns[column.name]]
     named = {point: 22.5 * i for i, point in enumerate(_POINTS)}
-    values = numbers(np.array(cells, object))
+    values = numbers(np.array(cells, object), options.decimal)
+    values[np.isin(values, (*_MARKS, _VARIABLE))] = np.nan
+    if (unit := UNITS.get(column.unit)) is not None and unit.kind == "direction":
+        values *= unit.factor
     for i, cell in enumerate(cells):
         if cell.casefold() in _CALM:
             values[i] = np.nan

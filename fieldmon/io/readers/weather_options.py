@@ -9,7 +9,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.clock import zone_of
-from fieldmon.io.parse.weather_columns import UNITS, WRITTEN
+from fieldmon.io.parse.weather_columns import UNITS, WRITTEN, unit_named
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ class WeatherOptions(RecordOptions):
         Time zone of times that name none, and by which days begin: ``"Asia/Jerusalem"``. None:
         UTC; `on` gives the plot's.
     temperature_unit, wind_unit, rain_unit
-        Units where the file does not state them: C, F, K; m/s, km/h, mph, kn; mm, cm, in.
+        Units where the file does not state them: C, F, K, 0.1 C; m/s, km/h, mph, kn, 0.1 m/s; mm,
+        cm, in, 0.1 mm.
     location
         Which place of a file that holds several, counted from 1.
     now
@@ -51,7 +52,7 @@ class WeatherOptions(RecordOptions):
             ("speed", self.wind_unit),
             ("rain", self.rain_unit),
         ):
-            if told is not None and UNITS.get(told.casefold(), (None,))[0] != kind:
+            if told is not None and UNITS.get(unit_named(told), (None,))[0] != kind:
                 raise SettingError(
                     worded(
                         "The unit of {kind} must be {known}, but it is {told!r}.",
@@ -66,8 +67,8 @@ class WeatherOptions(RecordOptions):
         return self if self.zone else replace(self, zone=local_clock(field).zone or None)
 
     def unit(self, kind: str) -> str:
-        """Return the unit told for a kind of measure, in small letters; empty: none was."""
+        """Return the unit told for a kind of measure, as `UNITS` has it; empty: none was."""
         told = {
             "temperature": self.temperature_unit, "speed": self.wind_unit, "rain": self.rain_unit
         }  # fmt: skip
-        return (told.get(kind) or "").casefold()
+        return unit_named(told.get(kind) or "")

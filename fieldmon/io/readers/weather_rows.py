@@ -177,6 +177,8 @@ class WeatherRows:
 def utc_times(local: Times, zone: tzinfo) -> Times:
     """Return local times ``(n,)`` as UTC; where clocks go back, an hour that comes again is later.
 
+    Where the newest stand first, it is earlier.
+
     Parameters
     ----------
     local
@@ -186,9 +188,10 @@ def utc_times(local: Times, zone: tzinfo) -> Times:
     """
     seen_before: set[datetime] = set()
     made = np.full(len(local), "NaT", "datetime64[s]")
-    for i, one in enumerate(local.astype("datetime64[s]")):
-        if np.isnat(one):
-            continue
+    timed = np.flatnonzero(~np.isnat(local))
+    newest_first = len(timed) > 0 and local[timed[0]] > local[timed[-1]]
+    for i in timed[::-1] if newest_first else timed:
+        one = local[i].astype("datetime64[s]")
         naive: datetime = one.astype(datetime)
         moment = naive.replace(tzinfo=zone, fold=int(naive in seen_before))
         seen_before.add(naive)

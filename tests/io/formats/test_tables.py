@@ -63,6 +63,26 @@ def test_lines_of_title_above_the_names_are_passed_over_and_said(tmp_path):
     assert "2 lines above the column names were passed over" in sentences(layer)
 
 
+def test_the_last_remark_as_wide_as_a_table_names_its_columns_and_the_others_stand_above(tmp_path):
+    layer = read(tmp_path, "# a; b; c;\n# x = one, two, 3\n# STN,date,T\n#\n260,2026-11-18,5\n")
+    assert rows_of(layer) == [["# STN", "date", "T"], ["260", "2026-11-18", "5"]]
+    assert layer.above == "# a; b; c;\n# x = one, two, 3"
+    assert layer.take([0]).above == layer.above
+
+
+def test_numbers_with_a_hash_are_no_remarks(tmp_path):
+    layer = read(tmp_path, "#,lon,lat\n#1,35,30\n#2,36,31\n3,37,32\n")
+    assert rows_of(layer)[0] == ["#", "lon", "lat"]
+    assert len(layer) == 3
+
+
+def test_a_table_begins_below_two_lines_about_its_place(tmp_path):
+    layer = read(tmp_path, "latitude,longitude\n30,35\n\ntime,a (C),b (mm)\n2026-11-18,1,2\n")
+    assert rows_of(layer) == [["time", "a (C)", "b (mm)"], ["2026-11-18", "1", "2"]]
+    # records after an empty line are records
+    assert len(read(tmp_path, "lat,lon\n30,35\n\n31,36\n32,37\n")) == 3
+
+
 def test_columns_without_a_name_are_numbered_and_repeated_ones_told_apart(tmp_path):
     layer = read(tmp_path, "lon,,lat,lon\n1,2,3,4\n5\n")
     assert rows_of(layer) == [

@@ -36,7 +36,9 @@ def test_halves_of_the_day_and_parts_of_a_day_are_read(cell, seconds):
     assert clock_time(cell).seconds == seconds
 
 
-@pytest.mark.parametrize("cell", ["", "2026-11-18", "24:00", "8:61", "noon", "45979", "8.30"])
+@pytest.mark.parametrize(
+    "cell", ["", "2026-11-18", "24:01", "25:00", "8:61", "noon", "45979", "8.30"]
+)
 def test_what_is_no_time_of_day_is_none(cell):
     assert clock_time(cell) is None
 
@@ -46,6 +48,10 @@ def test_what_is_no_time_of_day_is_none(cell):
 )
 def test_a_zone_behind_a_time_says_how_far_it_is_ahead_of_utc(cell, hours):
     assert clock_time(cell).offset == timedelta(hours=hours)
+
+
+def test_24_00_is_the_midnight_at_the_end_of_its_day():
+    assert local_time(DAY, clock_time("2026-11-18 24:00"), None) == DAY + 1
 
 
 def test_a_zone_that_there_is_not_leaves_no_time():

@@ -1,8 +1,6 @@
 """Weather is read as stations write it, and refused where it makes no sense."""
 
 from datetime import UTC, datetime
-from pathlib import Path
-from tempfile import mkdtemp
 
 import numpy as np
 import pytest
@@ -17,12 +15,8 @@ JERUSALEM = WeatherOptions(zone="Asia/Jerusalem")
 
 
 @pytest.fixture
-def read(tmp_path):
-    def _read(text, options=JERUSALEM, name="weather.csv"):
-        data = text if isinstance(text, bytes) else text.encode()
-        return weather_in(Upload(name, data), options, Workroom(Path(mkdtemp(dir=tmp_path))))
-
-    return _read
+def read(read_weather):
+    return read_weather
 
 
 def said(read):
@@ -130,7 +124,7 @@ def test_a_unit_of_something_else_is_refused(read, header, sentence):
 
 def test_values_of_no_weather_are_left_out_or_refuse_the_file(read):
     days = "\n".join(f"2026-10-{day:02d},20" for day in range(1, 31))
-    imported = read(f"date,temp (C)\n{days}\n2026-10-31,999")
+    imported = read(f"date,temp (C)\n{days}\n2026-10-31,888")
     assert "1 value of temperature_c is impossible" in said(imported)
     assert imported.value.gaps == 0  # after the last known nothing is missing
     with pytest.raises(FileProblem, match=r"3 of 3 values are beyond it \(the first is 201\)"):
@@ -237,6 +231,66 @@ def test_fuzzed_tables_are_read_or_refused_with_a_sentence(tmp_path):
             sentences.append(str(refused))
     assert 5 < len(sentences) < 40
     assert all(sentence.endswith((".", "?")) for sentence in sentences)
+
+
+def test_numbers_that_mark_what_is_missing_are_no_weather(read):
+    """A rain of 999.9 mm was one, and -99.9 made a file without units one in Fahrenheit."""
+    rows = "\n".join(
+        f"2026-11-18 {hour:02d}:00,{-99.9 if hour < 6 else 20},{999.9 if hour == 3 else 0.5},"
+        f"{990 if hour == 1 else 90},{-999 if hour == 9 else 50}"
+        for hour in range(24)
+    )
+    imported = read(f"time,temp,rain (mm),wind dir,RH\n{rows}")
+    weather = imported.value
+    assert np.isnan(weather.temperature_c).tolist() == [True] * 6 + [False] * 18
+    assert np.nansum(weather.rain_mm) == pytest.approx(11.5)
+    assert np.isnan(weather.wind_from_deg).nonzero()[0].tolist() == [1]
+    assert np.nanmean(weather.humidity_pct) == 50
+    assert "6 values of temp are missing, marked by -99.9" in said(imported)
+
+
+@pytest.mark.parametrize(
+    ("unit", "cell"), [("mm/h", 6), ("mm/10min", 1), ("mm", 1), ("mm/day", 144)]
+)
+def test_rain_that_is_told_as_a_rate_is_summed_over_its_time(read, unit, cell):
+    rows = "\n".join(f"2026-11-18 {h:02d}:{m:02d},20,{cell}" for h in range(3)
+                     for m in range(0, 60, 10))  # fmt: skip
+    assert read(f"time,temp (C),rain ({unit})\n{rows}").value.rain_mm.tolist() == [6.0] * 3
+
+
+def test_temperatures_in_tenths_are_asked_for_and_read(read):
+    table = "date,temp\n2026-11-18,215\n2026-11-19,-35\n2026-11-20,199"
+    with pytest.raises(ChoiceNeeded, match="goes up to 215, which is neither") as asked:
+        read(table)
+    assert (asked.value.option, asked.value.choices[0]) == ("temperature_unit", "0.1 C")
+    told = read(table, WeatherOptions(temperature_unit="0.1 C")).value
+    assert told.temperature_c.tolist() == pytest.approx([21.5, -3.5, 19.9])
+    named = read(table.replace("temp", "temp (0.1 °F)")).value
+    assert named.temperature_c[0] == pytest.approx(-5.833333)
+    # a single broken value makes no file one in Fahrenheit
+    days = "\n".join(f"2026-10-{day:02d},20" for day in range(1, 31))
+    assert "1 value of temperature_c is impossible" in said(
+        read(f"date,temp\n{days}\n2026-10-31,215")
+    )
+
+
+def test_tens_of_degrees_are_degrees(read):
+    table = "date,temp (C),Wind Dir (10s deg)\n2026-11-18,20,27\n2026-11-19,20,9\n"
+    assert read(table).value.wind_from_deg.tolist() == [270, 90]
+
+
+def test_a_logger_s_number_behind_a_unit_is_no_unit(read):
+    table = 'date,"Temp, °F (LGR S/N: 12, SEN S/N: 13)"\n2026-11-18,50\n2026-11-19,50\n'
+    assert read(table).value.temperature_c[0] == pytest.approx(10)
+
+
+def test_names_that_stand_again_are_passed_over_and_another_table_is_left_out(read):
+    one = "time,temp (C)\n2026-11-18 00:00,1\n2026-11-18 01:00,2\n"
+    again = read(one + one.replace("11-18", "11-19"))
+    assert again.value.temperature_c.tolist() == [1, 2, 1, 2]
+    other = read(one + "time,temp max (C)\n2026-11-18,20\n2026-11-19,21\n")
+    assert other.value.temperature_c.tolist() == [1, 2]
+    assert "Another table begins after record 2" in said(other)
 
 
 def test_dates_of_no_station_are_no_times(read):

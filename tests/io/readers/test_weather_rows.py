@@ -47,3 +47,4 @@ def test_local_times_become_utc_and_the_hour_that_comes_again_is_later():
         "2026-10-24T23:00:00", "2026-10-25T00:00:00", "2026-10-25T01:00:00"
     ]  # fmt: skip
     assert np.isnat(made[3])
+    assert utc_times(local[2::-1], BERLIN).tolist() == made[2::-1].tolist()

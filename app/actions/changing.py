@@ -97,19 +97,17 @@ def _wanted_of_team(
     does = strategy_name(settings.sampler, robot.hours, robot.look_s)
     said = {"name": texts.isolated(choices.who), "strategy": does, "starts": f"{starts:%H:%M}"}
     st.caption(texts.TEAM_SETTINGS.format(**said))
-    return replace(
-        settings, sampler=_sampler(settings, f"{name} {settings.sampler}")
-    ), nullcontext()
+    return _with_sampler(settings, f"{name} {settings.sampler}"), nullcontext()
 
 
-def _sampler(settings: MonitoringSettings, key: str) -> str:
-    """Show the box of the sampler; return which is chosen."""
+def _with_sampler(settings: MonitoringSettings, key: str) -> MonitoringSettings:
+    """Show the box of the sampler; return the settings with the one that is chosen."""
     names = list(texts.SAMPLERS)
     sampler = st.selectbox(
         texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **named()
     )
     st.caption(sampler_does(sampler))
-    return sampler
+    return settings if sampler == settings.sampler else settings.with_sampler(sampler)
 
 
 def _wanted(
@@ -135,9 +133,9 @@ def _wanted(
                              5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
     if who != SCOUT:
         robot = robot_boxes.of_season(robot, key)
-    sampler = _sampler(settings, key)
+    wanted = _with_sampler(settings, key)
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
-    return replace(settings, robot=robot, sampler=sampler), place
+    return replace(wanted, robot=robot), place
 
 
 def _offer_undo(choices: Choices) -> None:
@@ -167,7 +165,8 @@ def use(choices: Choices, box: str) -> str:
     if choices.season is not None:
         settings = choices.season.settings
         robot = replace(settings.robot, hours=hours, look_s=inspection_s)
-        choices.season.change(replace(settings, robot=robot, sampler=sampler), settings)
+        wanted = replace(settings.with_sampler(sampler), robot=robot)
+        choices.season.change(wanted, settings)
     else:
         who = st.session_state.get("who", ROBOT)
         st.session_state["sampler"] = sampler

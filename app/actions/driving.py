@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.drive.simulated import CHARGED, MUJOCO, MadeUp
-from fieldmon.samplers import sampler
 
 from ..state import cached_simulations, widget_memory
 from ..words import texts
@@ -34,9 +33,7 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
     )
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)
-    made = cached_simulations.drive_run(
-        key, kind, made_up, choices.plot, scene, sampler(choices.sampler)
-    )
+    made = cached_simulations.drive_run(key, kind, made_up, choices.plot, scene, choices.decides)
     over = made.day is not None
     at_work = background.buttons(made, texts.DRIVE_RUN, key="drive_run", over=over)
     st.fragment(_progress, run_every=0.5 if at_work else None)(made, at_work=at_work)

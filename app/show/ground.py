@@ -29,18 +29,22 @@ class GroundShown:
         Whom to name on the map; empty: nobody.
     is_picture
         Whether it may be dark, light and of any colour: what is drawn on it then needs a rim.
+    worker
+        Where the browser finds what may ask the map's server; empty: it is asked for nothing.
     """
 
     layers: tuple[Layer, ...] = ()
     credit: str = ""
     is_picture: bool = False
+    worker: str = ""
 
 
 def of(choices: Choices) -> GroundShown:
     """Return what lies under a plot: a map that was agreed to, and on it what was brought."""
     agreed, made = ground.agreement(choices), ground.of(choices)
-    layers, credits_ = [], []
+    layers, credits_, worker = [], [], ""
     if agreed is not None:
+        worker = web_maps.ASKED.worker(agreed.address)
         layers += cached.layers(
             f"ground {agreed}",
             lambda: [ground_layers.web_map(agreed.address, web_maps.LAST_ZOOM)],
@@ -55,7 +59,7 @@ def of(choices: Choices) -> GroundShown:
     is_picture = agreed is not None or (
         made is not None and not (isinstance(made, GroundPicture) and made.is_relief)
     )
-    return GroundShown(tuple(layers), " · ".join(filter(None, credits_)), is_picture)
+    return GroundShown(tuple(layers), " · ".join(filter(None, credits_)), is_picture, worker)
 
 
 def _picture(made: GroundPicture, *, dark: bool) -> list[Layer]:

@@ -199,7 +199,7 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
             {"key": s.key, "label": s.label, "layers": [*s.layers]} for s in content.shades
         ],
         "ground": {"ids": [layer.id for layer in below.layers], "credit": below.credit,
-                   "picture": below.is_picture},
+                   "picture": below.is_picture, "worker": below.worker},
         "legend": content.legend,
         "labels": content.labels,
         "play": content.play,

@@ -10,6 +10,7 @@ import hmac
 import secrets
 import time
 from collections import OrderedDict, deque
+from contextlib import suppress
 from html import escape
 from http.cookies import CookieError, SimpleCookie
 from typing import TYPE_CHECKING, Any
@@ -33,7 +34,8 @@ _OUTSIDE = (scout_page.PATH, "/api/")
 _LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"
 _COOKIE = "__Host-fieldmon"
 _MOST_BYTES = 4096
-_TRIES, _WITHIN_S = 10, 60.0
+# of one address, and of all together: one device must not lock the others out
+_TRIES, _TRIES_OF_ALL, _WITHIN_S = 10, 100, 60.0
 _MOST_OPEN = 500
 _POLICY = (
     b"default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; frame-ancestors 'none'"
@@ -74,7 +76,8 @@ class Gate:
     def __init__(self, inside: Application, password: str) -> None:
         self._inside, self._password = inside, password.encode()
         self._open: OrderedDict[str, None] = OrderedDict()
-        self._wrong: deque[float] = deque(maxlen=_TRIES)
+        # when, and from where: those under way and those that were wrong
+        self._tries: deque[tuple[float, str]] = deque()
 
     async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
         """Pass a request on, or ask for the password."""
@@ -92,15 +95,18 @@ class Gate:
 
     async def _ask(self, scope: Message, receive: Receive, send: Send) -> None:
         """Take a password; too many wrong ones in a minute and none is taken."""
-        now = time.monotonic()
-        if len(self._wrong) == _TRIES and now - self._wrong[0] < _WITHIN_S:
-            await _said(scope, send, 429, "wait")
-            return
-        said = await _password_of(receive)
-        if _is_foreign(scope) or not hmac.compare_digest(said, self._password):
-            self._wrong.append(now)
+        if _is_foreign(scope):
             await _said(scope, send, 401, "wrong")
             return
+        # counted before anything is waited for: tries at once are tries, too
+        if (this := self._begun(scope)) is None:
+            await _said(scope, send, 429, "wait")
+            return
+        if not hmac.compare_digest(await _password_of(receive), self._password):
+            await _said(scope, send, 401, "wrong")
+            return
+        with suppress(ValueError):  # a minute may have passed
+            self._tries.remove(this)
         token = secrets.token_urlsafe(32)
         self._open[token] = None
         while len(self._open) > _MOST_OPEN:
@@ -109,6 +115,17 @@ class Gate:
         headers = [(b"location", b"/"), (b"set-cookie", cookie.encode()), *_HEADERS]
         await send({"type": "http.response.start", "status": 303, "headers": headers})
         await send({"type": "http.response.body", "body": b""})
+
+    def _begun(self, scope: Message) -> tuple[float, str] | None:
+        """Count a try; None if there were too many."""
+        now, where = time.monotonic(), (scope.get("client") or ("",))[0]
+        while self._tries and now - self._tries[0][0] >= _WITHIN_S:
+            self._tries.popleft()
+        own = sum(one == where for _, one in self._tries)
+        if own >= _TRIES or len(self._tries) >= _TRIES_OF_ALL:
+            return None
+        self._tries.append((now, where))
+        return now, where
 
     def _knows(self, scope: Message) -> bool:
         try:

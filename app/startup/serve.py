@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.errors import FieldmonError
 from fieldmon.io.sandbox import process
 
-from ..state import map_file, map_store, map_tiles, scout_page
+from ..state import map_file, map_store, map_tiles, scout_page, web_maps
 from . import addresses, gate, lan, preload
 from .upload_limits import Uploads, is_upload
 
@@ -47,12 +47,10 @@ _WHERE = b"""<head>
 <script>window.__streamlit = {BACKEND_BASE_URL: new URL(".", location.href).href}</script>"""
 _FOR_GOOD, _ASK = b"public, immutable, max-age=31536000", b"no-cache"
 _OWN_FOR_GOOD = b"private, immutable, max-age=86400"
-# Streamlit's page writes scripts and styles into itself, and charts are made of compiled text;
-# a map of the world is fetched from where somebody agreed to, which is not known beforehand
+# Streamlit's page writes scripts and styles into itself, and charts are made of compiled text
 _POLICY = (
     b"default-src 'self' data: blob:; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
-    b"style-src 'self' 'unsafe-inline'; connect-src 'self' data: blob: ws://HOST wss://HOST "
-    b"https: http://127.0.0.1:*; "
+    b"style-src 'self' 'unsafe-inline'; connect-src 'self' data: blob: ws://HOST wss://HOST; "
     b"frame-ancestors 'self'; form-action 'self'; base-uri 'self'; object-src 'none'"
 )
 # one thread must not keep the others waiting while libraries load (Python's default is 5 ms)
@@ -87,6 +85,9 @@ class Server:
             await (_answer_phone if outside else self._answer_browser)(scope, receive, send)
 
     async def _answer_browser(self, scope: Message, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http" and scope["path"].startswith(web_maps.PATH):
+            await _hand_out_worker(scope["path"], send)
+            return
         if scope["type"] == "http":
             send = _closed_in(send, scope)
         if is_upload(scope["path"]):
@@ -156,7 +157,11 @@ class Server:
 
 
 def _closed_in(send: Send, scope: Message) -> Send:
-    """Let a page fetch and send nothing but from and to this server, whatever stands in it."""
+    """Let a page fetch from this server only, and send to no other, whatever stands in it.
+
+    It can still lead to another address (no policy of a browser forbids that), and the worker of a
+    map that was agreed to asks that map's server.
+    """
     host = dict(scope.get("headers", ())).get(b"host", b"")
     policy = _POLICY.replace(b"HOST", host) if addresses.is_host(host) else _POLICY
 
@@ -179,6 +184,19 @@ async def _hand_out_map(path: str, send: Send) -> None:
         await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
         return
     await _answer(send, 200, *found, [(b"cache-control", _OWN_FOR_GOOD)])
+
+
+async def _hand_out_worker(path: str, send: Send) -> None:
+    """Hand out what may ask the server of a map that was agreed to, and nothing else."""
+    if (policy := web_maps.ASKED.policy(path)) is None:
+        await _answer(send, 404, "text/plain", b"", [(b"cache-control", b"no-store")])
+        return
+    guards = [
+        (b"cache-control", _ASK),
+        (b"content-security-policy", policy.encode()),
+        (b"referrer-policy", b"same-origin"),
+    ]
+    await _answer(send, 200, "text/javascript", web_maps.WORKER.read_bytes(), guards)
 
 
 async def _answer_phone(scope: Message, receive: Receive, send: Send) -> None:

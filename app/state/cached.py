@@ -21,7 +21,6 @@ from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import worked_route
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed, plan_in
 from fieldmon.reports import season as reports
-from fieldmon.samplers import sampler
 
 from ..words import language, texts
 from ..words.language import Late
@@ -47,7 +46,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.reports.content import Report
-    from fieldmon.samplers.base import Scene
+    from fieldmon.samplers.base import Sampler, Scene
 
     Array = NDArray[np.float64]
 
@@ -146,10 +145,9 @@ def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:
 
 
 @st.cache_resource(max_entries=_DAYS)
-def turn_plan(key: str, robot: Robot, sampler_name: str, _scene: Scene) -> DayPlan:
-    """Return the day of one who has only some hours for a plot; `key` stands for the scene."""
-    scene = replace(_scene, robot=robot, seconds_left=robot.day_s)
-    return plan_in(scene, sampler(sampler_name))
+def turn_plan(key: str, robot: Robot, _scene: Scene, _sampler: Sampler) -> DayPlan:
+    """Return the day of one who has only some hours for a plot; `key` stands for the rest."""
+    return plan_in(replace(_scene, robot=robot, seconds_left=robot.day_s), _sampler)
 
 
 @st.cache_resource(max_entries=FEW)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
+    from fieldmon.samplers.base import Sampler
 
     from ..words.units import UnitsInLanguage
     from .brought_files import FileMessage, LeftOut
@@ -136,13 +137,20 @@ class Choices:
         chosen = widget_memory.value(WHOSE_DAY)
         return chosen if chosen in team else team[0]
 
+    @property
+    def decides(self) -> Sampler:
+        """Return the sampler; that of a season as it was told to work that day."""
+        if self.season is None:
+            return sampler(self.sampler)
+        return self.season.planned_by(self.on).decides()
+
     def plan(self) -> DayPlan:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.season is not None:
             of = self.day, self.who
             return cached.season_plan(self.key, self.revision, of, self.season, self.wishes)
         known = self.records, self.risk
-        settings = PlanSettings(self.robot, sampler(self.sampler), self.prior)
+        settings = PlanSettings(self.robot, self.decides, self.prior)
         return cached.day_plan(
             self.key, self.day, settings, self.sampler, self.plot, known, self.wishes
         )

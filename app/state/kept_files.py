@@ -1,7 +1,8 @@
 """What a session brought and said of it, kept on this machine: a reload finds it again.
 
 The way back is a long random word in the address. Whoever has it sees the files; who does not
-cannot guess it. What nobody came back to for a day is removed.
+cannot guess it. Who came by it changes nothing for others who did: the first change is kept under
+a word of one's own. What nobody came back to for a day is removed.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from .brought_files import File
 KEY = "files"
 KEEP_S = 86_400.0
 _WORD = re.compile(r"[\w-]{22}")
-_SESSION, _SAVED = "files key", "files saved"
+_SESSION, _CAME_BY, _SAVED = "files key", "files came by", "files saved"
 _MANIFEST = "files.json"
 #: boxes that say how files are read and plants are laid
 _BOXES = frozenset(
@@ -93,7 +94,7 @@ def _restore(word: str) -> None:
     st.session_state.update(edits)
     for key, value in said["boxes"].items():
         widget_memory.first(key, value)
-    st.session_state[_SESSION] = word
+    st.session_state[_CAME_BY], st.session_state[_SAVED] = word, _said(brought_files.brought())
     os.utime(here)
 
 
@@ -110,7 +111,7 @@ def _keep() -> None:
     said = _said(files)
     if st.session_state.get(_SAVED) == said or not _is_ours():
         return
-    word = st.session_state[_SESSION]
+    word, came_by = st.session_state[_SESSION], st.session_state.pop(_CAME_BY, "")
     if not files:
         if word:
             shutil.rmtree(folder() / word, ignore_errors=True)
@@ -119,6 +120,9 @@ def _keep() -> None:
     clean(time.time())
     word = word or secrets.token_urlsafe(16)
     here = folder() / word
+    if came_by:
+        with suppress(OSError):  # what cannot be linked is written
+            shutil.copytree(folder() / came_by, here, copy_function=os.link)
     here.mkdir(mode=0o700, exist_ok=True)
     wanted = {_MANIFEST}
     for file in files.values():
@@ -126,15 +130,15 @@ def _keep() -> None:
             wanted.add(f"{file.key}-{number}")
             if not (here / f"{file.key}-{number}").exists():
                 write_whole(here / f"{file.key}-{number}", part.data)
-    write_whole(here / _MANIFEST, said.encode())
+    write_whole(here / _MANIFEST, json.dumps(said).encode())
     for old in here.iterdir():
         if old.name not in wanted:
             old.unlink(missing_ok=True)
     st.session_state[_SESSION], st.session_state[_SAVED] = word, said
 
 
-def _said(files: dict[str, File]) -> str:
-    """Return what is kept beside the files' bytes, as JSON."""
+def _said(files: dict[str, File]) -> dict[str, Any]:
+    """Return what is kept beside the files' bytes, as it is written."""
     state: dict[str, Any] = {str(key): value for key, value in st.session_state.items()}
     answers = {key: value for key, value in state.items() if key.startswith("answers ")}
     edits = {
@@ -144,7 +148,7 @@ def _said(files: dict[str, File]) -> str:
     }
     named = {k: (file.key, [part.name for part in _parts(file)]) for k, file in files.items()}
     boxes = widget_memory.values_of(_BOXES)
-    return json.dumps({"files": named, "answers": answers, "edits": edits, "boxes": boxes})
+    return {"files": named, "answers": answers, "edits": edits, "boxes": boxes}
 
 
 def _parts(file: File) -> tuple[Upload, ...]:
@@ -162,7 +166,7 @@ def _is_ours() -> bool:
 
 
 def _keep_in_address() -> None:
-    word = st.session_state[_SESSION]
+    word = st.session_state[_SESSION] or st.session_state.get(_CAME_BY)
     if not word:
         st.query_params.pop(KEY, None)
     elif st.query_params.get(KEY) != word:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.shared_day import PlotTurn
-    from fieldmon.samplers.base import Scene
+    from fieldmon.samplers.base import Sampler, Scene
 
     from .estate import PlotState
 
@@ -85,13 +85,17 @@ class SharedPlots:
 
 @dataclass(frozen=True, eq=False)
 class _Ready:
-    """A plot that can be planned: what is believed of it on its day, and who decides there."""
+    """A plot that can be planned: what is believed of it on its day, and who decides there.
+
+    `key` stands for all of it.
+    """
 
     plot: PlotState
     key: str
     on: date
     scene: Scene
     sampler: str
+    decides: Sampler
 
 
 def due(plots: Iterable[PlotState]) -> list[PlotState]:
@@ -126,7 +130,7 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
 def _planned(ready: _Ready, turn: PlotTurn, member: TeamMember) -> PlannedTurn:
     # to the second, so that the same turn is planned once
     robot = replace(member.robot, hours=max(round(turn.seconds), 1) / 3600)
-    plan = cached.turn_plan(ready.key, robot, ready.sampler, ready.scene)
+    plan = cached.turn_plan(ready.key, robot, ready.scene, ready.decides)
     begins = datetime.combine(ready.on, STARTS) + timedelta(seconds=round(turn.starts_s))
     return PlannedTurn(ready.plot, member.name, turn.who, begins, plan, ready.sampler)
 
@@ -156,7 +160,7 @@ def _of_season(plot: PlotState) -> _Ready:
     on = max(local_clock(season.plot.field).today(), settings.begins)
     key = f"{season.path} {season.revision} {on}"
     scene = cached.season_scene(str(season.path), season.revision, str(on), season)
-    return _Ready(plot, key, on, scene, settings.sampler)
+    return _Ready(plot, key, on, scene, settings.sampler, settings.decides())
 
 
 def _of_files(plot: PlotState) -> _Ready:
@@ -169,4 +173,5 @@ def _of_files(plot: PlotState) -> _Ready:
     known = made.records, made.risk
     chance = cached.chance_map(made.key, str(on), settings.prior, made.plot, known)
     scene = plan_from(made.plot, chance, settings).scene
-    return _Ready(plot, f"{made.key} {on} {settings.prior}", on, scene, USUAL)
+    key = f"{made.key} {on} {settings.prior}"
+    return _Ready(plot, key, on, scene, USUAL, settings.sampler)

@@ -89,7 +89,7 @@ class ChangeOptions:
 
         new = self._of_who_inspects(settings)
         if self.sampler is not None:
-            new = replace(new, sampler=self.sampler, sampler_settings={})
+            new = new.with_sampler(self.sampler)
         if self.every is not None:
             new = replace(new, sampler_settings=sampler_settings(new.sampler, self.every))
         if self.start is not None:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 # a command that answers sooner says nothing; what is said is shorter than any answer, which so
 # writes over it
 _SILENT_S = 2.0
+_EVERY_S = 0.5
 _WORKING = "Working, {seconds:.0f} s"
 _COMPILING = "Compiling fieldmon for this machine, once; this may take a minute ..."
 _WIPE = "\r\x1b[K"
@@ -59,7 +60,7 @@ class Waiting:
 
     def _count(self) -> None:
         began = monotonic()
-        while not self._over.wait(0.5):
+        while not self._over.wait(_EVERY_S):
             seconds = monotonic() - began
             if seconds > _SILENT_S:
                 self._say(f"\r{_WORKING.format(seconds=seconds)}\r")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
+import secrets
 import sqlite3
-import tempfile
 from contextlib import closing, suppress
 from pathlib import Path
 
@@ -59,17 +59,14 @@ def write_whole(path: str | Path, data: bytes) -> None:
     """
     target = Path(path)
     require_place(target)
-    name = None
+    half = target.with_name(f".{target.name}.{secrets.token_urlsafe(6)}")
     try:
-        with tempfile.NamedTemporaryFile(
-            dir=target.parent, prefix=f".{target.name}.", delete=False
-        ) as file:
-            name = file.name
+        # the system applies the umask: to read it is to set it, for all threads
+        with half.open("xb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        Path(name).chmod(0o666 & ~_umask())
-        Path(name).replace(target)
+        half.replace(target)
     except OSError as error:
         raise FileProblem(
             worded(
@@ -80,14 +77,8 @@ def write_whole(path: str | Path, data: bytes) -> None:
             )
         ) from error
     finally:
-        if name is not None:
-            Path(name).unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+        with suppress(OSError):
+            half.unlink(missing_ok=True)
 
 
 def _may_be_season(file: Path) -> bool:

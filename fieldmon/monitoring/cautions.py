@@ -14,7 +14,7 @@ import numpy as np
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, figure, worded
-from fieldmon.decisions.labels import label_for
+from fieldmon.decisions.labels import label_for, plain_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -223,7 +223,7 @@ def _uses(said: list[_Said], units: Units) -> Iterator[Caution]:
     for one, label in said:
         if label is None:
             continue
-        name, plants = label.product.casefold(), one.place.plants
+        name, plants = plain_name(label.product), one.place.plants
         count = uses.setdefault(name, np.zeros(len(plants), np.int64))
         day = last.setdefault(name, np.full(len(plants), -1))
         count += plants & (day != one.day)  # two zones of one day are one use

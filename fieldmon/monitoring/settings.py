@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from datetime import date, time
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -142,6 +142,10 @@ class MonitoringSettings:
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""
         return sampler(self.sampler, **self.sampler_settings)
+
+    def with_sampler(self, name: str) -> MonitoringSettings:
+        """Return these with the sampler called `name`, as it comes: each takes its own settings."""
+        return replace(self, sampler=name, sampler_settings={})
 
     def must_detect(self) -> None:
         """Raise `SettingError` unless whoever works can find something."""

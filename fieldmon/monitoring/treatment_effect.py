@@ -16,6 +16,7 @@ from scipy.special import betaincinv
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.decisions.labels import plain_name
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 
 if TYPE_CHECKING:
@@ -159,7 +160,8 @@ def effects(
 
 def learnt_efficacy(found: Iterable[TreatmentEffect], product: str) -> TreatmentEffect | None:
     """Return the last effect of a product that any plant tells of; None: there is none."""
-    known = [one for one in found if one.cured_of and one.product.casefold() == product.casefold()]
+    name = plain_name(product)
+    known = [one for one in found if one.cured_of and plain_name(one.product) == name]
     return known[-1] if product and known else None
 
 

@@ -318,6 +318,8 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
     becomes(page, lambda now: (np.abs(now - GREY).max(axis=2) < 6).mean() > 0.15, "the map")
     assert asked
     assert all(re.fullmatch(r"/\d+/\d+/\d+\.png", path) for path in asked), "nothing but tiles"
+    ask = "url => fetch(url).then(() => 'asked', () => 'refused')"
+    assert page.evaluate(ask, f"{url}/season") == "refused", "a script in the page asks no server"
     switch(page, texts.MAP_LAYERS["ground"], on=False)
     becomes(page, lambda now: (now == before).mean() > 0.99, "the map without it")
     n = len(asked)

@@ -28,42 +28,71 @@ def test_a_command_says_that_it_compiles_and_wipes_it_away_where_it_can(monkeypa
     assert err.endswith("\x1b[K") if tty else err.count("Compiling") == 1
 
 
-def test_a_long_command_counts_the_seconds_at_a_terminal_unless_a_bar_does(monkeypatch, capsys):
+class Clock:
+    """A clock that is a second later with each look, and which can be waited for."""
+
+    def __init__(self):
+        self.now, self.looked = 0.0, threading.Condition()
+
+    def __call__(self):
+        with self.looked:
+            self.now += 1.0
+            self.looked.notify_all()
+            return self.now
+
+    def goes_on(self):
+        """Wait until the count was about to be written at least once more."""
+        with self.looked:
+            after = self.now + 2
+            assert self.looked.wait_for(lambda: self.now >= after, 10)
+
+
+def fast(monkeypatch):
+    """Let seconds be counted at a terminal as fast as can be; return their clock."""
+    made = Clock()
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(waiting, "monotonic", made)
     monkeypatch.setattr(waiting, "_SILENT_S", 0.0)
+    monkeypatch.setattr(waiting, "_EVERY_S", 0.001)
+    return made
+
+
+def test_a_long_command_counts_the_seconds_at_a_terminal_unless_a_bar_does(monkeypatch, capsys):
+    clock, written = fast(monkeypatch), []
+    monkeypatch.setattr(waiting, "_show", written.append)
     with waiting.WAITING:
-        time.sleep(1.2)
-        before = capsys.readouterr().err
+        clock.goes_on()
         with waiting.progress("Simulating"):
-            time.sleep(1.2)
-        barred = capsys.readouterr().err
-    assert "Working, 1 s" in before
-    assert "Working" not in barred
-    assert "Simulating" in barred
-    assert capsys.readouterr().err.endswith("\x1b[K")
+            clock.goes_on()
+            assert written[-1] == "\r\x1b[K"
+        clock.goes_on()
+    assert written[0] == "\rWorking, 1 s\r"
+    assert written[-1] == "\r\x1b[K"
+    assert written.count("\r\x1b[K") == 2
+    assert "Simulating" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("leaving", ["the command", "for a bar"])
 def test_no_second_is_counted_after_the_count_was_wiped_away(monkeypatch, leaving):
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    monkeypatch.setattr(waiting, "_SILENT_S", 0.0)
-    writing, written = threading.Event(), []
+    clock = fast(monkeypatch)
+    writing, written, others = threading.Event(), [], {*threading.enumerate()}
 
     def slow(text):
         if "Working" in text:
             writing.set()
-            time.sleep(0.2)
+            time.sleep(0.02)  # whoever leaves meanwhile must wait for it
         written.append(text)
 
     monkeypatch.setattr(waiting, "_show", slow)
     shown = waiting.Waiting()
     with shown:
+        (count,) = {*threading.enumerate()} - others
         assert writing.wait(5)
         if leaving == "for a bar":
             with shown.silent():
-                time.sleep(0.4)
+                clock.goes_on()
                 assert written[-1] == "\r\x1b[K"
-    time.sleep(0.4)
+    count.join(5)
     assert written[-1] == "\r\x1b[K"
 
 

@@ -78,3 +78,22 @@ def test_another_database_is_written_over_as_any_file(tmp_path):
     database(path, "stops")
     write_whole(path, b"a route")
     assert path.read_bytes() == b"a route"
+
+
+def test_a_new_file_is_open_to_whom_the_umask_says_which_is_never_touched(tmp_path, monkeypatch):
+    before = os.umask(0o077)
+    try:
+        monkeypatch.setattr(os, "umask", lambda _: pytest.fail("the umask is of all threads"))
+        write_whole(tmp_path / "private", b"one")
+    finally:
+        monkeypatch.undo()
+        os.umask(before)
+    write_whole(tmp_path / "usual", b"one")
+    (tmp_path / "plain").touch()
+    modes = [(tmp_path / name).stat().st_mode & 0o777 for name in ("private", "usual", "plain")]
+    assert modes == [0o600, modes[2], modes[2]]
+
+
+def test_a_name_that_is_too_long_is_a_sentence(tmp_path):
+    with pytest.raises(FileProblem, match="could not be written"):
+        write_whole(tmp_path / ("a" * 250), b"one")

@@ -128,6 +128,12 @@ def test_more_uses_than_the_label_allows_are_warned_of_where_they_overlap():
     )
 
 
+def test_uses_of_a_product_are_counted_however_the_lines_of_its_label_write_it():
+    lines = [replace(LABEL, crop="grapes"), replace(LABEL, product=" acarol", crop="pepper")]
+    uses = [treated(0, crop="grapes"), treated(3, crop="pepper"), treated(5, crop="grapes")]
+    assert ("uses", 6) in kinds(uses, lines)
+
+
 def test_a_wait_shorter_than_the_labels_is_said_and_the_labels_counts():
     short = treated(0, waiting_days=3, reentry_hours=4.0)
     assert kinds([short], [LABEL]) == [("waiting", 1), ("waiting", 1)]

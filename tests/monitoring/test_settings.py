@@ -1,6 +1,7 @@
 """Settings of a season: as values and as JSON, and the days that are of it."""
 
 import json
+from dataclasses import replace
 from datetime import date, datetime, time
 
 import numpy as np
@@ -46,6 +47,14 @@ def test_settings_come_back_from_json_as_they_were(sampler, seed, starts, hours,
         seed=seed,
     )
     assert from_json(as_json(settings)) == settings
+
+
+def test_another_sampler_goes_without_the_settings_of_the_one_before():
+    settings = MonitoringSettings(BEGINS, sampler="bouncy", sampler_settings={"every": 3})
+    with pytest.raises(SettingError, match="every"):
+        replace(settings, sampler="adaptive")
+    assert settings.with_sampler("adaptive") == MonitoringSettings(BEGINS, sampler="adaptive")
+    assert settings.with_sampler("snake").decides().every == 1
 
 
 def test_a_season_file_keeps_settings_under_the_names_that_it_always_had():

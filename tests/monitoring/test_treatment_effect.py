@@ -108,7 +108,7 @@ def test_many_plants_overrule_what_was_said():
     assert one.efficacy == pytest.approx((16 + 0.95 * worth) / (50 + worth), abs=1e-3)
     # what is overlooked looks cured
     assert effect(history(*looks), [treated(3, said=0.95)])[0].efficacy < one.efficacy
-    assert learnt_efficacy([one], "SOAP").efficacy == one.efficacy
+    assert learnt_efficacy([one], " SOAP ").efficacy == one.efficacy
     assert "told by 50 plants; 95 % was said beforehand, which counts as 4 plants" in one.sentence()
 
 

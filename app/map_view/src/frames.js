@@ -6,9 +6,9 @@ import * as store from "./store.js";
 
 export class Frames {
   // `changed` is called when another day is to be drawn; `shot` returns the map as a canvas, with a title;
-  // `save` takes a file's bytes and name
-  constructor(place, { changed, shot, save }) {
-    Object.assign(this, { changed, shot, save });
+  // `save` takes a file's bytes and name; `gone` is called when the server has let go of a day
+  constructor(place, { changed, shot, save, gone }) {
+    Object.assign(this, { changed, shot, save, gone });
     this.root = place.appendChild(element("div", { class: "play", hidden: true }));
     this.data = null;
     this.made = null;
@@ -16,7 +16,10 @@ export class Frames {
 
   // `data` is {key, names: [...], layers: [[where, ...], ...], now} or null
   show(data, words) {
-    if (data?.key === this.data?.key) return;
+    if (data?.key === this.data?.key) {
+      this.data = data; // a server that was started anew has the same days elsewhere
+      return;
+    }
     this.stop();
     this.data = data;
     this.made = null;
@@ -27,6 +30,7 @@ export class Frames {
     this.press = element("button", { type: "button", class: "tool", text: "▶", "aria-label": words.play_season, onclick: () => this.toggle() });
     this.slider = element("input", { type: "range", min: 0, max: last, step: 1, value: data.now, "aria-label": words.day,
       oninput: () => { this.stop(); this.to(Number(this.slider.value)); } });
+    this.slider.value = data.now;
     this.name = element("span", { class: "clock" });
     this.films = film.kinds().map((kind) => element("button", { type: "button", class: "tool film", text: kind.toUpperCase(),
       title: words.film, "aria-label": `${kind.toUpperCase()} ${words.film}`, onclick: () => this.record(kind, words) }));
@@ -35,18 +39,25 @@ export class Frames {
   }
 
   tell(k) {
-    this.slider.value = k;
     this.slider.setAttribute("aria-valuetext", this.data.names[k]);
     this.name.textContent = this.data.names[k];
   }
 
+  // Show a day once it is fetched, and name it only then; return whether it is still the one that is wanted.
   async to(k) {
+    const { key } = this.data;
     this.wanted = k;
+    this.slider.value = k;
+    const made = await store.persist(
+      () => Promise.all(this.data.layers[k].map(store.layer)),
+      () => this.wanted === k && this.data?.key === key,
+      this.gone,
+    );
+    if (!made) return false;
     this.tell(k);
-    const made = await Promise.all(this.data.layers[k].map(store.layer)).catch(() => null);
-    if (!made || this.wanted !== k) return;
     this.made = k === this.data.now ? null : made;
     this.changed();
+    return true;
   }
 
   // Return the map's layers with the day's own in the place of those that belong to days.
@@ -69,30 +80,24 @@ export class Frames {
   }
 
   toggle() {
-    if (this.timer) this.stop();
+    if (this.run) this.stop();
     else this.play();
   }
 
   async play() {
-    const last = this.data.names.length - 1;
+    const run = (this.run = {}), { length } = this.data.names;
     this.press.textContent = "❚❚";
-    let k = Number(this.slider.value) >= last ? 0 : Number(this.slider.value);
-    this.timer = true; // a press while the first day is fetched stops it
-    await this.to(k);
-    const step = async () => {
-      if (k >= last) {
-        this.stop();
-        return;
-      }
-      await this.to(++k);
-      if (this.timer) this.timer = setTimeout(step, film.EACH_MS);
-    };
-    if (this.timer) this.timer = setTimeout(step, film.EACH_MS);
+    let k = Number(this.slider.value);
+    if (k >= length - 1) k = 0;
+    for (; k < length && this.run === run; k++) {
+      await this.to(k);
+      await new Promise((done) => setTimeout(done, film.EACH_MS));
+    }
+    if (this.run === run) this.stop();
   }
 
   stop() {
-    clearTimeout(this.timer);
-    this.timer = null;
+    this.run = null;
     if (this.press) this.press.textContent = "▶";
   }
 
@@ -100,26 +105,27 @@ export class Frames {
   async record(kind, words) {
     if (this.filming) return;
     this.stop();
-    const day = Number(this.slider.value), data = this.data;
+    const day = Number(this.slider.value), { key } = this.data, tools = [this.press, this.slider, ...this.films];
+    const same = () => this.data?.key === key;
     this.filming = true;
-    for (const one of this.films) one.disabled = true;
+    for (const one of tools) one.disabled = true;
     try {
       const made = kind === "gif" ? await film.gif(this.pictures()) : await film.webm(this.canvases());
-      if (made) this.save(kind === "gif" ? new Blob([made], { type: "image/gif" }) : made, `${words.film_name}.${kind}`);
+      if (made && same()) this.save(kind === "gif" ? new Blob([made], { type: "image/gif" }) : made, `${words.film_name}.${kind}`);
     } finally {
       this.filming = false;
-      for (const one of this.films) one.disabled = false;
-      if (this.data === data) await this.to(day);
+      for (const one of tools) one.disabled = false;
+      if (same()) await this.to(day);
     }
   }
 
   async *canvases() {
-    const data = this.data;
-    for (let k = 0; k < data.names.length && this.data === data; k++) {
-      await this.to(k);
+    const { key, names } = this.data;
+    for (let k = 0; k < names.length; k++) {
+      if (this.data?.key !== key || !(await this.to(k))) return;
       // a breath, so that the page is not frozen while it films
       await new Promise((done) => setTimeout(done));
-      yield await this.shot(data.names[k]);
+      yield await this.shot(names[k]);
     }
   }
 

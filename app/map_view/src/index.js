@@ -57,7 +57,8 @@ class MapPage {
     this.labels = new Labels(this.labelPlace);
     this.playback = new Playback(this.foot, () => this.drawLayers());
     this.frames = new Frames(this.foot, { changed: () => this.drawLayers(), save: (blob, name) => saved(blob, name),
-      shot: async (day) => { await this.rendered(); return this.shot(day, FILM_PX); } });
+      shot: async (day) => { await this.rendered(); return this.shot(day, FILM_PX); },
+      gone: () => this.tell("missing", this.turn) });
     this.drive = new Drive(this.foot, () => this.drawLayers());
     this.foot.append(this.credit);
     this.drawing = new Drawing(() => this.drawLayers(), (mode, points) => this.drawn(mode, points));
@@ -691,7 +692,7 @@ class MapPage {
   end() {
     this.turn++; // what is still being fetched is no longer wanted
     this.playback.stop();
-    this.frames.stop();
+    this.frames.show(null);
     this.drive.end();
     this.watch?.disconnect();
     DARK.removeEventListener("change", this.turned);

@@ -5,13 +5,31 @@ import { JSONConverter } from "@deck.gl/json";
 import { BitmapLayer, LineLayer, PathLayer, PolygonLayer, ScatterplotLayer, TextLayer } from "@deck.gl/layers";
 
 import { PlantsLayer } from "./plants_layer.js";
+import { askerAt } from "./web_map.js";
+
+const NONE_THERE = [204, 404];
 
 // Return the picture of a tile, or null where the map has none.
 export async function pictureAt({ url, signal }) {
   const answer = await fetch(url, { signal });
-  if (answer.status === 204 || answer.status === 404) return null;
+  if (NONE_THERE.includes(answer.status)) return null;
   if (!answer.ok) throw new Error(`${url}: ${answer.status}`);
   return createImageBitmap(await answer.blob());
+}
+
+const fetchers = new Map();
+
+// Return what does the same for a map of another server, by the worker that may ask it.
+function throughWorker(address) {
+  if (!fetchers.has(address)) {
+    fetchers.set(address, async ({ url, signal }) => {
+      const { status, blob } = await askerAt(address)({ url, signal });
+      if (NONE_THERE.includes(status)) return null;
+      if (!(status >= 200 && status < 300)) throw new Error(`${url}: ${status}`);
+      return createImageBitmap(blob);
+    });
+  }
+  return fetchers.get(address);
 }
 
 // a picture of the ground by tiles: each tile is one picture
@@ -50,6 +68,7 @@ function propsOf(json) {
 }
 
 const WHITE = [255, 255, 255], INK = [0, 0, 0];
+const WEB_MAP = "ground-map";
 // lines and rings that have a casing of their own, or lie on one that has
 const CASED = new Set(["casing", "route", "trail", "arrows", "aisles", "rows-ground", "hatch"]);
 const FILLS = new Set(["headland", "rows-ground", "aisles", "no-go"]);
@@ -86,7 +105,8 @@ function cased(json) {
 // Return deck.gl's layers.
 //
 // `hidden` names those that are switched off, `opacity` is the plants', `ground` says what lies below:
-// {ids, opacity, picture: whether it may have any colour, failed: called where it cannot be fetched}.
+// {ids, opacity, picture: whether it may have any colour, failed: called where it cannot be fetched,
+// worker: the address of what may ask another server for it}.
 export function layersOf(jsons, hidden, opacity, ground = {}) {
   const below = new Set(ground.ids ?? []), isOff = (json) => hidden.has(json.id.replace(/-casing$/, ""));
   // to draw a map in tiles is to ask for it: one that is switched off is not there
@@ -99,6 +119,7 @@ export function layersOf(jsons, hidden, opacity, ground = {}) {
     if (json["@@type"] === "PlantsLayer") Object.assign(own, { opacity, cased: Boolean(overPicture) });
     if (below.has(json.id)) own.opacity = ground.opacity ?? 1;
     if (json["@@type"] === "GroundLayer") own.onTileError = () => ground.failed?.();
+    if (json.id === WEB_MAP && ground.worker) own.getTileData = throughWorker(ground.worker);
     return new Kind({ ...props, ...own, id: json.id, visible: !isOff(json), pickable: false });
   });
 }

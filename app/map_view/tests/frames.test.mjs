@@ -43,6 +43,45 @@ test("of two days asked for one after the other, the last one is shown whichever
   assert.equal(frames.slider.getAttribute("aria-valuetext"), "2 May");
 });
 
+test("a day that cannot be fetched is not named until it is, and a film waits for it", async (context) => {
+  context.mock.method(globalThis, "setTimeout", (done) => setImmediate(done));
+  let fails = 2;
+  context.mock.method(globalThis, "fetch", async (url) => {
+    if (url === "late0" && fails-- > 0) return { ok: false, status: 404 };
+    return { ok: true, json: async () => ({ id: "plants", day: url }) };
+  });
+  const layers = NAMES.map((_, k) => [{ id: "plants", url: `late${k}` }]);
+  const { frames, seen } = framed({ layers });
+  let gone = 0;
+  frames.gone = () => { gone++; assert.equal(frames.day, "3 May"); };
+  const films = [];
+  frames.shot = async (name) => { films.push([name, seen.at(-1)[1]]); return {}; };
+  for await (const canvas of frames.canvases()) assert.ok(canvas);
+  assert.equal(gone, 2);
+  assert.deepEqual(films, [["1 May", "late0"], ["2 May", "late1"], ["3 May", "now"]]);
+});
+
+test("days that the server has elsewhere now are fetched from there", async () => {
+  const { frames, seen } = framed();
+  frames.show({ key: "k", names: NAMES, layers: NAMES.map((_, k) => [{ id: "plants", url: `new${k}` }]), now: 2 }, WORDS);
+  await frames.to(0);
+  assert.deepEqual(seen.at(-1), ["plan", "new0", "route"]);
+});
+
+test("while a film is made the days stay its own, and one of other days is not saved", async () => {
+  const { frames, saved } = framed();
+  const own = frames.shot;
+  frames.shot = (name) => {
+    assert.ok(frames.slider.disabled && frames.press.disabled);
+    if (name === "2 May") frames.show({ key: "other", names: ["4 May"], layers: [[]], now: 0 }, WORDS);
+    return own(name);
+  };
+  await frames.record("gif", WORDS);
+  assert.equal(frames.day, "4 May");
+  assert.deepEqual(saved, []);
+  assert.equal(frames.slider.disabled, undefined);
+});
+
 test("a film is a GIF of every day in order, and the map then shows the day it showed", async () => {
   const { frames, saved } = framed();
   const days = [];

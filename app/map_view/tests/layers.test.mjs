@@ -69,3 +69,30 @@ test("a tile that a map does not have is empty, one that cannot be had is an err
   assert.equal(await pictureAt({ url: "b" }), null);
   await assert.rejects(pictureAt({ url: "c" }), /503/);
 });
+
+test("a map of another server is asked for by its worker, and never by the page", async (context) => {
+  const asked = [], begun = [];
+  context.mock.method(globalThis, "fetch", () => assert.fail("the page asks no other server"));
+  globalThis.createImageBitmap = async (blob) => blob;
+  globalThis.Worker = class {
+    constructor(address) { begun.push(address); }
+    postMessage({ k, url }) {
+      asked.push(url ?? `stop ${k}`);
+      if (url === "broken") this.onerror();
+      else if (url && url !== "slow") this.onmessage({ data: { k, status: url === "none" ? 404 : url === "busy" ? 503 : 200, blob: "picture" } });
+    }
+  };
+  const [ground] = layersOf([web], new Set(), 1, { ...GROUND, worker: "/web_map/x.js" });
+  const at = ground.props.getTileData, stop = new AbortController();
+  assert.equal(layersOf([web], new Set(), 1, { ...GROUND, worker: "/web_map/x.js" })[0].props.getTileData, at, "no tile is fetched anew");
+  assert.equal(await at({ url: "a" }), "picture");
+  assert.equal(await at({ url: "none" }), null);
+  await assert.rejects(at({ url: "busy" }), /503/);
+  at({ url: "slow", signal: stop.signal }).catch(() => {});
+  stop.abort();
+  assert.deepEqual(asked, ["a", "none", "busy", "slow", "stop 3"]);
+  assert.deepEqual(begun, ["/web_map/x.js"]);
+  await assert.rejects(at({ url: "broken" }), /broken: 0/);
+  assert.equal(await at({ url: "a" }), "picture");
+  assert.equal(begun.length, 2, "a worker that failed is begun anew");
+});

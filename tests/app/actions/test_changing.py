@@ -41,6 +41,22 @@ def test_other_hours_are_used_from_now_on_when_asked_for(season_app, season):
     assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
 
 
+def test_another_sampler_goes_without_the_n_of_the_one_before(season_app, season):
+    project, settings = season(), season().settings
+    every_third = replace(settings, sampler="bouncy", sampler_settings={"every": 3})
+    project.change(every_third, settings)
+    go(season_app, "today")
+    hours_box(season_app).set_value(4.0).run()
+    press(season_app, "Use from now on")
+    assert season().settings.sampler_settings == {"every": 3}
+    for name in ("adaptive", "snake"):
+        box = next(one for one in season_app.selectbox if one.label == texts.SAMPLER)
+        box.set_value(name).run()
+        assert not season_app.exception
+        press(season_app, "Use from now on")
+        assert (season().settings.sampler, season().settings.sampler_settings) == (name, {})
+
+
 def hours_box(app):
     return next(one for one in app.slider if one.key.startswith("hours "))
 

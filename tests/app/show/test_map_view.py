@@ -122,7 +122,8 @@ def test_the_ground_lies_below_all_else_can_be_switched_and_names_its_source(sen
                         "somebody", is_picture=True)  # fmt: skip
     data = sent(content(ground=shown))
     assert [one["id"] for one in data["layers"]] == ["ground-picture", "boundary"]
-    assert data["ground"] == {"ids": ["ground-picture"], "credit": "somebody", "picture": True}
+    assert data["ground"] == {"ids": ["ground-picture"], "credit": "somebody", "picture": True,
+                              "worker": ""}  # fmt: skip
     assert data["switches"][-1]["layers"] == ["ground-picture"]
     assert sent(content())["switches"] == []
 

@@ -1,5 +1,6 @@
 """Behind the gate is whoever knows the password; outside it stand the page and the interface."""
 
+import asyncio
 import re
 
 import pytest
@@ -32,9 +33,10 @@ def door(inside):
     return Gate(inside, PASSWORD)
 
 
-def ask(door, path, method="GET", body=b"", **headers):
+def ask(door, path, method="GET", body=b"", client="127.0.0.1", **headers):
     named = {name.replace("_", "-"): value for name, value in headers.items()}
-    return in_own_loop(lambda: exchange(door, scope_of(method, path, named), [body]))
+    scope = scope_of(method, path, named) | {"client": (client, 5000)}
+    return in_own_loop(lambda: exchange(door, scope, [body]))
 
 
 def opened(door, password=PASSWORD, **headers):
@@ -95,13 +97,49 @@ def test_another_sites_page_opens_no_line_and_sends_no_password(door):
     cookie = cookie_of(opened(door))
     elsewhere = "https://elsewhere.example"
     assert in_own_loop(lambda: line(door, {"cookie": cookie, "origin": elsewhere}))
-    assert opened(door, origin=elsewhere).status == 401
+    assert {opened(door, origin=elsewhere).status for _ in range(11)} == {401}
+    assert opened(door).status == 303, "a page elsewhere locks nobody out"
 
 
 def test_guessing_ends_after_ten_tries(door):
     assert {opened(door, "wrong").status for _ in range(10)} == {401}
     assert opened(door, "wrong").status == 429
     assert opened(door).status == 429, "not even the right one: a guess must not be told from it"
+
+
+def test_guesses_sent_all_at_once_are_counted_before_one_is_heard(door):
+    heard = asyncio.Event()
+
+    async def guess(word):
+        sent = []
+
+        async def receive():
+            await heard.wait()
+            return {"type": "http.request", "body": f"password={word}".encode()}
+
+        async def send(message):
+            sent.append(message)
+
+        await door(scope_of("POST", OPEN, {}), receive, send)
+        return sent[0]["status"]
+
+    async def guesses():
+        under_way = [asyncio.create_task(guess(word)) for word in [*"x" * 15, PASSWORD]]
+        await asyncio.sleep(0)
+        heard.set()
+        return await asyncio.gather(*under_way)
+
+    assert in_own_loop(guesses) == [401] * 10 + [429] * 6
+
+
+def test_who_guesses_locks_nobody_else_out_but_all_together_guess_so_often_only(door):
+    for _ in range(11):
+        opened(door, "wrong", client="192.168.1.66")
+    for _ in range(12):
+        assert opened(door, client="192.168.1.20").status == 303
+    for k in range(90):
+        assert opened(door, "wrong", client=f"10.0.0.{k}").status == 401
+    assert opened(door, client="192.168.1.20").status == 429
 
 
 def test_a_minute_later_one_may_try_again(door, monkeypatch):

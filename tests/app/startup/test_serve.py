@@ -4,12 +4,13 @@ import asyncio
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from urllib.parse import unquote
 
 import pytest
 
 from app.startup import addresses
 from app.startup.serve import Server, page_files
-from app.state import map_file, map_store, map_tiles
+from app.state import map_file, map_store, map_tiles, web_maps
 from fieldmon.io.rasters.tiles import read_tiles
 from tests.io.rasters.tile_maps import about, mbtiles
 
@@ -80,6 +81,22 @@ def test_what_maps_are_made_of_is_handed_out_as_what_it_is_to_one_browser_only()
         assert headers[b"x-content-type-options"] == b"nosniff"
         assert headers[b"cache-control"].startswith(b"private, immutable")
         assert int(headers[b"content-length"]) == len(data)
+
+
+def test_a_page_may_ask_this_server_only_and_a_worker_one_that_was_agreed_to():
+    policy = asked(Server(), "/")[1][b"content-security-policy"].decode()
+    (may,) = (one for one in policy.split("; ") if one.startswith("connect-src"))
+    assert set(may.split()[1:]) == {
+        "'self'", "data:", "blob:", "ws://127.0.0.1:8501", "wss://127.0.0.1:8501"
+    }  # fmt: skip
+    agreed = unquote(web_maps.ASKED.worker("https://tiles.example/{z}/{x}/{y}.png"))
+    status, headers, body = asked(Server(), agreed)
+    assert (status, body) == (200, web_maps.WORKER.read_bytes())
+    assert headers[b"content-type"] == b"text/javascript"
+    assert headers[b"content-security-policy"] == (
+        b"default-src 'none'; connect-src https://tiles.example"
+    )
+    assert asked(Server(), agreed.replace("tiles", "other"))[0] == 404
 
 
 @pytest.mark.parametrize("name", ["", "0" * 40, "../config.py", "%2e%2e/x"])

@@ -4,6 +4,7 @@ from datetime import date
 
 import pytest
 
+from fieldmon.samplers import sampler
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.monitoring.seasons import BEGINS, Insects, a_season
 
@@ -37,3 +38,10 @@ def test_a_plan_in_a_season_is_what_is_left_of_the_day(tmp_path):
     rest = choices.plan().route.plant
     assert len(rest) < len(first)
     assert not set(rest.tolist()) & set(first[:4].tolist())
+
+
+def test_a_season_s_sampler_is_the_one_that_was_told_with_its_settings(tmp_path, plot):
+    season = a_season(tmp_path / "s.gpkg", sampler="bouncy", sampler_settings={"every": 3})
+    assert in_season(season, BEGINS).decides == sampler("bouncy", every=3)
+    choices = chosen(plot)
+    assert choices.decides == sampler(choices.sampler)

@@ -25,11 +25,14 @@ from tests.app.driving import (
 MITES = b"lon,lat,date,count\n35.1505,30.3605,2026-11-10,4\n"
 
 
+def word_of(app):
+    word = app.query_params["files"]
+    return word[0] if isinstance(word, list) else word
+
+
 def reloaded(app):
     """Return a new session at the address at which this one stands."""
-    word = app.query_params["files"]
-    word = word[0] if isinstance(word, list) else word
-    return opened(texts.UPLOAD, files=word)
+    return opened(texts.UPLOAD, files=word_of(app))
 
 
 @pytest.fixture
@@ -67,15 +70,22 @@ def test_nobody_sees_files_without_the_whole_word():
         assert "Bring a plot" in texts_of(opened(texts.UPLOAD, files=guess))
 
 
-def test_a_file_taken_out_is_gone_from_the_machine_too(brought):
+def test_what_a_phone_takes_out_is_gone_there_and_kept_for_whoever_gave_it_the_address(brought):
     (kept,) = kept_files.folder().iterdir()
     assert len(list(kept.iterdir())) == 3
-    again = go(reloaded(brought), "plot")
-    again.button(key="forget record").click().run()
-    assert len(list(kept.iterdir())) == 2
-    again.button(key="forget plot").click().run()
-    assert not kept.exists()
-    assert "files" not in again.query_params
+    phone = reloaded(brought)
+    assert word_of(phone) == kept.name, "the same address, as long as nothing was changed"
+    go(phone, "plot").button(key="forget record").click().run()
+    own = kept_files.folder() / word_of(phone)
+    assert len(list(own.iterdir())) == 2
+    row_box(phone, "row_spacing").set_value(7.0).run()
+    office = go(reloaded(brought), "plot")
+    assert "1 of 1 records shown" in texts_of(office)
+    assert row_box(office, "row_spacing").value != 7.0
+    phone.button(key="forget plot").click().run()
+    assert not own.exists()
+    assert "files" not in phone.query_params
+    assert len(list(kept.iterdir())) == 3
 
 
 def test_what_nobody_came_back_to_for_a_day_is_removed():

@@ -1,6 +1,7 @@
 """One plan of all plots that are due: routes fit the hours, and nobody is in two places."""
 
 import shutil
+from dataclasses import replace
 from datetime import timedelta
 from itertools import pairwise
 
@@ -10,6 +11,8 @@ import shapely
 from app.state import estate, shared_plots
 from app.state.estate import PlotState
 from app.state.shared_plots import EstateCrew
+from fieldmon.planning.plan import plan_in
+from fieldmon.samplers import sampler
 
 OUTLINE = shapely.MultiPolygon([shapely.box(0, 0, 1, 1)])
 
@@ -57,16 +60,21 @@ def test_the_sample_s_plots_are_shared_by_two():
 
 @pytest.mark.usefixtures("session")
 def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
-    begun_file, seasons_folder
+    begun_file, seasons_folder, season
 ):
     shutil.copy(begun_file, seasons_folder)
+    project, settings = season(), season().settings
+    every_sixth = replace(settings, sampler="bouncy", sampler_settings={"every": 6})
+    project.change(every_sixth, settings)
     (own,), _ = estate.plots()
     made = shared_plots.planned(
         [own, plot("gone", None)], EstateCrew(robot_hours=1), lambda *_: None
     )
     (turn,) = made.turns
     assert turn.plot is own
-    assert turn.sampler == "adaptive"
-    assert len(turn.plan.route) > 10
+    assert turn.sampler == "bouncy"
+    by_itself = plan_in(turn.plan.scene, sampler("bouncy", every=6)).route.plant
+    assert turn.plan.route.plant.tolist() == by_itself.tolist()
+    assert len(by_itself) > 10
     assert len(made.problems) == 1
     assert "gone" in made.problems[0]

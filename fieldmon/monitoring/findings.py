@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from dataclasses import asdict, dataclass, replace
-from datetime import UTC, date, datetime, timedelta
+from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,7 +31,7 @@ from fieldmon.monitoring.geopackage import insert, point_blobs, touch
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
-from fieldmon.plot.local_clock import local_clock, utc_now
+from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -261,7 +261,7 @@ def _differs(one: Finding, known: dict[str, tuple[str, str]]) -> str:
 
 
 def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> None:
-    since = _text(now - timedelta(days=1))
+    since = utc_text(now - timedelta(days=1))
     told = "SELECT count(*) FROM tellings WHERE scout = ? AND received > ?"
     (before,) = db.execute(told, (scout.name, since)).fetchone()
     if before + news > MOST_A_DAY:
@@ -400,7 +400,7 @@ def _keep(
         [
             (
                 *(place, one.id, scout.name, one.undoes or None),
-                *(one.at.isoformat(), sent.isoformat(), _text(received)),
+                *(one.at.isoformat(), sent.isoformat(), utc_text(received)),
                 *(one.accuracy_m, one.stage or None, one.leaves, int(one.off_route)),
                 *(inspection, problem, one.content()),
             )
@@ -415,7 +415,3 @@ def _take_back(change: SeasonChange) -> set[int]:
         batches.close_if_empty(change.db, batch)
         change.reaches(day)
     return {batch for batch, _ in back}
-
-
-def _text(moment: datetime) -> str:
-    return moment.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")

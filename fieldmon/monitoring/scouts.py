@@ -15,7 +15,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import AccessError, SettingError
 from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import insert, touch
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -90,7 +90,7 @@ def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> st
     first, last = rows or (None, None)
     with season.store.writing() as db:
         _end(db, name)
-        row = (name, _key_digest(season, key), utc_now(), None, first, last)
+        row = (name, _key_digest(season, key), utc_text(), None, first, last)
         insert(db, phone_tables.SCOUTS, [row])
         touch(db, phone_tables.SCOUTS.name)
     return key
@@ -177,7 +177,7 @@ def _scout(row: tuple[str, int | None, int | None, str, str | None]) -> Scout:
 
 def _end(db: sqlite3.Connection, name: str) -> int:
     holding = db.execute("SELECT DISTINCT name FROM scouts WHERE ended IS NULL").fetchall()
-    names = [(utc_now(), one) for (one,) in holding if _same(one, name)]
+    names = [(utc_text(), one) for (one,) in holding if _same(one, name)]
     ended = "UPDATE scouts SET ended = ? WHERE name = ? AND ended IS NULL"
     return db.executemany(ended, names).rowcount if names else 0
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING
 
@@ -92,10 +92,17 @@ class Finding:
     after: datetime | None = None
 
     def content(self) -> str:
-        """Return all of it as JSON, the same for the same finding only."""
-        # when phones did not say it, it was no part
-        said = {name: value for name, value in asdict(self).items() if name != "after" or value}
-        return json.dumps(said, default=str, sort_keys=True, ensure_ascii=False)
+        """Return what it says as JSON, the same for the same finding whichever version told it."""
+        return json.dumps(_said(asdict(self)), default=str, sort_keys=True, ensure_ascii=False)
+
+
+#: what a finding has where nothing is said
+_UNSAID = {one.name: one.default for one in fields(Finding)}
+
+
+def _said(content: dict[str, object]) -> dict[str, object]:
+    """Return what of a finding's content is said; older files hold what is not, too."""
+    return {name: value for name, value in content.items() if value != _UNSAID.get(name)}
 
 
 @dataclass(frozen=True)
@@ -255,7 +262,7 @@ def _known(db: sqlite3.Connection, ids: list[str]) -> dict[str, tuple[str, str]]
 
 
 def _differs(one: Finding, known: dict[str, tuple[str, str]]) -> str:
-    if known[one.id][0] == one.content():
+    if _said(json.loads(known[one.id][0])) == json.loads(one.content()):
         return ""
     return worded("Another finding has the same id; the first one was kept.")
 

@@ -21,6 +21,7 @@ from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import (
     batches,
     inspection_table,
+    people,
     phone_tables,
     photos,
     schema,
@@ -29,8 +30,10 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.geopackage import insert, point_blobs, touch
 from fieldmon.monitoring.open_season import settings_of
+from fieldmon.monitoring.people import as_written
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
+from fieldmon.planning.members import person
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 if TYPE_CHECKING:
@@ -188,14 +191,20 @@ def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, 
             worded("Records must have an author, but the file names none. Say who (--who NAME).")
         )
     with season.changing() as change:
-        for name in sorted(names):
-            told = [Finding(**one.fields) for one in here.findings if (one.who or who) == name]
+        known = people.names_written(change.db)
+        for name in sorted({as_written(known, name) for name in names}):
+            told = [
+                Finding(**one.fields)
+                for one in here.findings
+                if as_written(known, one.who or who) == name
+            ]
             letter = _SentFindings(told, (received, received), timedelta())
             taken += _take(season, change, Scout(name, None, ""), letter)
         for one in here.photos:
             new, problem = False, ""
             try:
-                new = photos.keep_of(change.db, one.who or who, photos.Photo(**one.fields))
+                name = as_written(known, one.who or who)
+                new = photos.keep_of(change.db, name, photos.Photo(**one.fields))
             except (ObservationError, LimitError) as error:  # it may be why it is in the file
                 problem = str(error)
             taken.append(Taken(one.fields["id"], new, problem))
@@ -269,8 +278,7 @@ def _differs(one: Finding, known: dict[str, tuple[str, str]]) -> str:
 
 def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> None:
     since = utc_text(now - timedelta(days=1))
-    told = "SELECT count(*) FROM tellings WHERE scout = ? AND received > ?"
-    (before,) = db.execute(told, (scout.name, since)).fetchone()
+    before = phone_tables.n_sent(db, phone_tables.FINDINGS, scout.name, since)
     if before + news > MOST_A_DAY:
         raise LimitError(
             worded(
@@ -317,7 +325,7 @@ def _write(
 def _of_another(db: sqlite3.Connection, scout: Scout, one: Finding) -> dict[str, str]:
     """Return why a finding takes nothing back, by its id: nobody takes back what others told."""
     told = db.execute("SELECT scout FROM tellings WHERE id = ?", (one.undoes,)).fetchone()
-    if told is None or told[0] == scout.name:
+    if told is None or person(told[0]) == person(scout.name):
         return {}
     said = worded("This was recorded by {who}, so nobody else can take it back here.", who=told[0])
     return {one.id: said}

@@ -88,8 +88,7 @@ def keep_of(db: sqlite3.Connection, who: str, photo: Photo) -> bool:
             )
         return False
     since = utc_text(utc_now() - timedelta(days=1))
-    sent = "SELECT count(*) FROM photos WHERE scout = ? AND received > ?"
-    if db.execute(sent, (who, since)).fetchone()[0] >= MOST_A_DAY:
+    if phone_tables.n_sent(db, phone_tables.PHOTOS, who, since) >= MOST_A_DAY:
         raise LimitError(worded("One person may send {n} photos a day. Wait a day.", n=MOST_A_DAY))
     lon, lat = photo.lonlat or (None, None)
     named = (photo.id, photo.finding, who, photo.at.isoformat(), utc_text())

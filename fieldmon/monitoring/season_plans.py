@@ -17,6 +17,7 @@ from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day, settings_of
 from fieldmon.monitoring.settings import seconds
+from fieldmon.planning.members import person
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
@@ -170,7 +171,7 @@ class SeasonPlans(OpenSeason):
         if who is None:
             out = _out(last, codes, self._planned_by(contents, on))
         else:
-            out = {name for name in last if name.casefold() == who.casefold()}
+            out = {name for name in last if person(name) == person(who)}
             kept = [one for one in kept if one.who in out]
         if not kept:
             return None
@@ -256,8 +257,8 @@ def _out(
     They are of the team or have a code. The season's own route is that of who is alone, and counts
     where none was given to anybody.
     """
-    names = {one.name.casefold() for one in settings.team} | {*codes}
-    out = {name for name in last if name.casefold() in names}
+    names = {person(one.name) for one in settings.team} | {*codes}
+    out = {name for name in last if person(name) in names}
     if not settings.team and [*codes.values()] == [None] and "" in last:
         return {max(out | {""}, key=last.__getitem__)}
     return out or ({""} if "" in last else {*last})

@@ -284,6 +284,16 @@ def test_what_was_taken_by_a_version_that_knew_less_or_kept_more_is_still_the_sa
     assert "same id" in take(season, key, [replace(one, plant=None)], NOW)[0].problem
 
 
+def test_one_takes_back_ones_own_though_an_older_file_writes_the_name_in_capitals(season, key):
+    one = a_finding(37)
+    take(season, key, [one], NOW)
+    with season.store.writing() as db:
+        db.execute("UPDATE tellings SET scout = 'ANN'")
+    (back,) = take(season, key, [a_finding(None, None, undoes=one.id)], NOW)
+    assert back.problem == ""
+    assert 37 not in season.history.inspections.plant
+
+
 def test_nobody_takes_back_what_another_told_and_that_is_said(season, key):
     theirs = a_finding(37)
     take(season, scouts.let_in(season, "Ben"), [theirs], NOW)

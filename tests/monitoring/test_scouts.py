@@ -3,13 +3,11 @@
 import shutil
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from fieldmon.errors import AccessError, SettingError
 from fieldmon.monitoring import Season, scouts
 from fieldmon.planning.members import team_of
-from tests.monitoring.seasons import three_results
 
 
 @pytest.fixture
@@ -91,21 +89,6 @@ def test_who_was_invited_a_moment_ago_has_their_rows_already(season, monkeypatch
     monkeypatch.setattr(season.store, "writing", after_another)
     with pytest.raises(SettingError, match="overlap"):
         scouts.let_in(season, "Ann", (1, 6))
-
-
-def test_a_person_is_written_as_at_first_whoever_types_it(season):
-    first = scouts.let_in(season, "Ann")
-    second = scouts.let_in(season, "ann ")
-    with pytest.raises(AccessError):
-        scouts.who(season, first)
-    assert scouts.who(season, second).name == "Ann"
-    season.record(three_results(), "f", "ANN")
-    theirs = np.array(["Ben", "BEN", "aNN"], object)
-    season.record(replace(three_results(on=1), who=theirs), "g")
-    assert season.history.inspections.who.tolist()[-6:] == ["Ann"] * 3 + ["Ben", "Ben", "Ann"]
-    season.undo()
-    scouts.take_back(season, "ANN")
-    assert scouts.who(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"
 
 
 def test_a_name_of_the_team_is_written_as_there_and_any_other_needs_rows(season):

@@ -105,8 +105,13 @@ def ask_photo(
 def photos_asked(season: Season) -> tuple[AskedPhoto, ...]:
     """Return the photos that are asked for and not there yet, in the order of asking."""
     with season.store.reading() as db:
-        rows = db.execute(f"SELECT a.id, a.plant, a.note, a.who, a.at {_OPEN} ORDER BY a.fid")
-        return tuple(AskedPhoto(*row) for row in rows)
+        return photos_asked_in(db)
+
+
+def photos_asked_in(db: sqlite3.Connection) -> tuple[AskedPhoto, ...]:
+    """Return the photos that are asked for, as `photos_asked` does, within a transaction."""
+    rows = db.execute(f"SELECT a.id, a.plant, a.note, a.who, a.at {_OPEN} ORDER BY a.fid")
+    return tuple(AskedPhoto(*row) for row in rows)
 
 
 def ask_no_more(season: Season, name: str) -> bool:

@@ -165,6 +165,10 @@ class MonitoringSettings:
         names = (one for one in self.team if person(one.name) == person(who))
         return next(names, None)
 
+    def at_work(self, who: str) -> TeamMember | None:
+        """Return the one of the team who is named, or the first if nobody is; None: no such one."""
+        return self.named(who) if who else next(iter(self.team), None)
+
     def day(self, on: date) -> int:
         """Return the number of the day `on`, from 0; raise `SettingError` outside the season."""
         number = (on - self.begins).days

@@ -8,6 +8,7 @@ import streamlit as st
 
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.scouts_out import scouts_out
+from fieldmon.planning.members import person
 
 from ..show import qr_code, who_is_out
 from ..state import morning, notices, phone, scout_page
@@ -99,16 +100,16 @@ def _invite(choices: Choices) -> str:
     whole = first is None and last is None
     lines = int(choices.season.label.line.max())
     rows = None if whole else (int(first or 1), int(last or lines))
-    before = {one.name.casefold() for one in scouts.scouts_of(choices.season)}
+    before = {person(one.name) for one in scouts.scouts_of(choices.season)}
     state[_SHOWN] = name, let_in(choices, name, rows)
     morning.note(choices, morning.SEND)
-    return _what_follows(choices, name, had_code=name.casefold() in before)
+    return _what_follows(choices, name, had_code=person(name) in before)
 
 
 def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
     """Return what a new code means for others and for the earlier one; empty: nothing."""
     named = (one for one in scouts_out(choices.season, choices.on)
-             if one.name.casefold() == name.casefold())  # fmt: skip
+             if person(one.name) == person(name))  # fmt: skip
     made, said = next(named), texts.isolated(name)
     others = ", ".join(texts.isolated(one) for one in made.shares)
     beside = choices.season.settings.team and choices.season.settings.named(name) is None

@@ -223,7 +223,7 @@ _REFUSALS = {
     "413": "It is too large.",
     "422": "It is not as described; nothing of it was taken.",
     "429": "Too many for a day.",
-    "503": "The disk is full or the season's file is held by another program: try again.",
+    "503": "The disk is full or the season's file is held by another program or away: try again.",
 }
 
 

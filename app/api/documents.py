@@ -17,10 +17,10 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.monitoring import kept_open
 from fieldmon.monitoring.day_ahead import (
+    DayAhead,
     Part,
-    asked_of,
-    plan_of,
     planned_again,
     route_ahead,
     work_left_s,
@@ -80,16 +80,19 @@ def day_document(season: Season, scout: Scout, on: date | None, has: int | None 
 
     `has`: the plan that the phone has and goes on by; None: it goes by what is returned.
     """
-    on = _day(season, on)
-    number = season.settings.day(on)
+    with kept_open():
+        return _json(_day_told(season, scout, _day(season, on), has))
+
+
+def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[str, Any]:
     part = Part(scout.rows, scout.name)
     route, history = route_ahead(season, on, part), season.history
-    plan = plan_of(season, on, part)
+    ahead = DayAhead.of(season, on)
+    settings, plan, member = ahead.settings, ahead.plan_of(part), ahead.member(part)
     heard.note(season.path, scout.name, on, plan if has is None else has)
-    member = part.member(season)
-    robot = season.settings.robot if member is None else member.robot
-    known = history.known(number)
-    document = {
+    robot = settings.robot if member is None else member.robot
+    known = history.known(settings.day(on))
+    return {
         "season": season.path.stem,
         "scout": scout.name,
         "rows": scout.rows,
@@ -97,7 +100,7 @@ def day_document(season: Season, scout: Scout, on: date | None, has: int | None 
         "day": on.isoformat(),
         "live": on == _today(season),
         "past": on < _today(season),
-        "starts": f"{season.settings.starts:%H:%M}",
+        "starts": f"{settings.starts:%H:%M}",
         "robot": {
             "hours": robot.hours,
             "speed_m_s": robot.speed_m_s,
@@ -116,19 +119,18 @@ def day_document(season: Season, scout: Scout, on: date | None, has: int | None 
         "contradicting": _said(season.contradicting(on)),
         "hot_spots": _hot_spots(season, known),
         "photos": [photo._asdict() for photo in photos_of(season)],
-        "photos_asked": [one._asdict() for one in asked_of(season, on, part)],
+        "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
     }
-    return _json(document)
 
 
 def rest_document(
     season: Season, scout: Scout, on: date | None, seconds_left: float | None
 ) -> bytes:
     """Return the rest of a day, planned anew with all that is known."""
-    on = _day(season, on)
-    part = Part(scout.rows, scout.name)
-    route = planned_again(season, on, part, seconds_left)
-    plan = plan_of(season, on, part)
+    with kept_open():
+        on, part = _day(season, on), Part(scout.rows, scout.name)
+        route = planned_again(season, on, part, seconds_left)
+        plan = DayAhead.of(season, on).plan_of(part)
     heard.note(season.path, scout.name, on, plan)
     return _json({"day": on.isoformat(), "route": _route(route), "plan": plan})
 

@@ -19,7 +19,14 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from fieldmon.errors import AccessError, FieldmonError, FileProblem, LimitError, ObservationError
+from fieldmon.errors import (
+    AccessError,
+    FieldmonError,
+    FileProblem,
+    LimitError,
+    ObservationError,
+    SettingError,
+)
 from fieldmon.monitoring import findings, photos, photos_asked, scouts
 
 from ..state import heard, opened_seasons, seasons_folder
@@ -27,6 +34,7 @@ from . import description, documents, reading
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
+    from pathlib import Path
 
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.scouts import Scout
@@ -126,19 +134,34 @@ async def _asked_by(request: Request) -> tuple[Season, Scout]:
 
 
 def _opened(name: str, key: str) -> tuple[Season, Scout]:
-    if key:
-        try:
-            season = opened_seasons.opened(seasons_folder.path_of(name))
-        except FieldmonError:
-            key = ""
-        else:
-            scout = scouts.who(season, key)
-            heard.note(season.path, scout.name)
-            return season, scout
-    raise AccessError(
-        "There must be a key that holds for this season, but there is none. Ask whoever leads the "
-        "season for a new one."
-    )
+    path = _path_of(name) if key else None
+    if path is None:
+        raise AccessError(
+            "There must be a key that holds for this season, but there is none. Ask whoever leads "
+            "the season for a new one."
+        )
+    try:
+        season = opened_seasons.opened(path)
+        scout = scouts.who(season, key)
+    except AccessError:
+        raise
+    except FieldmonError as error:  # what is wrong with it is no stranger's business
+        raise FileProblem(
+            "The season's file must be within reach, but it is not just now; nothing is lost. Try "
+            "again later."
+        ) from error
+    heard.note(season.path, scout.name)
+    return season, scout
+
+
+def _path_of(name: str) -> Path | None:
+    """Return the file of a season; None unless it is there, was, or its folder is out of reach."""
+    try:
+        path = seasons_folder.path_of(name)
+    except SettingError:
+        return None
+    is_known = path.is_file() or opened_seasons.was_open(path) or not path.parent.is_dir()
+    return path if is_known else None
 
 
 def _is_foreign(request: Request) -> bool:

@@ -48,18 +48,21 @@ class DayRoute:
 
 def starts(choices: Choices, plan: DayPlan) -> datetime:
     """Return the local time at which the planned route, or what is left of it, starts."""
-    notes = plan.route.notes
-    if notes is not None and notes.start is not None:
-        return notes.start
+    if (said := _said_start(plan.route)) is not None:
+        return said
     gone = timedelta(seconds=plan.scene.robot.day_s - plan.scene.seconds_left)
     return work_begins(choices) + gone
 
 
-def work_begins(choices: Choices, *, worked: bool = False) -> datetime:
+def _said_start(route: Route) -> datetime | None:
+    return None if route.notes is None else route.notes.start
+
+
+def work_begins(choices: Choices) -> datetime:
     """Return the local time at which the day's work starts for the one whose day is shown."""
     if (season := choices.season) is None:
         return datetime.combine(choices.on, STARTS)
-    settings = (season.settings_on if worked else season.planned_by)(choices.on)
+    settings = season.planned_by(choices.on)
     late_s = settings.member(choices.who).starts_s if choices.who else 0.0
     return datetime.combine(choices.on, settings.starts) + timedelta(seconds=late_s)
 
@@ -70,7 +73,7 @@ def route(choices: Choices) -> DayRoute:
     if season is not None and day_was_worked(season, choices.on, plan.route):
         of = choices.day, choices.who
         done = cached.worked(choices.key, choices.revision, of, season)
-        return DayRoute(done, work_begins(choices, worked=True), worked=True)
+        return DayRoute(done, _said_start(done) or work_begins(choices), worked=True)
     return DayRoute(plan.route, starts(choices, plan))
 
 

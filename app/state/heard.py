@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class LastHeard(NamedTuple):
     """When somebody last asked anything; which day was asked for last, since when, by which plan.
 
-    The plan is the one that the phone goes by, see `fieldmon.monitoring.day_ahead.plan_of`.
+    The plan is the one that the phone goes by, see `DayAhead.plan_of`.
     """
 
     at: datetime

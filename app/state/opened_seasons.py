@@ -6,6 +6,7 @@ No Streamlit in here.
 from __future__ import annotations
 
 import threading
+from concurrent.futures import Future
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
@@ -15,31 +16,54 @@ from fieldmon.monitoring import Season
 if TYPE_CHECKING:
     from pathlib import Path
 
+    Opening = Future[Season]
+
 _FEW = 24
+# held for a moment only: while one file is opened others are asked for
 _LOCK = threading.Lock()
 # by path and inode: another file of the same name is another season; who was asked last is last
-_OPEN: dict[tuple[Path, int], Season] = {}
+_OPEN: dict[tuple[Path, int], Opening] = {}
 
 
 def is_open(path: Path) -> bool:
     """Return whether a season is open, so that asking for it takes no time."""
-    return _file(path) in _OPEN
+    opening = _OPEN.get(_file(path))
+    return opening is not None and opening.done()
+
+
+def was_open(path: Path) -> bool:
+    """Return whether a season of this path is open, though its file may be out of reach now."""
+    with _LOCK:
+        return any(file[0] == path for file in _OPEN)
 
 
 def opened(path: Path) -> Season:
     """Return a season that all share; each call of it reads what is new in its file."""
     file = _file(path)
-    with _LOCK:  # two who ask at once get the same
-        season = _OPEN.pop(file, None)
-        was_open = season is not None
-        _OPEN[file] = season = Season(path) if season is None else season
+    with _LOCK:
+        known = _OPEN.pop(file, None)
+        _OPEN[file] = opening = known or Future()
         while len(_OPEN) > _FEW:
             del _OPEN[next(iter(_OPEN))]
-    if was_open:
+    if known is None:
+        _open(file, opening)
+    season = opening.result()  # two who ask at once get the same
+    if known is not None:
         # what was added in QGIS since; a file in trouble says so to what is asked of it next
         with suppress(FileProblem):
             season.drafts = season.take_drafts()
     return season
+
+
+def _open(file: tuple[Path, int], opening: Opening) -> None:
+    """Open a season for all who wait for it; who asks after a failure tries again."""
+    try:
+        opening.set_result(Season(file[0]))
+    except BaseException as error:  # noqa: BLE001 - raised by all who wait
+        with _LOCK:
+            if _OPEN.get(file) is opening:
+                del _OPEN[file]
+        opening.set_exception(error)
 
 
 def _file(path: Path) -> tuple[Path, int]:

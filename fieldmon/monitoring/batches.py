@@ -9,7 +9,7 @@ from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import replaced, schema
 from fieldmon.monitoring.geopackage import touch
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -109,7 +109,7 @@ def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
     """Open a batch and return its number."""
     cursor = db.execute(
         "INSERT INTO batches (at, kind, source, who, rows) VALUES (?, ?, ?, ?, 0)",
-        (utc_now(), kind, source, who),
+        (utc_text(), kind, source, who),
     )
     return int(cursor.lastrowid or 0)
 

@@ -11,7 +11,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.monitoring import batches, outside_changes, replaced
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS, OUTSIDE_CHANGES
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -95,7 +95,13 @@ def _as_it_is(db: sqlite3.Connection, row: int) -> str:
 
 def _note(db: sqlite3.Connection, one: OutsideChange, batch: int, now: str | None) -> None:
     """Note a correction as those of other programs are, with the digest it came to."""
-    change = {"at": utc_now(), "layer": one.layer, "row": one.row, "what": one.what, "was": one.was}
+    change = {
+        "at": utc_text(),
+        "layer": one.layer,
+        "row": one.row,
+        "what": one.what,
+        "was": one.was,
+    }
     values = {**change, "batch": batch, "before": one.before, "now": now, "undone": 0}
     insert(db, OUTSIDE_CHANGES, [tuple(values[name] for name in OUTSIDE_CHANGES.names)])
 

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.monitoring.photos_asked import photos_asked
-from fieldmon.monitoring.scouts import scouts_of
+from fieldmon.monitoring import routes
+from fieldmon.monitoring.photos_asked import photos_asked_in
+from fieldmon.monitoring.scouts import scouts_in
+from fieldmon.planning.members import person
 from fieldmon.planning.route import route_of
 from fieldmon.planning.wishes import Wishes
 from fieldmon.planning.workday import Workday
@@ -21,14 +23,19 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.photos_asked import AskedPhoto
+    from fieldmon.monitoring.routes import KeptRoute
+    from fieldmon.monitoring.scouts import Scout
     from fieldmon.monitoring.season_file import Season
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import RowLabel
     from fieldmon.samplers.base import Scene
 
     Plants = NDArray[np.int32]
 
 MIDNIGHT = time()
+_NO_PLANTS: Plants = np.empty(0, np.int32)
 
 
 @dataclass(frozen=True)
@@ -46,25 +53,154 @@ class Part:
     rows: tuple[int, int] | None = None
     name: str = ""
 
-    def member(self, season: Season) -> TeamMember | None:
-        """Return the one of the team who has this name, or None."""
-        return season.settings.named(self.name)
-
 
 WHOLE = Part()
+
+
+@dataclass(frozen=True, eq=False)
+class DayAhead:
+    """What a season's file says of a day's routes and of who is to work, read at one moment.
+
+    Parameters
+    ----------
+    label
+        Row and number of every plant.
+    settings
+        What is chosen.
+    scouts
+        Who has a code.
+    last, plants
+        The route kept last of each who has one, and its plants ``(k,)``, by `person`.
+    asked
+        The photos that are asked for.
+    """
+
+    label: RowLabel
+    settings: MonitoringSettings
+    scouts: tuple[Scout, ...]
+    last: dict[str, KeptRoute]
+    plants: dict[str, Plants]
+    asked: tuple[AskedPhoto, ...]
+
+    @classmethod
+    def of(cls, season: Season, on: date) -> DayAhead:
+        """Return it of the day `on`."""
+        with season.reading() as (db, settings):
+            last = routes.kept_last(db, settings.day(on))
+            plants = {who: routes.plants(db, kept) for who, kept in last.items()}
+            people, asked = scouts_in(db), photos_asked_in(db)
+        return cls(season.label, settings, people, last, plants, asked)
+
+    def kept(self, who: str = "") -> Plants:
+        """Return the plants of somebody's route; nobody named: of the first of the team."""
+        named = self.settings.at_work(who)
+        return self.plants.get(person(who if named is None else named.name), _NO_PLANTS)
+
+    def member(self, part: Part) -> TeamMember | None:
+        """Return the one of the team whose part it is, or None."""
+        return self.settings.named(part.name)
+
+    def crew(self, part: Part) -> tuple[str, ...]:
+        """Return who shares a part's plants: all who have a code for these rows, beside the team.
+
+        They have aisles of their own, as a team has. Whose part it is comes last without a code.
+        """
+        rows = self._lines(part.rows)
+        names = {
+            person(one.name): one.name
+            for one in self.scouts
+            if self._lines(one.rows) == rows and self.settings.named(one.name) is None
+        }
+        names.setdefault(person(part.name), part.name)
+        return tuple(names.values())
+
+    def others(self, part: Part) -> tuple[str, ...]:
+        """Return who else shares a part's plants."""
+        return tuple(one for one in self.crew(part) if person(one) != person(part.name))
+
+    def kept_as(self, part: Part) -> str:
+        """Return by which name a part's route is kept.
+
+        The season's own is that of who works alone, unless one of their own was given to them
+        after it.
+        """
+        if (member := self.member(part)) is not None:
+            return member.name
+        if part.rows is not None or self.settings.team or self.others(part):
+            return part.name
+        own, seasons = (self.last.get(person(who)) for who in (part.name, ""))
+        is_newer = own is not None and (seasons is None or own.number > seasons.number)
+        return part.name if is_newer else ""
+
+    def plan_of(self, part: Part) -> int | None:
+        """Return the number in the file of the route kept last of a part; None: none is kept."""
+        kept = self.last.get(person(self.kept_as(part)))
+        return None if kept is None else kept.number
+
+    def route(self, part: Part) -> Plants:
+        """Return the plants of the route kept of a part, wherever they lie."""
+        return self.kept(self.kept_as(part))
+
+    def given(self, part: Part) -> Plants:
+        """Return the plants of the route kept of a part that are in it."""
+        kept = self.route(part)
+        return kept[self.own(part)[kept]]
+
+    def has_route(self, part: Part) -> bool:
+        """Return whether somebody can have a route: beside the team rows are needed for it."""
+        is_beside = bool(self.settings.team and part.name) and self.member(part) is None
+        return not is_beside or part.rows is not None
+
+    def own(self, part: Part) -> NDArray[np.bool_]:
+        """Return ``(n,)`` which plants are somebody's to inspect; none where no route can be."""
+        if not self.has_route(part):
+            return np.zeros(len(self.label.line), np.bool_)
+        return inside(self.label, part.rows)
+
+    def is_others(self, part: Part, left: Plants) -> bool:
+        """Return whether a route was made for other rows, or others who share them have of it."""
+        if self.member(part) is not None:
+            return False
+        if not self.own(part)[left].all():
+            return True
+        return any(np.isin(left, self.kept(one)).any() for one in self.others(part))
+
+    def asked_of(self, part: Part) -> tuple[AskedPhoto, ...]:
+        """Return the photos asked for that are somebody's to take: none is taken by two.
+
+        Those in a part's rows; of several who share them those on one's own route, and the first
+        one's where they are on nobody's.
+        """
+        mine, team = self.own(part), [one.name for one in self.settings.team]
+        names = self.crew(part) if self.member(part) is None else team
+        if part.name and len(names) > 1:
+            if person(part.name) != person(names[0]):
+                mine &= np.isin(np.arange(len(mine)), self.kept(part.name))
+            for one in names:
+                if person(one) != person(part.name):
+                    mine[self.kept(one)] = False
+        return tuple(one for one in self.asked if mine[one.plant])
+
+    def wanted(self, part: Part) -> tuple[int, ...]:
+        """Return the plants of a part of which a photo is asked for."""
+        mine = self.own(part)
+        return tuple(sorted({one.plant for one in self.asked if mine[one.plant]}))
+
+    def _lines(self, rows: tuple[int, int] | None) -> tuple[int, int]:
+        return rows or (1, int(self.label.line.max()))
 
 
 def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     """Return what is left of the route given out for a day; give one out if there is none.
 
     Somebody of the team has a route of their own, and so has whoever has rows, or shares them, see
-    `crew_of`. It begins where that person inspected last, or at the gate.
+    `DayAhead.crew`. It begins where that person inspected last, or at the gate.
     """
-    scene = season.scene(on, who=part.name)
-    kept = season.kept_route(on, kept_as(season, on, part))
+    ahead, scene = DayAhead.of(season, on), season.scene(on, who=part.name)
+    kept = ahead.route(part)
     kept = kept[scene.last_inspected[kept] != scene.day]
-    left = kept[_own(season, part)[kept]]
-    if not len(left) or (part.name and _is_others(season, on, part, kept)):
+    left = kept[ahead.own(part)[kept]]
+    if not len(left) or (part.name and ahead.is_others(part, kept)):
         return planned_again(season, on, part)
     return _through(scene, left)
 
@@ -76,78 +212,23 @@ def planned_again(
 
     It is kept as the route given out, unless it is a part of the plot and nobody's own.
     """
-    own, member = _own(season, part), part.member(season)
-    if part.rows is not None and season.settings.team and member is None:
-        for one in season.settings.team:
-            own[season.kept_route(on, one.name)] = False
+    ahead = DayAhead.of(season, on)
+    own, member = ahead.own(part), ahead.member(part)
+    if part.rows is not None and member is None:
+        for one in ahead.settings.team:
+            own[ahead.kept(one.name)] = False
     others = tuple(np.flatnonzero(~own).tolist())
-    wishes = Wishes(_wanted(season, part), others)
+    wishes = Wishes(ahead.wanted(part), others)
     if part.name and member is None:
-        crew = crew_of(season, part)
-        told = None if seconds_left is None else {part.name: seconds_left}
-        named = (kept_as(season, on, part),) if len(crew) == 1 else None
+        crew = ahead.crew(part)
+        (me,) = {*crew} - {*ahead.others(part)}
+        told = None if seconds_left is None else {me: seconds_left}
+        named = (ahead.kept_as(part),) if len(crew) == 1 else None
         days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
-        return days[crew.index(part.name)].route
+        return days[crew.index(me)].route
     who = None if member is None else member.name
     now = None if seconds_left is None else _time(season, on, seconds_left, member)
     return season.plan(on, now, keep=part.rows is None, wishes=wishes, who=who).route
-
-
-def crew_of(season: Season, part: Part) -> tuple[str, ...]:
-    """Return who shares a part's plants: all who have a code for these rows, beside the team.
-
-    They have aisles of their own, as a team has.
-    """
-    lines = 1, int(season.label.line.max())
-    names = [
-        one.name
-        for one in scouts_of(season)
-        if (one.rows or lines) == (part.rows or lines) and season.settings.named(one.name) is None
-    ]
-    return (*names, *({part.name} - {*names}))
-
-
-def kept_as(season: Season, on: date, part: Part) -> str:
-    """Return by which name a part's route of a day is kept.
-
-    The season's own is that of who works alone, unless one of their own was given to them after it.
-    """
-    if (member := part.member(season)) is not None:
-        return member.name
-    alone = part.rows is None and not season.settings.team and len(crew_of(season, part)) == 1
-    if not alone:
-        return part.name
-    last = season.kept_last(on)
-    return part.name if last.get(part.name, 0) > last.get("", 0) else ""
-
-
-def plan_of(season: Season, on: date, part: Part) -> int | None:
-    """Return the number in the file of the route kept last of a part; None: none is kept."""
-    return season.kept_last(on).get(kept_as(season, on, part))
-
-
-def given(season: Season, on: date, part: Part) -> Plants:
-    """Return the plants of the route kept of a part that are in it."""
-    kept = season.kept_route(on, kept_as(season, on, part))
-    return kept[_own(season, part)[kept]]
-
-
-def _is_others(season: Season, on: date, part: Part, left: Plants) -> bool:
-    """Return whether a route was made for other rows, or others who share them have of it now."""
-    if part.member(season) is not None:
-        return False
-    if not _own(season, part)[left].all():
-        return True
-    others = [one for one in crew_of(season, part) if one != part.name]
-    return any(np.isin(left, season.kept_route(on, one)).any() for one in others)
-
-
-def _own(season: Season, part: Part) -> NDArray[np.bool_]:
-    """Return ``(n,)`` which plants are somebody's to inspect; beside a team none without rows."""
-    beside = bool(season.settings.team and part.name) and part.member(season) is None
-    if beside and part.rows is None:
-        return np.zeros(len(season.label.line), np.bool_)
-    return inside(season, part.rows)
 
 
 def work_left_s(season: Season, on: date, part: Part) -> float:
@@ -155,39 +236,12 @@ def work_left_s(season: Season, on: date, part: Part) -> float:
     return float(season.scene(on, who=part.name).seconds_left)
 
 
-def inside(season: Season, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
+def inside(label: RowLabel, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
     """Return ``(n,)`` which plants are in a part."""
-    line = season.label.line
     if rows is None:
-        return np.ones(len(line), np.bool_)
-    part: NDArray[np.bool_] = (line >= rows[0]) & (line <= rows[1])
+        return np.ones(len(label.line), np.bool_)
+    part: NDArray[np.bool_] = (label.line >= rows[0]) & (label.line <= rows[1])
     return part
-
-
-def asked_of(season: Season, on: date, part: Part = WHOLE) -> tuple[AskedPhoto, ...]:
-    """Return the photos asked for that are somebody's to take: none is taken by two.
-
-    Those in a part's rows; of several who share them those on one's own route, and the first one's
-    where they are on nobody's.
-    """
-    mine, member = _own(season, part), part.member(season)
-    team = [one.name for one in season.settings.team]
-    names = crew_of(season, part) if member is None else team
-    if part.name and len(names) > 1:
-        who = part.name if member is None else member.name
-        routes = {one: season.kept_route(on, one) for one in names}
-        own = routes.pop(who)
-        if who != names[0]:
-            mine &= np.isin(np.arange(len(mine)), own)
-        for others in routes.values():
-            mine[others] = False
-    return tuple(one for one in photos_asked(season) if mine[one.plant])
-
-
-def _wanted(season: Season, part: Part = WHOLE) -> tuple[int, ...]:
-    """Return the plants of a part of which a photo is asked for."""
-    mine = _own(season, part)
-    return tuple(sorted({one.plant for one in photos_asked(season) if mine[one.plant]}))
 
 
 def _time(season: Season, on: date, seconds_left: float, member: TeamMember | None) -> time:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import asdict, dataclass, replace
-from datetime import UTC, date, datetime, timedelta
+from dataclasses import asdict, dataclass, fields, replace
+from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +21,7 @@ from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import (
     batches,
     inspection_table,
+    people,
     phone_tables,
     photos,
     schema,
@@ -29,9 +30,11 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.geopackage import insert, point_blobs, touch
 from fieldmon.monitoring.open_season import settings_of
+from fieldmon.monitoring.people import as_written
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
-from fieldmon.plot.local_clock import local_clock, utc_now
+from fieldmon.planning.members import person
+from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -92,10 +95,17 @@ class Finding:
     after: datetime | None = None
 
     def content(self) -> str:
-        """Return all of it as JSON, the same for the same finding only."""
-        # when phones did not say it, it was no part
-        said = {name: value for name, value in asdict(self).items() if name != "after" or value}
-        return json.dumps(said, default=str, sort_keys=True, ensure_ascii=False)
+        """Return what it says as JSON, the same for the same finding whichever version told it."""
+        return json.dumps(_said(asdict(self)), default=str, sort_keys=True, ensure_ascii=False)
+
+
+#: what a finding has where nothing is said
+_UNSAID = {one.name: one.default for one in fields(Finding)}
+
+
+def _said(content: dict[str, object]) -> dict[str, object]:
+    """Return what of a finding's content is said; older files hold what is not, too."""
+    return {name: value for name, value in content.items() if value != _UNSAID.get(name)}
 
 
 @dataclass(frozen=True)
@@ -181,14 +191,20 @@ def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, 
             worded("Records must have an author, but the file names none. Say who (--who NAME).")
         )
     with season.changing() as change:
-        for name in sorted(names):
-            told = [Finding(**one.fields) for one in here.findings if (one.who or who) == name]
+        known = people.names_written(change.db)
+        for name in sorted({as_written(known, name) for name in names}):
+            told = [
+                Finding(**one.fields)
+                for one in here.findings
+                if as_written(known, one.who or who) == name
+            ]
             letter = _SentFindings(told, (received, received), timedelta())
             taken += _take(season, change, Scout(name, None, ""), letter)
         for one in here.photos:
             new, problem = False, ""
             try:
-                new = photos.keep_of(change.db, one.who or who, photos.Photo(**one.fields))
+                name = as_written(known, one.who or who)
+                new = photos.keep_of(change.db, name, photos.Photo(**one.fields))
             except (ObservationError, LimitError) as error:  # it may be why it is in the file
                 problem = str(error)
             taken.append(Taken(one.fields["id"], new, problem))
@@ -255,15 +271,14 @@ def _known(db: sqlite3.Connection, ids: list[str]) -> dict[str, tuple[str, str]]
 
 
 def _differs(one: Finding, known: dict[str, tuple[str, str]]) -> str:
-    if known[one.id][0] == one.content():
+    if _said(json.loads(known[one.id][0])) == json.loads(one.content()):
         return ""
     return worded("Another finding has the same id; the first one was kept.")
 
 
 def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> None:
-    since = _text(now - timedelta(days=1))
-    told = "SELECT count(*) FROM tellings WHERE scout = ? AND received > ?"
-    (before,) = db.execute(told, (scout.name, since)).fetchone()
+    since = utc_text(now - timedelta(days=1))
+    before = phone_tables.n_sent(db, phone_tables.FINDINGS, scout.name, since)
     if before + news > MOST_A_DAY:
         raise LimitError(
             worded(
@@ -310,7 +325,7 @@ def _write(
 def _of_another(db: sqlite3.Connection, scout: Scout, one: Finding) -> dict[str, str]:
     """Return why a finding takes nothing back, by its id: nobody takes back what others told."""
     told = db.execute("SELECT scout FROM tellings WHERE id = ?", (one.undoes,)).fetchone()
-    if told is None or told[0] == scout.name:
+    if told is None or person(told[0]) == person(scout.name):
         return {}
     said = worded("This was recorded by {who}, so nobody else can take it back here.", who=told[0])
     return {one.id: said}
@@ -400,7 +415,7 @@ def _keep(
         [
             (
                 *(place, one.id, scout.name, one.undoes or None),
-                *(one.at.isoformat(), sent.isoformat(), _text(received)),
+                *(one.at.isoformat(), sent.isoformat(), utc_text(received)),
                 *(one.accuracy_m, one.stage or None, one.leaves, int(one.off_route)),
                 *(inspection, problem, one.content()),
             )
@@ -415,7 +430,3 @@ def _take_back(change: SeasonChange) -> set[int]:
         batches.close_if_empty(change.db, batch)
         change.reaches(day)
     return {batch for batch, _ in back}
-
-
-def _text(moment: datetime) -> str:
-    return moment.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")

@@ -104,6 +104,13 @@ def create(db: sqlite3.Connection, table: GeoPackageTable) -> None:
     announce(db, table)
 
 
+def add_column(db: sqlite3.Connection, table: str, column: str) -> None:
+    """Add a column by its SQL definition, unless the table has it: it may be made as of today."""
+    there = {row[1] for row in db.execute(f"PRAGMA table_info({table})")}
+    if column.split(maxsplit=1)[0] not in there:
+        db.execute(f"ALTER TABLE {table} ADD COLUMN {column}")
+
+
 def announce(db: sqlite3.Connection, table: GeoPackageTable) -> None:
     """Tell the GeoPackage's contents of a table or view that exists."""
     kind, srs = ("features", WGS84) if table.shape else ("attributes", None)

@@ -27,6 +27,7 @@ from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.planning.members import person
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
@@ -494,8 +495,8 @@ def made_by(inspections: Inspections, who: str | None) -> Inspections:
     """Return those that somebody made; None: all."""
     if who is None:
         return inspections
-    names = np.array([str(name).casefold() for name in inspections.who], np.str_)
-    return inspections.take(names == who.casefold())
+    names = np.array([person(str(name)) for name in inspections.who], np.str_)
+    return inspections.take(names == person(who))
 
 
 @dataclass(frozen=True, eq=False)

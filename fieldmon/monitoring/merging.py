@@ -10,6 +10,7 @@ begin with, and that come out where they are, are left there: of a long season t
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,6 +19,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.monitoring import phone_tables, replaced, schema, settings_log
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
+from fieldmon.planning.members import person
 
 if TYPE_CHECKING:
     import sqlite3
@@ -332,26 +334,48 @@ def _count(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
 
 
 def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:
-    """Keep the routes of both with their stops, those of a person and day by their revisions."""
+    """Keep the routes of both with their stops, those of a person and day by their revisions.
+
+    One that was given out again after another counts as often as it was.
+    """
+    known_by = ("day", "person", "digest", "again")
     found: dict[Hashable, tuple[Row, list[Row]]] = {}
     for copied in copies:
         stops: dict[int, list[Row]] = {}
         for stop in copied["stops"]:
             stops.setdefault(stop["route"], []).append(stop)
+        given: Counter[Hashable] = Counter()
         for route in copied["routes"]:
-            kept = found.setdefault(
-                (route["day"], route["who"], route["digest"]), (route, stops.get(route["fid"], []))
-            )
-            kept[0]["revision"] = min(kept[0]["revision"], route["revision"])
-    ordered = sorted(found.values(), key=lambda r: _key(r[0], ("day", "who", "revision", "digest")))
+            route["person"] = person(route["who"])
+            given[_key(route, known_by[:-1])] += 1
+            route["again"] = given[_key(route, known_by[:-1])]
+            own = stops.get(route["fid"], [])
+            kept, _ = found.setdefault(_key(route, known_by), (route, own))
+            kept["revision"] = min(kept["revision"], route["revision"])
+    begin = _alike_at_first(copies, "routes", known_by)
+    rest = sorted(
+        (key for key in found if key not in begin),
+        key=lambda key: _key(found[key][0], ("day", "person", "revision", "digest", "again")),
+    )
+    ordered = [found[key] for key in (*begin, *rest)]
+    revisions: Counter[Hashable] = Counter()
     all_stops: list[Row] = []
-    last: tuple[object, int] = (None, 0)
     for number, (route, own) in enumerate(ordered, 1):
-        revision = last[1] + 1 if last[0] == (route["day"], route["who"]) else 1
-        last, route["revision"] = ((route["day"], route["who"]), revision), revision
+        of = route["day"], route["person"]
+        revisions[of] += 1
+        route["revision"] = revisions[of]
         all_stops += [{**stop, "route": number} for stop in own]
     _write(db, schema.ROUTES, [route for route, _ in ordered])
     _write(db, schema.STOPS, all_stops)
+
+
+def _alike_at_first(
+    copies: list[dict[str, list[Row]]], name: str, known_by: tuple[str, ...]
+) -> dict[tuple[Any, ...], None]:
+    """Return the keys of the rows with which both copies begin, in order."""
+    ours, theirs = ([_key(row, known_by) for row in copied[name]] for copied in copies)
+    alike = [one == other for one, other in zip(ours, theirs, strict=False)]
+    return dict.fromkeys(ours[: (*alike, False).index(False)])
 
 
 def _once(
@@ -365,9 +389,7 @@ def _once(
     What both begin with stays where it is: a copy that brings nothing changes nothing.
     """
     found = {_key(row, known_by): row for copied in copies for row in copied[name]}
-    ours, theirs = ([_key(row, known_by) for row in copied[name]] for copied in copies)
-    alike = [one == other for one, other in zip(ours, theirs, strict=False)]
-    begin = dict.fromkeys(ours[: (*alike, False).index(False)])
+    begin = _alike_at_first(copies, name, known_by)
 
     def place(row: Row) -> str:
         return repr((_key(row, order), _key(row, known_by)))

@@ -1,11 +1,14 @@
-"""How the file of an older season becomes one of today, version by version."""
+"""How the file of an older season becomes one of today, version by version.
+
+A table that comes is made as of today: what comes to it later comes by `add_column`.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import create
+from fieldmon.monitoring.geopackage import add_column, create
 
 if TYPE_CHECKING:
     import sqlite3
@@ -15,9 +18,9 @@ if TYPE_CHECKING:
 def _treatments_come(db: sqlite3.Connection) -> None:
     """Version 1 knew neither treatments nor routes planned half-way."""
     create(db, schema.TREATMENTS)
-    db.execute(schema.INDEXES[1])
-    db.execute("ALTER TABLE routes ADD COLUMN at_plant INTEGER")
-    db.execute("ALTER TABLE routes ADD COLUMN seconds_left REAL")
+    schema.add_index(db, "treatments_once")
+    add_column(db, "routes", "at_plant INTEGER")
+    add_column(db, "routes", "seconds_left REAL")
 
 
 def _changes_are_noticed(db: sqlite3.Connection) -> None:
@@ -27,9 +30,9 @@ def _changes_are_noticed(db: sqlite3.Connection) -> None:
 
 def _teams_come(db: sqlite3.Connection) -> None:
     """Version 3 knew one who works: routes were nobody's, and settings said nothing of a team."""
-    db.execute("ALTER TABLE routes ADD COLUMN who TEXT NOT NULL DEFAULT ''")
+    add_column(db, "routes", "who TEXT NOT NULL DEFAULT ''")
     db.execute("DROP INDEX routes_revision")
-    db.execute(schema.INDEXES[2])
+    schema.add_index(db, "routes_revision")
     # as if said when the season began, so that a team chosen later can be taken back
     db.execute(
         "INSERT OR IGNORE INTO settings (fid, name, value, changed) "
@@ -46,16 +49,14 @@ def _estimates_come(db: sqlite3.Connection) -> None:
 def _long_seasons_come(db: sqlite3.Connection) -> None:
     """Version 9 kept inspections once, and of a day's figures not what they follow from."""
     create(db, schema.INSPECTION_LOTS)
-    db.execute("ALTER TABLE days ADD COLUMN causes TEXT")
+    add_column(db, "days", "causes TEXT")
     schema.count_inspections(db)
 
 
 def _corrections_keep_what_was(db: sqlite3.Connection) -> None:
     """Version 10 did not keep what stood there before a correction."""
-    there = {row[1] for row in db.execute("PRAGMA table_info(outside_changes)")}
     for column in schema.CORRECTED:
-        if column.split()[0] not in there:  # as in a file in which that layer came just now
-            db.execute(f"ALTER TABLE outside_changes ADD COLUMN {column}")
+        add_column(db, "outside_changes", column)
 
 
 def _records_come(db: sqlite3.Connection) -> None:
@@ -64,15 +65,13 @@ def _records_come(db: sqlite3.Connection) -> None:
     create(db, schema.LABELS)
     create(db, schema.LOG)
     create(db, schema.MORNINGS)
-    db.execute(schema.INDEXES[4])
+    schema.add_index(db, "inspections_batch")
 
 
 def _applications_say_all(db: sqlite3.Connection) -> None:
     """Version 8 did not ask for the active ingredient and the weather of a treatment."""
-    there = {row[1] for row in db.execute("PRAGMA table_info(treatments)")}
     for column in schema.APPLIED:
-        if column.split()[0] not in there:
-            db.execute(f"ALTER TABLE treatments ADD COLUMN {column}")
+        add_column(db, "treatments", column)
 
 
 #: what makes a file of version k one of version k + 1; `watch` follows the last

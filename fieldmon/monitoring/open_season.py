@@ -145,9 +145,18 @@ class OpenSeason:
     @property
     def settings(self) -> MonitoringSettings:
         """Return what is chosen for the season."""
+        with self.reading() as (_, settings):
+            return settings
+
+    @contextmanager
+    def reading(self) -> Iterator[tuple[sqlite3.Connection, MonitoringSettings]]:
+        """Give the file as it is at one moment, and what is chosen for the season then."""
         with self._lock, self.store.reading() as db:
-            outside_changes.refuse(db)
-            return settings_of(db) if (known := self._known(db)) is None else known.settings
+            yield db, self._settings(db)
+
+    def _settings(self, db: sqlite3.Connection) -> MonitoringSettings:
+        outside_changes.refuse(db)
+        return settings_of(db) if (known := self._known(db)) is None else known.settings
 
     def settings_on(self, on: date) -> MonitoringSettings:
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
@@ -283,7 +292,7 @@ class OpenSeason:
     def _shift(self, settings: MonitoringSettings, who: str) -> tuple[Shift, str | None]:
         """Return how somebody works, and whose inspections are theirs; None: everybody's."""
         starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
-        member = settings.named(who) if who else next(iter(settings.team), None)
+        member = settings.at_work(who)
         if member is None:
             return Shift(self.plot.aisles, settings.robot, starts_s, streams), who or None
         aisles, starts_s = self.aisles_from(member.gate), starts_s + member.starts_s

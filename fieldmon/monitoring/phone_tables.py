@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.monitoring import replaced
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, insert, touch
+from fieldmon.planning.members import person
 
 if TYPE_CHECKING:
     import sqlite3
@@ -139,15 +140,21 @@ def codes_on(
 ) -> dict[str, tuple[int, int] | None]:
     """Return who has a code that holds, or was taken back after a day, and of which rows.
 
-    Names are casefolded; None: the whole plot. What was planned of a day stays after it.
+    They are named as by `person`; None: the whole plot. What was planned of a day stays after it.
     """
     codes: dict[str, tuple[int, int] | None] = {}
     for name, ended, first, last in db.execute(
         "SELECT name, ended, first_row, last_row FROM scouts ORDER BY fid"
     ):
         if not ended or clock.at(datetime.fromisoformat(ended)).date() > on:
-            codes[name.casefold()] = None if first is None else (first, last)
+            codes[person(name)] = None if first is None else (first, last)
     return codes
+
+
+def n_sent(db: sqlite3.Connection, table: GeoPackageTable, who: str, since: str) -> int:
+    """Return how many findings or photos somebody sent since a moment."""
+    sent = f"SELECT scout, count(*) FROM {table.name} WHERE received > ? GROUP BY scout"  # noqa: S608 - ours
+    return sum(n for name, n in db.execute(sent, (since,)) if person(name) == person(who))
 
 
 def phones_come(db: sqlite3.Connection) -> None:
@@ -228,10 +235,11 @@ def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
     Return the batch and the day of each.
     """
     rows = db.execute(
-        "SELECT i.fid, i.batch, i.day FROM tellings u JOIN tellings f ON f.id = u.undoes AND "
-        "f.scout = u.scout JOIN inspections i ON i.fid = f.inspection "
+        "SELECT i.fid, i.batch, i.day, f.scout, u.scout FROM tellings u JOIN tellings f "
+        "ON f.id = u.undoes JOIN inspections i ON i.fid = f.inspection "
         "WHERE u.undoes NOTNULL AND i.undone <> 1"
     ).fetchall()
+    rows = [row[:3] for row in rows if person(row[3]) == person(row[4])]
     db.executemany("UPDATE inspections SET undone = 1 WHERE fid = ?", [row[:1] for row in rows])
     others = [
         (batch, day)

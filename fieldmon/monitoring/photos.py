@@ -11,8 +11,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import LimitError, ObservationError
 from fieldmon.monitoring import phone_tables, scouts
 from fieldmon.monitoring.geopackage import insert, touch
-from fieldmon.monitoring.tables import utc_now as text_now
-from fieldmon.plot.local_clock import utc_now
+from fieldmon.plot.local_clock import utc_now, utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -88,12 +87,11 @@ def keep_of(db: sqlite3.Connection, who: str, photo: Photo) -> bool:
                 worded("A photo must have an id of its own, but another one has it.")
             )
         return False
-    since = (utc_now() - timedelta(days=1)).strftime("%Y-%m-%dT%H:%M:%S")
-    sent = "SELECT count(*) FROM photos WHERE scout = ? AND received > ?"
-    if db.execute(sent, (who, since)).fetchone()[0] >= MOST_A_DAY:
+    since = utc_text(utc_now() - timedelta(days=1))
+    if phone_tables.n_sent(db, phone_tables.PHOTOS, who, since) >= MOST_A_DAY:
         raise LimitError(worded("One person may send {n} photos a day. Wait a day.", n=MOST_A_DAY))
     lon, lat = photo.lonlat or (None, None)
-    named = (photo.id, photo.finding, who, photo.at.isoformat(), text_now())
+    named = (photo.id, photo.finding, who, photo.at.isoformat(), utc_text())
     row = (photo.data, kind, *named, lon, lat, photo.accuracy_m, mark)
     insert(db, phone_tables.PHOTOS, [row])
     touch(db, phone_tables.PHOTOS.name)

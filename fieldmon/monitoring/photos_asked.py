@@ -11,7 +11,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import LimitError, ObservationError, SettingError
 from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import insert, point_blobs, touch
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -90,7 +90,7 @@ def ask_photo(
                 most=LONGEST_NOTE, n=len(note),
             )
         )  # fmt: skip
-    asked = AskedPhoto(name or str(uuid.uuid4()), plant, note, who, utc_now())
+    asked = AskedPhoto(name or str(uuid.uuid4()), plant, note, who, utc_text())
     with season.store.writing() as db:
         there = _asked(db, asked.id)
         if there is None:
@@ -105,15 +105,20 @@ def ask_photo(
 def photos_asked(season: Season) -> tuple[AskedPhoto, ...]:
     """Return the photos that are asked for and not there yet, in the order of asking."""
     with season.store.reading() as db:
-        rows = db.execute(f"SELECT a.id, a.plant, a.note, a.who, a.at {_OPEN} ORDER BY a.fid")
-        return tuple(AskedPhoto(*row) for row in rows)
+        return photos_asked_in(db)
+
+
+def photos_asked_in(db: sqlite3.Connection) -> tuple[AskedPhoto, ...]:
+    """Return the photos that are asked for, as `photos_asked` does, within a transaction."""
+    rows = db.execute(f"SELECT a.id, a.plant, a.note, a.who, a.at {_OPEN} ORDER BY a.fid")
+    return tuple(AskedPhoto(*row) for row in rows)
 
 
 def ask_no_more(season: Season, name: str) -> bool:
     """Ask for a photo no more, by its id; return whether it was asked for."""
     with season.store.writing() as db:
         ended = "UPDATE photos_asked SET ended = ? WHERE id = ? AND ended IS NULL"
-        changed = db.execute(ended, (utc_now(), name)).rowcount
+        changed = db.execute(ended, (utc_text(), name)).rowcount
         touch(db, phone_tables.PHOTOS_ASKED.name)
     return bool(changed)
 

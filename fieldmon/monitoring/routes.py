@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime, time, timedelta
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from shapely import LineString
@@ -12,6 +12,7 @@ from shapely import LineString
 from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
+from fieldmon.planning.members import person
 
 if TYPE_CHECKING:
     import sqlite3
@@ -45,15 +46,15 @@ def keep(
     assert notes is not None  # noqa: S101 - whoever planned said
     assert notes.start is not None  # noqa: S101 - when it begins
     begin = notes.start
-    mark, last = _digest(today), _last(db, today, who)
-    if last is not None and last[1] == mark:
+    mark, last = _digest(today), kept_last(db, day).get(person(who))
+    if last is not None and last.digest == mark:
         return False
     line = route.line_lonlat()
     row = {
         "geom": blob(LineString(line)) if len(line) > 1 else None,
         "day": day,
         "date": str(settings.date(day)),
-        "revision": 1 if last is None else last[0] + 1,
+        "revision": 1 if last is None else last.revision + 1,
         "sampler": settings.sampler,
         "starts": begin.isoformat(),
         "seconds": route.end_s,
@@ -101,34 +102,34 @@ def in_words(settings: MonitoringSettings, today: DayPlan) -> dict[str, Any]:
 
 def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
     """Tell whether a day's route, of one of a team, is the one kept last."""
-    last = _last(db, today, who)
-    return last is not None and last[1] == _digest(today)
+    last = kept_last(db, today.scene.day).get(person(who))
+    return last is not None and last.digest == _digest(today)
 
 
-def _last(db: sqlite3.Connection, today: DayPlan, who: str) -> tuple[int, str] | None:
-    """Return revision and digest of the last route kept for a day."""
-    row: tuple[int, str] | None = db.execute(
-        "SELECT revision, digest FROM routes WHERE day = ? AND who = ? "
-        "ORDER BY revision DESC LIMIT 1",
-        (today.scene.day, who),
-    ).fetchone()
-    return row
+class KeptRoute(NamedTuple):
+    """A route that is kept: its number in the file, which of its day it is, and its digest."""
+
+    number: int
+    revision: int
+    digest: str
 
 
-def plants(db: sqlite3.Connection, day: int, who: str = "") -> NDArray[np.int32]:
-    """Return the plants ``(k,)`` of the latest route kept for a day; empty if there is none."""
-    rows = db.execute(
-        "SELECT plant FROM stops WHERE route = (SELECT fid FROM routes WHERE day = ? AND who = ? "
-        "ORDER BY revision DESC LIMIT 1) ORDER BY stop",
-        (day, who),
-    )
+def kept_last(db: sqlite3.Connection, day: int) -> dict[str, KeptRoute]:
+    """Return the route kept last for a day of each who has one, by `person`."""
+    last: dict[str, KeptRoute] = {}
+    wanted = "SELECT who, fid, revision, digest FROM routes WHERE day = ? ORDER BY fid"
+    for who, number, revision, mark in db.execute(wanted, (day,)):
+        # older files may write a name in two ways, and count each
+        before = last.get(person(who), KeptRoute(0, 0, ""))
+        last[person(who)] = KeptRoute(number, max(revision, before.revision), mark)
+    return last
+
+
+def plants(db: sqlite3.Connection, kept: KeptRoute | None) -> NDArray[np.int32]:
+    """Return the plants ``(k,)`` of a route that is kept; empty if there is none."""
+    wanted = "SELECT plant FROM stops WHERE route = ? ORDER BY stop"
+    rows = () if kept is None else db.execute(wanted, (kept.number,))
     return np.array([plant for (plant,) in rows], np.int32)
-
-
-def kept_last(db: sqlite3.Connection, day: int) -> dict[str, int]:
-    """Return the number in the file of the route kept last for a day, of each who has one."""
-    rows = db.execute("SELECT who, max(fid) FROM routes WHERE day = ? GROUP BY who", (day,))
-    return dict(rows.fetchall())
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +139,7 @@ class KeptPlans:
     Parameters
     ----------
     who
-        Of a team; empty where one works.
+        As by `person`; empty where one works.
     last, of_all
         Plants of the plan kept last, and of all of them.
     hours
@@ -157,20 +158,20 @@ class KeptPlans:
 def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     """Return what is kept of a day's plans, for each who has one."""
     rows = db.execute(
-        "SELECT who, starts, seconds FROM routes WHERE day = ? ORDER BY who, revision", (day,)
+        "SELECT who, starts, seconds FROM routes WHERE day = ? ORDER BY fid", (day,)
+    ).fetchall()
+    stops = db.execute(
+        "SELECT DISTINCT who, plant FROM stops JOIN routes ON routes.fid = route WHERE day = ?",
+        (day,),
     ).fetchall()
     made = []
-    for who in dict.fromkeys(name for name, _, _ in rows):
-        own = [(datetime.fromisoformat(starts), s) for name, starts, s in rows if name == who]
+    for who, last in kept_last(db, day).items():
+        own = [(datetime.fromisoformat(at), s) for name, at, s in rows if person(name) == who]
         ends = own[-1][0] + timedelta(seconds=own[-1][1])
-        of_all = db.execute(
-            "SELECT DISTINCT plant FROM stops WHERE route IN (SELECT fid FROM routes "
-            "WHERE day = ? AND who = ?)",
-            (day, who),
-        )
-        every = np.array([plant for (plant,) in of_all], np.int32)
+        every = {plant for name, plant in stops if person(name) == who}
         hours = (ends - own[0][0]).total_seconds() / 3600
-        made.append(KeptPlans(who, plants(db, day, who), every, hours))
+        of_all = np.array(sorted(every), np.int32)
+        made.append(KeptPlans(who, plants(db, last), of_all, hours))
     return made
 
 

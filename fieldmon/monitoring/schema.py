@@ -337,14 +337,14 @@ CREATE VIEW chance AS
   FROM plants p JOIN plant_state s ON s.fid = p.fid
 """
 # the same finding twice is one, unless the first was undone
-#: what is looked for, and what may be there once only
-INDEXES = (
-    "CREATE UNIQUE INDEX inspections_once ON inspections (digest) WHERE undone = 0",
-    "CREATE UNIQUE INDEX treatments_once ON treatments (digest) WHERE undone = 0",
-    "CREATE UNIQUE INDEX routes_revision ON routes (day, who, revision)",
-    "CREATE INDEX stops_route ON stops (route, stop)",
-    "CREATE INDEX inspections_batch ON inspections (batch)",
-)
+#: what is looked for, and what may be there once only, by name
+INDEXES = {
+    "inspections_once": "UNIQUE INDEX {} ON inspections (digest) WHERE undone = 0",
+    "treatments_once": "UNIQUE INDEX {} ON treatments (digest) WHERE undone = 0",
+    "routes_revision": "UNIQUE INDEX {} ON routes (day, who, revision)",
+    "stops_route": "INDEX {} ON stops (route, stop)",
+    "inspections_batch": "INDEX {} ON inspections (batch)",
+}
 
 
 def lay_out(db: sqlite3.Connection) -> None:
@@ -355,13 +355,18 @@ def lay_out(db: sqlite3.Connection) -> None:
             create(db, table)
     db.execute(_CHANCE_VIEW)
     announce(db, CHANCE)
-    for index in INDEXES:
-        db.execute(index)
+    for name in INDEXES:
+        add_index(db, name)
     count_inspections(db)
     watch(db)
     add_styles(db)
     add_phones(db)
     add_photos_asked(db)
+
+
+def add_index(db: sqlite3.Connection, name: str) -> None:
+    """Add one of the `INDEXES`."""
+    db.execute(f"CREATE {INDEXES[name].format(name)}")
 
 
 def add_phones(db: sqlite3.Connection) -> None:

@@ -15,7 +15,10 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import AccessError, SettingError
 from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import insert, touch
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.monitoring.open_season import settings_of
+from fieldmon.monitoring.people import as_written, names_written
+from fieldmon.planning.members import person
+from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -47,7 +50,9 @@ class Scout:
 
 
 def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> str:
-    """Make a key for somebody and return it; an earlier key of that name ends at once.
+    """Make a key for somebody and return it; an earlier key of that person ends at once.
+
+    Whoever the season knows already is named as it is written there.
 
     Raise `SettingError` if there is no name, if the rows are not on the plot, if they are others'
     in part, or if somebody beside the season's team has none.
@@ -81,37 +86,37 @@ def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> st
         )  # fmt: skip
     if rows == (1, lines):
         rows = None
-    member = season.settings.named(name)
-    if member is None:
-        _must_be_own(season, name, rows)
-    else:
-        name = member.name
     key = secrets.token_urlsafe(_KEY_BYTES)
     first, last = rows or (None, None)
     with season.store.writing() as db:
+        name = as_written(names_written(db), name)
+        if settings_of(db).named(name) is None:
+            _must_be_own(db, name, rows, lines)
         _end(db, name)
-        row = (name, _key_digest(season, key), utc_now(), None, first, last)
+        row = (name, _key_digest(season, key), utc_text(), None, first, last)
         insert(db, phone_tables.SCOUTS, [row])
         touch(db, phone_tables.SCOUTS.name)
     return key
 
 
-def _must_be_own(season: Season, name: str, rows: tuple[int, int] | None) -> None:
+def _must_be_own(
+    db: sqlite3.Connection, name: str, rows: tuple[int, int] | None, n_lines: int
+) -> None:
     """Refuse somebody beside the team without rows, and rows of which others have some."""
-    team = season.settings.team
-    if team and rows is None:
+    settings = settings_of(db)
+    if settings.team and rows is None:
         raise SettingError(
             worded(
                 "{name} must be one of the team ({names}), or have rows of their own, but is "
                 "neither. Give a name of the team, or rows.",
-                name=name, names=", ".join(one.name for one in team),
+                name=name, names=", ".join(one.name for one in settings.team),
             )
         )  # fmt: skip
-    lines = 1, int(season.label.line.max())
+    lines = 1, n_lines
     low, high = rows or lines
-    for other in scouts_of(season):
+    for other in scouts_in(db):
         first, last = other.rows or lines
-        is_beside = _same(other.name, name) or season.settings.named(other.name) is not None
+        is_beside = person(other.name) == person(name) or settings.named(other.name) is not None
         if not is_beside and (first, last) != (low, high) and first <= high and low <= last:
             raise SettingError(
                 worded(
@@ -121,11 +126,6 @@ def _must_be_own(season: Season, name: str, rows: tuple[int, int] | None) -> Non
                     low=low, high=high, first=first, last=last, name=other.name,
                 )
             )  # fmt: skip
-
-
-def _same(name: str, other: str) -> bool:
-    """Return whether two names are one person's, as a season's findings are read."""
-    return name.casefold() == other.casefold()
 
 
 def take_back(season: Season, name: str) -> None:
@@ -140,8 +140,13 @@ def take_back(season: Season, name: str) -> None:
 def scouts_of(season: Season) -> tuple[Scout, ...]:
     """Return who has a key that holds, in the order in which the keys were made."""
     with season.store.reading() as db:
-        rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY fid")  # noqa: S608 - ours
-        return tuple(_scout(row) for row in rows)
+        return scouts_in(db)
+
+
+def scouts_in(db: sqlite3.Connection) -> tuple[Scout, ...]:
+    """Return who has a key that holds, as `scouts_of` does, within a transaction."""
+    rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY fid")  # noqa: S608 - ours
+    return tuple(_scout(row) for row in rows)
 
 
 def who(season: Season, key: str) -> Scout:
@@ -177,7 +182,7 @@ def _scout(row: tuple[str, int | None, int | None, str, str | None]) -> Scout:
 
 def _end(db: sqlite3.Connection, name: str) -> int:
     holding = db.execute("SELECT DISTINCT name FROM scouts WHERE ended IS NULL").fetchall()
-    names = [(utc_now(), one) for (one,) in holding if _same(one, name)]
+    names = [(utc_text(), one) for (one,) in holding if person(one) == person(name)]
     ended = "UPDATE scouts SET ended = ? WHERE name = ? AND ended IS NULL"
     return db.executemany(ended, names).rowcount if names else 0
 

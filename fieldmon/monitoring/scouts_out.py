@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.monitoring.day_ahead import Part, crew_of, given, plan_of
+from fieldmon.monitoring.day_ahead import DayAhead, Part
 from fieldmon.monitoring.findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.history import made_by
-from fieldmon.monitoring.scouts import scouts_of
+from fieldmon.planning.members import person
 
 if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.monitoring.season_file import Season
 
-# the last finding of each, and the last photo
-_LAST_SENT = "SELECT scout, max(received), sent_phone FROM tellings GROUP BY scout"
-_LAST_PHOTO = "SELECT scout, max(received) FROM photos GROUP BY scout"
+# the last finding of each, and the last photo; the newest is the last of a person
+_LAST_SENT = "SELECT scout, max(received), sent_phone FROM tellings GROUP BY scout ORDER BY 2"
+_LAST_PHOTO = "SELECT scout, max(received) FROM photos GROUP BY scout ORDER BY 2"
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class ScoutOut:
     done, ahead
         Plants that this person recorded on the day, and those of the route that are left.
     plan
-        Which plan of the day was given last, see `day_ahead.plan_of`; None: none.
+        Which plan of the day was given last, see `DayAhead.plan_of`; None: none.
     shares
         Who else has a code for the same rows.
     has_route
@@ -64,25 +64,25 @@ class ScoutOut:
 
 def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     """Return who is out on the day `on`: who has a code, and then who of the team has none."""
-    settings, coded = season.settings, {one.name: one for one in scouts_of(season)}
+    ahead, done = DayAhead.of(season, on), season.history.inspections.on(on)
     with season.store.reading() as db:
-        sent = {who: (at, clock) for who, at, clock in db.execute(_LAST_SENT)}
-        photos = dict(db.execute(_LAST_PHOTO).fetchall())
-    done = season.history.inspections.on(on)
+        sent = {person(who): (at, clock) for who, at, clock in db.execute(_LAST_SENT)}
+        photos = {person(who): at for who, at in db.execute(_LAST_PHOTO)}
+    coded = {person(one.name): one for one in ahead.scouts}
+    team = {person(one.name): one.name for one in ahead.settings.team}
     out = []
-    for name in dict.fromkeys([*coded, *(member.name for member in settings.team)]):
-        code = coded.get(name)
-        part = Part(None if code is None else code.rows, name)
-        member, route = part.member(season), given(season, on, part)
-        heard = max(filter(None, (sent.get(name, ("",))[0], photos.get(name, ""))), default="")
+    for who in dict.fromkeys([*coded, *team]):
+        code = coded.get(who)
+        part = Part(None, team[who]) if code is None else Part(code.rows, code.name)
+        heard = max(filter(None, (sent.get(who, ("",))[0], photos.get(who, ""))), default="")
         out.append(
             ScoutOut(
-                name, part.rows, None if code is None else _at(code.made), _at(heard),
-                _fast(*sent[name]) if name in sent else timedelta(),
-                len(np.unique(made_by(done, name).plant)), int((~np.isin(route, done.plant)).sum()),
-                plan_of(season, on, part),
-                () if member else tuple(one for one in crew_of(season, part) if one != name),
-                not settings.team or member is not None or part.rows is not None,
+                part.name, part.rows, None if code is None else _at(code.made), _at(heard),
+                _fast(*sent[who]) if who in sent else timedelta(),
+                len(np.unique(made_by(done, who).plant)),
+                int((~np.isin(ahead.given(part), done.plant)).sum()),
+                ahead.plan_of(part), () if ahead.member(part) else ahead.others(part),
+                ahead.has_route(part),
             )
         )  # fmt: skip
     return tuple(out)

@@ -19,7 +19,7 @@ from fieldmon.compute.wording import estimate, worded
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import touch
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -138,7 +138,7 @@ def append(
     if states:
         what["states"] = states
     content = _canonical(
-        {"entry": number + 1, "at": utc_now(), "kind": kind, "who": who, "what": what}
+        {"entry": number + 1, "at": utc_text(), "kind": kind, "who": who, "what": what}
     )
     mark = _chained(before, content)
     db.execute("INSERT INTO log (fid, entry, digest) VALUES (?, ?, ?)", (number + 1, content, mark))

@@ -15,8 +15,9 @@ from fieldmon.monitoring import phone_tables, routes, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.mornings import is_behind
-from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day, settings_of
+from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.monitoring.settings import seconds
+from fieldmon.planning.members import person
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.open_season import SeasonContents
+    from fieldmon.monitoring.routes import KeptRoute
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
@@ -143,17 +145,10 @@ class SeasonPlans(OpenSeason):
 
         Of a team it is that of `who` is named, or of the first; a scout beside it has one, too.
         """
-        with self._lock, self.store.reading() as db:  # both of one moment
-            settings = self._read(db).settings
-            if settings.team:
-                named = settings.named(who) if who else settings.team[0]
-                who = who if named is None else named.name
-            return routes.plants(db, settings.day(on), who)
-
-    def kept_last(self, on: date) -> dict[str, int]:
-        """Return the number in the file of the last route kept for the day `on`, by who has one."""
-        with self._lock, self.store.reading() as db:
-            return routes.kept_last(db, settings_of(db).day(on))
+        with self.reading() as (db, settings):
+            named = settings.at_work(who)
+            last = routes.kept_last(db, settings.day(on))
+            return routes.plants(db, last.get(person(who if named is None else named.name)))
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
@@ -170,7 +165,7 @@ class SeasonPlans(OpenSeason):
         if who is None:
             out = _out(last, codes, self._planned_by(contents, on))
         else:
-            out = {name for name in last if name.casefold() == who.casefold()}
+            out = {*last} & {person(who)}
             kept = [one for one in kept if one.who in out]
         if not kept:
             return None
@@ -243,23 +238,24 @@ class SeasonPlans(OpenSeason):
         aisle = self.plot.grid.corridor[self.plot.grid.row]
         given = np.full(int(aisle.max()) + 1, -1)
         with self.store.reading() as db:
+            last = routes.kept_last(db, day)
             for k, who in enumerate(names):
-                given[aisle[routes.plants(db, day, who)]] = k
+                given[aisle[routes.plants(db, last.get(person(who)))]] = k
         return given if (given >= 0).any() else None
 
 
 def _out(
-    last: dict[str, int], codes: dict[str, tuple[int, int] | None], settings: MonitoringSettings
-) -> set[str]:
-    """Return by which names the routes are kept of those who are out, of all kept of a day.
+    last: dict[str, KeptRoute], codes: dict[str, tuple[int, int] | None],
+    settings: MonitoringSettings,
+) -> set[str]:  # fmt: skip
+    """Return who is out, by `person`, of those whose routes are kept of a day.
 
     They are of the team or have a code. The season's own route is that of who is alone, and counts
     where none was given to anybody.
     """
-    names = {one.name.casefold() for one in settings.team} | {*codes}
-    out = {name for name in last if name.casefold() in names}
+    out = {*last} & ({person(one.name) for one in settings.team} | {*codes})
     if not settings.team and [*codes.values()] == [None] and "" in last:
-        return {max(out | {""}, key=last.__getitem__)}
+        return {max(out | {""}, key=lambda who: last[who].number)}
     return out or ({""} if "" in last else {*last})
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
@@ -20,6 +23,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
+from fieldmon.monitoring.people import as_written, names_written
 from fieldmon.monitoring.recorded_before import (
     Contradictions,
     contradicting,
@@ -131,7 +135,11 @@ class SeasonRecords(OpenSeason):
         with self._writing() as db:
             before = self._read(db)
             held, first = before.history.inspections, []
-            for inspections, source in brought:
+            known = names_written(db)
+            who = as_written(known, who)
+            for told, source in brought:
+                names = [as_written(known, str(name)) for name in told.who]
+                inspections = replace(told, who=np.array(names, object))
                 if not confirmed:
                     contradictions(inspections, held).refuse(self.label)
                 batch, news = self._add(db, inspections, held, (source, who, into))

@@ -14,7 +14,7 @@ from fieldmon.errors import SettingError
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import insert
 from fieldmon.monitoring.settings import from_json
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -32,7 +32,7 @@ def now(db: sqlite3.Connection) -> Parts:
 
 
 def at(db: sqlite3.Connection, moment: str) -> Parts:
-    """Return what counted at a moment (UTC, as `utc_now` writes it); nothing before the first."""
+    """Return what counted at a moment (UTC, as `utc_text` writes it); nothing before the first."""
     counted = "SELECT name, value FROM settings WHERE changed <= ? ORDER BY fid"
     return dict(db.execute(counted, (moment,)).fetchall())
 
@@ -51,7 +51,7 @@ def begun(db: sqlite3.Connection) -> str:
 
 def write(db: sqlite3.Connection, parts: Parts) -> list[str]:
     """Keep what differs from what counts now; return the names of what does."""
-    before, at = now(db), utc_now()
+    before, at = now(db), utc_text()
     # a part that is no longer chosen, as a pest, is null
     wanted = {**dict.fromkeys(before, "null"), **parts}
     changed = [(name, text, at) for name, text in wanted.items() if before.get(name) != text]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import zlib
 from dataclasses import dataclass, fields
-from datetime import UTC, datetime
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +22,7 @@ from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import PlantGrid, row_label
+from fieldmon.plot.local_clock import utc_text
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_course import row_corners
@@ -68,11 +68,6 @@ class KeptMessage:
         """Return a message about a file as it is kept."""
         remedy = None if message.remedy is None else message.remedy.setting
         return cls(source, message.severity.value, message.feature, message.sentence, remedy)
-
-
-def utc_now() -> str:
-    """Return the time of writing, as GeoPackages note it."""
-    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
 
 
 def write_array(db: sqlite3.Connection, name: str, values: NDArray[Any]) -> None:
@@ -302,7 +297,7 @@ def read_observations(db: sqlite3.Connection) -> Observations:
 
 def write_messages(db: sqlite3.Connection, messages: Iterable[KeptMessage]) -> None:
     """Keep what imports had to say."""
-    now = utc_now()
+    now = utc_text()
     rows = [(m.source, m.severity, m.feature, m.sentence, m.remedy, now) for m in messages]
     insert(db, schema.IMPORTS, rows)
 

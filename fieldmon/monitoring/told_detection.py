@@ -16,6 +16,7 @@ import numpy as np
 from fieldmon.monitoring import inspection_lots, season_log, settings_log
 from fieldmon.monitoring.pest_json import pest_of_json
 from fieldmon.monitoring.settings import told_to_detect
+from fieldmon.planning.members import person
 
 if TYPE_CHECKING:
     import sqlite3
@@ -39,7 +40,7 @@ class ToldDetection(NamedTuple):
     usual
         By whoever is in no team.
     of
-        By those of a team, by their names without capitals.
+        By those of a team, by `person`.
     """
 
     usual: float
@@ -54,14 +55,14 @@ class ToldDetection(NamedTuple):
         members = json.loads(parts.get("team", "{}")).get("members", ())
         return cls(
             told_to_detect(json.loads(parts["robot"]), pest),
-            {one["name"].casefold(): told_to_detect(one["robot"], pest) for one in members},
+            {person(one["name"]): told_to_detect(one["robot"], pest) for one in members},
         )
 
     def by(self, who: NDArray[np.object_]) -> Floats:
         """Return it of inspections by these people, ``(k,)``."""
         if not self.of:
             return np.full(len(who), self.usual)
-        known = {name: self.of.get(str(name).casefold(), self.usual) for name in set(who)}
+        known = {name: self.of.get(person(str(name)), self.usual) for name in set(who)}
         return np.array([known[name] for name in who], np.float64)
 
 

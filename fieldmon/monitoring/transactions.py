@@ -183,6 +183,7 @@ class Store:
         """
         if self.path in _still():  # it would wait for itself
             raise RuntimeError("What is read as of one moment must not be written within it.")
+        _must_be_there(self.path)
         with _sentences(self.path), closing(_connect(self.path, patience_s)) as db:
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")
@@ -290,13 +291,14 @@ def _kept() -> dict[tuple[Path, int], sqlite3.Connection] | None:
 @contextmanager
 def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     """Give a connection for one transaction: one that this thread keeps, if it may."""
+    _must_be_there(path)
     files = _kept()
     if files is None:
         with closing(_connect(path)) as db:
             yield db
         return
     # another file of the same name is another season
-    of_file = path, path.stat().st_ino if path.is_file() else 0
+    of_file = path, path.stat().st_ino
     # one that is at work belongs to whoever reads around this
     db = files.pop(of_file) if of_file in files else _connect(path)
     try:
@@ -315,8 +317,7 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
 
     `named`: what the copy will be called, for sentences.
     """
-    if not path.is_file():
-        raise no_file(path)
+    _must_be_there(path)
     written = named or to
     with (
         _sentences(path, written),
@@ -328,6 +329,12 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
         said = copy.execute("PRAGMA quick_check(1)").fetchone()[0]
         if said != "ok":
             raise damaged(path, said)
+
+
+def _must_be_there(path: Path) -> None:
+    """Refuse a file that is away, if for a moment: SQLite would put an empty one in its place."""
+    if not path.is_file():
+        raise no_file(path)
 
 
 def _put(draft: Path, target: Path) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring.history import made_by
+from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.monitoring.history import Shift, made_by
 from fieldmon.monitoring.settings import seconds
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import Workday
@@ -36,7 +39,8 @@ def day_was_worked(season: Season, on: date, ahead: Route, today: date | None = 
 def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     """Return the way from plant to plant as a day was worked, at the times noted.
 
-    By the settings of then: who worked, and from when.
+    By the settings of then: who worked, and from when, unless the first time noted shows that work
+    began earlier or later, see `Season.begun_s`; its notes say when it began.
     Where a time is missing, all are those that driving and inspecting cost. Chances are those by
     which the day's first route is planned. Empty if nothing was recorded. Of a team it is the way
     of the one named; None: that of all results in turn.
@@ -47,7 +51,9 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
         member = settings.member(who)
         robot, aisles = member.robot, season.aisles_from(member.gate)
         starts_s += member.starts_s
-    done = _in_order(made_by(season.history.on(settings.day(on)), who))
+    history, day = season.history, settings.day(on)
+    begun_s = history.begun_s(Shift(aisles, robot, starts_s), day, who)
+    done = _in_order(made_by(history.on(day), who))
     scene = Scene(
         aisles=aisles, robot=robot, chance=season.morning_in_sight(on),
         seconds_left=robot.day_s,
@@ -55,7 +61,7 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     )  # fmt: skip
     n, drive_s = len(done), _drive_s(scene, done.plant)
     # a find is noted while standing there: the time of arrival is not known, and not needed
-    leave_s, stop_s = np.maximum(done.second - starts_s, 0.0), np.zeros(n)
+    leave_s, stop_s = np.maximum(done.second - begun_s, 0.0), np.zeros(n)
     if not np.isfinite(leave_s).all():
         leave_s, stop_s = np.cumsum(drive_s[:n] + robot.visit_s), np.full(n, robot.visit_s)
     work = Workday(
@@ -63,7 +69,9 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
         detects=np.full(n, robot.detects),
         end_s=float(leave_s[-1] + drive_s[n:].sum()) if n else 0.0,
     )  # fmt: skip
-    return route_of(scene, work)
+    begins = datetime.combine(on, time()) + timedelta(seconds=round(begun_s))
+    notes = RouteNotes(season.plot.field.name, settings.sampler, begins, who)
+    return replace(route_of(scene, work), notes=notes)
 
 
 def _in_order(done: Inspections) -> Inspections:

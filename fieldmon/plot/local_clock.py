@@ -104,6 +104,11 @@ def utc_now() -> datetime:
     return datetime.now(UTC)
 
 
+def utc_text(moment: datetime | None = None) -> str:
+    """Return a moment as season files note it, in UTC; None: this one."""
+    return (moment or datetime.now(UTC)).astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+
+
 def local_clock(field: Field) -> LocalClock:
     """Return the clock of a plot by its position; this machine's where no zone is known there.
 

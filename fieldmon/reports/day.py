@@ -110,15 +110,16 @@ class DayFacts:
             worked = day_was_worked(season, on, route, today)
             settings = season.settings_on(on) if worked else season.planned_by(on)
             day = settings.day(on)
+            shown = worked_route(season, on) if worked else route
             begins = datetime.combine(on, settings.starts)
-            if not worked and route.notes is not None and route.notes.start is not None:
-                begins = route.notes.start
+            if shown.notes is not None and shown.notes.start is not None:
+                begins = shown.notes.start
             names = tuple(one.name for one in settings.team)
             state, done = season.history.known(day), season.history.on(day).inspected
             came = tuple(sorted({*map(str, done.who)} - {""}))
             return cls(
                 season.plot.field.name, begins,
-                worked_route(season, on) if worked else route, season.evening(on), state,
+                shown, season.evening(on), state,
                 hot_spots(season.plot.grid, state),
                 WorkSettings.of_season(season, on, worked=worked),
                 len(done), np.unique(done.plant[done.result == FOUND]),

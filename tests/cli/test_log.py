@@ -26,8 +26,8 @@ def test_the_log_is_shown_and_a_changed_past_is_refused(run, season):
 
 
 def test_the_log_shows_the_times_of_the_plot_as_batches_do(run, season, monkeypatch):
-    monkeypatch.setattr(season_log, "utc_now", lambda: "2026-12-31T22:30:00.000000Z")
-    monkeypatch.setattr(batches, "utc_now", lambda: "2026-12-31T22:30:00.000000Z")
+    monkeypatch.setattr(season_log, "utc_text", lambda: "2026-12-31T22:30:00.000000Z")
+    monkeypatch.setattr(batches, "utc_text", lambda: "2026-12-31T22:30:00.000000Z")
     run("treat", season, "--efficacy", "0.5", "--date", BEGINS)
     assert "2027-01-01T00:30  treated" in run("log", season)[1]
     assert "2027-01-01 00:30      1 treatment" in run("status", season, "--batches")[1]

@@ -9,9 +9,8 @@ import pytest
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.day_ahead import (
+    DayAhead,
     Part,
-    asked_of,
-    crew_of,
     inside,
     planned_again,
     route_ahead,
@@ -49,19 +48,19 @@ def test_where_none_was_given_out_one_is(tmp_path):
 def test_a_part_has_stops_in_its_rows_only_and_is_given_out_to_nobody_else(season):
     given = season.kept_route(BEGINS)
     route = planned_again(season, BEGINS, Part((1, 3)))
-    assert inside(season, (1, 3))[route.plant].all()
+    assert inside(season.label, (1, 3))[route.plant].all()
     assert len(route)
     assert season.kept_route(BEGINS).tolist() == given.tolist()
     ahead = route_ahead(season, BEGINS, Part((1, 3)))
-    assert inside(season, (1, 3))[ahead.plant].all()
+    assert inside(season.label, (1, 3))[ahead.plant].all()
 
 
 def test_a_part_is_all_plants_of_its_rows_and_no_others(season):
     line = season.label.line.tolist()
     for rows in ((1, 3), (2, 2), (4, 400), (3, 2)):
         wanted = [rows[0] <= one <= rows[1] for one in line]
-        assert inside(season, rows).tolist() == wanted
-    assert inside(season, None).all()
+        assert inside(season.label, rows).tolist() == wanted
+    assert inside(season.label, None).all()
 
 
 def test_the_rest_planned_again_fits_what_is_left_of_the_hours(season):
@@ -129,7 +128,7 @@ def test_each_scout_has_a_whole_day_in_their_own_rows_and_goes_on_from_where_the
         scouts.let_in(fresh, part.name, part.rows)
     routes = {part: route_ahead(fresh, BEGINS, part) for part in (ann, dan)}
     for part, route in routes.items():
-        assert inside(fresh, part.rows)[route.plant].all()
+        assert inside(fresh.label, part.rows)[route.plant].all()
         assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
         assert route_ahead(fresh, BEGINS, part).plant.tolist() == route.plant.tolist()
     told(fresh, "Ann", routes[ann].plant[:5], 21_700.0)
@@ -153,7 +152,7 @@ def test_scouts_with_codes_for_the_same_plants_share_them(tmp_path):
     assert fresh.kept_route(BEGINS).tolist() == alone.plant.tolist(), "the season's own"
     scouts.let_in(fresh, "Ben")
     routes = [route_ahead(fresh, BEGINS, part) for part in (ann, ben, ann)]
-    assert crew_of(fresh, ann) == ("Ann", "Ben")
+    assert DayAhead.of(fresh, BEGINS).crew(ann) == ("Ann", "Ben")
     assert len(routes[0])
     assert len(routes[1])
     assert not set(routes[0].plant) & set(routes[1].plant)
@@ -161,7 +160,7 @@ def test_scouts_with_codes_for_the_same_plants_share_them(tmp_path):
     rest = planned_again(fresh, BEGINS, ben, seconds_left=900.0)
     assert 0 < rest.end_s <= 900.0
     ask_photo(fresh, int(routes[1].plant[3]), "", "Old")
-    assert [len(asked_of(fresh, BEGINS, part)) for part in (ann, ben)] == [0, 1]
+    assert [len(DayAhead.of(fresh, BEGINS).asked_of(part)) for part in (ann, ben)] == [0, 1]
 
 
 def test_a_code_with_other_rows_is_a_full_day_in_these(tmp_path):
@@ -169,7 +168,7 @@ def test_a_code_with_other_rows_is_a_full_day_in_these(tmp_path):
     for rows in (None, (1, 8), (11, 19)):
         scouts.let_in(fresh, "Dan", rows)
         route = route_ahead(fresh, BEGINS, Part(rows, "Dan"))
-        assert inside(fresh, rows)[route.plant].all()
+        assert inside(fresh.label, rows)[route.plant].all()
         assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
         again = route_ahead(fresh, BEGINS, Part(rows, "Dan"))
         assert again.plant.tolist() == route.plant.tolist()
@@ -200,7 +199,7 @@ def test_a_name_beside_the_team_has_its_own_rows_or_nothing(tmp_path):
     assert len(route_ahead(fresh, BEGINS, Part(name="Anna"))) == 0
     own = route_ahead(fresh, BEGINS, Part((1, 12), "Anna"))
     assert len(own)
-    assert inside(fresh, (1, 12))[own.plant].all()
+    assert inside(fresh.label, (1, 12))[own.plant].all()
     assert not {*own.plant} & team
 
 

@@ -5,6 +5,8 @@ import random
 import shutil
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
+from datetime import timedelta
 
 import numpy as np
 import pytest
@@ -343,6 +345,24 @@ def test_routes_planned_in_both_copies_keep_their_order_and_the_last_one_counts(
     assert [row[1] for row in routes] == [1, 2, 3]  # one of before, one of each copy
     assert all(stops[fid] == n for _, _, fid, n in routes)
     np.testing.assert_array_equal(merged.kept_route(BEGINS), again.kept_route(BEGINS))
+
+
+def test_a_copy_that_brings_nothing_leaves_the_routes_of_a_day_as_they_are(path, tmp_path):
+    season = Season(path)
+    first, on = season.settings, BEGINS + timedelta(days=4)
+    for hours in (0.5, 1.0, 0.5):  # the first route is given out again after another
+        before = season.settings
+        season.change(replace(first, robot=first.robot.with_hours(hours)), before)
+        season.plan(on)
+    season.plan_crew(BEGINS, ("Ann",))  # after routes of a later day
+    wanted = "SELECT fid, day, who, revision, digest FROM routes ORDER BY fid"
+    with season.store.reading() as db:
+        routes = db.execute(wanted).fetchall()
+    kept = season.kept_route(on).tolist()
+    season.merge(Season(shutil.copy(path, tmp_path / "same.gpkg")))
+    with season.store.reading() as db:
+        assert db.execute(wanted).fetchall() == routes
+    assert season.kept_route(on).tolist() == kept
 
 
 def test_another_season_is_no_copy_of_this_one(path, tmp_path):

@@ -5,7 +5,7 @@ from contextlib import closing
 from dataclasses import replace
 from datetime import timedelta
 
-from fieldmon.monitoring import Season, migrations, schema
+from fieldmon.monitoring import Season, geopackage, migrations, schema
 from fieldmon.planning.members import team_of
 from tests.monitoring.phone import without_phones
 from tests.monitoring.seasons import BEGINS, state
@@ -13,6 +13,16 @@ from tests.monitoring.seasons import BEGINS, state
 
 def test_every_older_version_has_a_way_to_the_next():
     assert sorted(migrations.MIGRATIONS) == list(range(1, schema.VERSION))
+
+
+def test_a_column_that_comes_later_comes_to_a_table_that_was_made_with_it_too():
+    with closing(sqlite3.connect(":memory:")) as db:
+        geopackage.found(db)
+        geopackage.create(db, schema.TREATMENTS)
+        for column in (*schema.APPLIED, "later TEXT", "later TEXT"):
+            geopackage.add_column(db, "treatments", column)
+        named = [row[1] for row in db.execute("PRAGMA table_info(treatments)")]
+    assert named == ["fid", *schema.TREATMENTS.names, "later"]
 
 
 def as_of_version_2(db):

@@ -78,6 +78,19 @@ def test_rows_are_ones_own_or_the_same_as_anothers(season):
     scouts.let_in(season, "Ann", (13, 14))
 
 
+def test_who_was_invited_a_moment_ago_has_their_rows_already(season, monkeypatch):
+    writing = season.store.writing
+
+    def after_another():
+        monkeypatch.undo()
+        scouts.let_in(season, "Ben", (4, 9))
+        return writing()
+
+    monkeypatch.setattr(season.store, "writing", after_another)
+    with pytest.raises(SettingError, match="overlap"):
+        scouts.let_in(season, "Ann", (1, 6))
+
+
 def test_a_name_of_the_team_is_written_as_there_and_any_other_needs_rows(season):
     before = season.settings
     season.change(replace(before, team=team_of(2)), before)

@@ -5,7 +5,7 @@ from datetime import timedelta
 
 import pytest
 
-from fieldmon.monitoring import scouts
+from fieldmon.monitoring import scouts, transactions
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.scouts_out import scouts_out
@@ -71,6 +71,34 @@ def test_which_plan_was_given_last_is_known_before_anything_is_recorded_by_it(fr
     assert len({alone, shared, of(fresh, "Ben").plan}) == 3
     planned_again(fresh, BEGINS, Part(None, "Ann"), seconds_left=3000.0)
     assert of(fresh, "Ann").plan not in {alone, shared}
+
+
+def test_a_person_is_one_though_an_older_file_writes_the_name_in_two_ways(fresh):
+    scouts.let_in(fresh, "Ann")
+    part = Part((1, 8), "Ann")
+    given = route_ahead(fresh, BEGINS, part).plant.tolist()
+    scouts.let_in(fresh, "Ann", (1, 8))
+    with fresh.store.writing() as db:
+        db.execute("UPDATE scouts SET name = 'ANN' WHERE ended IS NULL")
+    assert of(fresh, "ANN").ahead == len(given)
+    part = Part((1, 8), "ANN")
+    assert route_ahead(fresh, BEGINS, part).plant.tolist() == given
+    planned_again(fresh, BEGINS, part, seconds_left=3000.0)
+    assert fresh.planned_and_done(BEGINS).people == 1
+
+
+def test_the_file_is_read_as_often_for_many_people_as_for_one(fresh, monkeypatch):
+    opened, connect = [], transactions._connect
+    monkeypatch.setattr(
+        transactions, "_connect", lambda *told: opened.append(told) or connect(*told)
+    )
+    times = []
+    for k in range(3):
+        scouts.let_in(fresh, f"scout {k}", (1 + 2 * k, 2 + 2 * k))
+        opened.clear()
+        scouts_out(fresh, BEGINS)
+        times.append(len(opened))
+    assert times == [3, 3, 3]
 
 
 def test_the_team_is_there_without_codes_and_who_is_beside_it_has_no_route(fresh):

@@ -13,7 +13,6 @@ from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
 from fieldmon.plot import local_clock
-from fieldmon.plot.local_clock import utc_now
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
@@ -138,8 +137,8 @@ def test_a_kept_plan_is_held_to_what_was_inspected(season):
 
 
 def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
-    today = utc_now().date()
     plot = a_plot()
+    today = local_clock.local_clock(plot.field).today()
     settings = MonitoringSettings(today, robot=ROBOT)
     season = Season.create(tmp_path / "out.gpkg", plot, some_records(plot), settings)
     own = season.plan(today).route

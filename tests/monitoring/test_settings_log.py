@@ -5,7 +5,7 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import settings_log
 from fieldmon.monitoring.settings import MonitoringSettings, as_json
-from fieldmon.monitoring.tables import utc_now
+from fieldmon.plot.local_clock import utc_text
 from tests.monitoring.seasons import BEGINS, ROBOT
 
 FIRST = as_json(MonitoringSettings(BEGINS, robot=ROBOT))
@@ -61,8 +61,8 @@ def test_a_choice_that_is_taken_back_counts_as_never_made(db):
 
 def test_what_counted_at_a_moment_is_told(db):
     settings_log.write(db, FIRST)
-    between = utc_now()
+    between = utc_text()
     settings_log.write(db, OTHER)
     assert settings_log.at(db, between) == FIRST
-    assert settings_log.at(db, utc_now()) == OTHER
+    assert settings_log.at(db, utc_text()) == OTHER
     assert settings_log.at(db, "2000-01-01T00:00:00.000000Z") == {}

@@ -284,6 +284,17 @@ def test_what_is_kept_open_is_opened_once_says_what_is_new_and_locks_nothing(pat
     assert len(opened) == n + 1
 
 
+def test_a_file_that_is_away_for_a_moment_finds_its_place_empty(path):
+    season = Season(path)
+    path.rename(path.with_name("away"))
+    for ask in (lambda: season.settings, lambda: season.record(three_results())):
+        with pytest.raises(FileProblem, match="there is none"):
+            ask()
+        assert not path.exists()
+    path.with_name("away").rename(path)
+    assert season.record(three_results()).new == 3
+
+
 def test_a_file_that_takes_the_place_of_one_kept_open_is_the_one_that_is_read(path, tmp_path):
     season = Season(path)
     with kept_open():

@@ -1,7 +1,7 @@
 """The route of a day as it was worked: in the order of the times noted, else as recorded."""
 
 from dataclasses import replace
-from datetime import time
+from datetime import datetime, time, timedelta
 
 import numpy as np
 import pytest
@@ -53,14 +53,26 @@ def test_of_a_team_each_ones_clock_begins_when_it_starts(tmp_path):
     team = (TeamMember("Ana", robot), TeamMember("Ben", robot, starts_s=late_s))
     season = a_season(tmp_path / "s.gpkg", team=team)
     begins = seconds(season.settings.starts)
-    second = begins + late_s + np.array([600.0, 900.0])
+    second = begins + late_s + np.array([300.0, 600.0])
     for who in ("Ana", "Ben"):
         plants = PLANTS[:2] if who == "Ana" else PLANTS[1:] + 1
         names, clean = np.full(2, who, object), np.zeros(2, np.int8)
         noted = Inspections.of(plants, clean, np.datetime64(BEGINS), second=second, who=names)
         season.record(noted, who)
-    assert worked_route(season, BEGINS, "Ana").leave_s.tolist() == [late_s + 600.0, late_s + 900.0]
-    assert worked_route(season, BEGINS, "Ben").leave_s.tolist() == [600.0, 900.0]
+    ana, ben = (worked_route(season, BEGINS, who) for who in ("Ana", "Ben"))
+    assert ben.notes.start.time() == time(6, 30)
+    assert ben.leave_s.tolist() == [300.0, 600.0]
+    assert ana.notes.start > ben.notes.start, "she came half an hour late"
+    assert np.diff(ana.leave_s).tolist() == [300.0]
+
+
+def test_who_began_before_the_seasons_hour_has_all_its_times(tmp_path):
+    season, route = worked(tmp_path, [16_200.0, 16_800.0, 17_400.0])
+    begun_s = season.begun_s(BEGINS)
+    assert begun_s < 16_200.0 < seconds(season.settings.starts)
+    assert route.leave_s == pytest.approx(np.array([16_200.0, 16_800.0, 17_400.0]) - begun_s)
+    midnight = datetime.combine(BEGINS, time())
+    assert route.notes.start == midnight + timedelta(seconds=round(begun_s))
 
 
 def test_a_day_of_which_nothing_was_recorded_has_no_route(tmp_path):

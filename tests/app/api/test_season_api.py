@@ -3,14 +3,16 @@
 import base64
 import hashlib
 import shutil
+import sqlite3
 import uuid
+from contextlib import closing
 
 import pytest
 
 from app.api import description, season_api
 from app.api.season_api import application
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Season, photos, scouts
+from fieldmon.monitoring import Season, photos, scouts, transactions
 from tests.app.api.asking import Cut, as_sent, ask, exchange, in_own_loop, of_season, scope_of
 from tests.monitoring.phone import JPEG, a_finding, told
 from tests.monitoring.seasons import BEGINS
@@ -47,6 +49,29 @@ def test_with_a_key_every_way_is_open(served):
         assert answer.status == 200, (method, path, answer.body)
         assert answer.headers["cache-control"] == "no-store"
         assert "access-control-allow-origin" not in answer.headers
+
+
+@pytest.mark.parametrize("trouble", ["held", "away", "folder away"])
+def test_a_file_out_of_reach_for_a_moment_is_no_key_that_ended(served, trouble, monkeypatch):
+    path = served.season.path
+    if trouble == "held":
+        monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)
+        with closing(sqlite3.connect(path, isolation_level=None)) as other:
+            other.execute("BEGIN EXCLUSIVE")
+            answer = ask("GET", of_season("plot"), key=served.key)
+    elif trouble == "away":
+        assert ask("GET", of_season("plot"), key=served.key).status == 200
+        path.rename(path.with_name("away"))
+        answer = ask("GET", of_season("plot"), key=served.key)
+        path.with_name("away").rename(path)
+    else:
+        monkeypatch.setenv("FIELDMON_SEASONS", str(served.folder / "drive"))
+        answer = ask("GET", of_season("plot"), key=served.key)
+        monkeypatch.setenv("FIELDMON_SEASONS", str(served.folder))
+    assert answer.status == 503
+    assert "Try again later" in answer.json["error"]
+    assert str(served.folder) not in answer.json["error"]
+    assert ask("GET", of_season("plot"), key=served.key).status == 200
 
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)

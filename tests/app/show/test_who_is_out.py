@@ -10,7 +10,7 @@ from app.state import heard
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.monitoring import scouts
-from fieldmon.monitoring.day_ahead import Part, plan_of, route_ahead
+from fieldmon.monitoring.day_ahead import DayAhead, Part, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.plot.local_clock import local_clock, utc_now
 from tests.monitoring.phone import a_finding
@@ -39,7 +39,9 @@ def test_a_line_says_rows_code_phone_and_how_far(choices):
     route = route_ahead(choices.season, BEGINS, Part((1, 8), "Ann")).plant
     take(choices.season, key, [a_finding(int(route[0]), on=BEGINS)],
          utc_now() + timedelta(hours=1))  # fmt: skip
-    heard.note(choices.season.path, "Ann", BEGINS, plan_of(choices.season, BEGINS, PART))
+    heard.note(
+        choices.season.path, "Ann", BEGINS, DayAhead.of(choices.season, BEGINS).plan_of(PART)
+    )
     (line,) = who_is_out.lines(choices)
     assert f"1 of {len(route)} recorded" in line.said
     assert "has the day since " in line.said

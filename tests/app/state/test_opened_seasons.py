@@ -2,10 +2,11 @@
 
 import shutil
 from concurrent.futures import ThreadPoolExecutor
+from threading import Event
 
 import pytest
 
-from app.state import cached
+from app.state import cached, opened_seasons
 from app.state.opened_seasons import opened
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import FOUND
@@ -26,6 +27,29 @@ def test_all_who_ask_get_the_same_until_the_file_is_another(tmp_path):
 def test_a_season_that_is_not_there_is_a_sentence(tmp_path):
     with pytest.raises(FileProblem):
         opened(tmp_path / "none.gpkg")
+
+
+def test_another_season_is_opened_while_one_cannot_be(tmp_path, monkeypatch):
+    a_season(tmp_path / "b.gpkg")
+    held, season = Event(), opened_seasons.Season
+
+    def waiting(path):
+        if path.name == "a.gpkg":
+            held.wait()
+            raise FileProblem("held")
+        return season(path)
+
+    monkeypatch.setattr(opened_seasons, "Season", waiting)
+    with ThreadPoolExecutor(2) as threads:
+        waits = [threads.submit(opened, tmp_path / "a.gpkg") for _ in range(2)]
+        assert opened(tmp_path / "b.gpkg").path.name == "b.gpkg"
+        assert not opened_seasons.is_open(tmp_path / "a.gpkg")
+        held.set()
+        for one in waits:
+            with pytest.raises(FileProblem, match="held"):
+                one.result()
+    with pytest.raises(FileProblem, match="held"):
+        opened(tmp_path / "a.gpkg")  # tried again
 
 
 @pytest.mark.parametrize("ask", [opened, cached.season])

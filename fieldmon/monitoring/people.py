@@ -1,0 +1,35 @@
+"""How a season writes people's names: who was written once is written so from then on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.monitoring.open_season import settings_of
+from fieldmon.planning.members import person
+
+if TYPE_CHECKING:
+    import sqlite3
+
+# the last code first; who recorded stands there with others of the same file
+_WRITTEN = (
+    "SELECT name FROM scouts ORDER BY fid DESC",
+    "SELECT who FROM routes ORDER BY fid",
+    "SELECT who FROM batches ORDER BY fid",
+)
+
+
+def names_written(db: sqlite3.Connection) -> dict[str, str]:
+    """Return how a season writes its people, by `person`: as its team, codes, routes, records."""
+    known: dict[str, str] = {}
+    for one in settings_of(db).team:
+        as_written(known, one.name)
+    for wanted in _WRITTEN:
+        for (names,) in db.execute(wanted):
+            for name in str(names or "").split(", "):
+                as_written(known, name)
+    return known
+
+
+def as_written(known: dict[str, str], name: str) -> str:
+    """Return a name as it is known; one that is not is known as it is from now on."""
+    return known.setdefault(person(name), name.strip())

@@ -1,0 +1,26 @@
+"""A person is written as the season did first, whoever types the name."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.errors import AccessError
+from fieldmon.monitoring import Season, scouts
+from tests.monitoring.seasons import three_results
+
+
+def test_a_person_is_written_as_at_first_whoever_types_it(path):
+    season = Season(path)
+    first = scouts.let_in(season, "Ann")
+    second = scouts.let_in(season, "ann ")
+    with pytest.raises(AccessError):
+        scouts.who(season, first)
+    assert scouts.who(season, second).name == "Ann"
+    season.record(three_results(), "f", "ANN")
+    theirs = np.array(["Ben", "BEN", "aNN"], object)
+    season.record(replace(three_results(on=1), who=theirs), "g")
+    assert season.history.inspections.who.tolist()[-6:] == ["Ann"] * 3 + ["Ben", "Ben", "Ann"]
+    season.undo()
+    scouts.take_back(season, "ANN")
+    assert scouts.who(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"

@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
-    from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
         CanopySource,
@@ -147,11 +146,7 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
     if (file := sources.plot) is None:
         raise SettingError(worded("Give a file of plots."))
 
-    def read() -> Imported[tuple[tuple[Field, ...], dict[str, Crew]]]:
-        plots, crews = read_crews(file, sources.plot_options)
-        return plots.having((plots.value, crews))
-
-    fields, crews = hearing.read("plot", file, read)
+    fields, crews = hearing.read("plot", file, partial(read_crews, file, sources.plot_options))
     hearing.say("plot", file, gathered(one for each in fields for one in said_of_place(each)))
     fields = with_rows(fields, sources, request.planting, hearing)
     fields = _with_paths(fields, sources, hearing)

@@ -126,10 +126,11 @@ def few_unplaceable(
         xy = xy[:, ::-1]
     crs = system(wanted)
     if _in_degrees(crs):
-        wrong = (np.abs(xy) > (360, 90)).any(axis=1)
+        lands = (np.abs(xy) <= (360, 90)).all(axis=1)
     else:
         lonlat = transformation_from(crs, _middle(xy)).lonlat(xy)
-        wrong = ~(np.isfinite(lonlat).all(axis=1) & (np.abs(lonlat[:, 1]) <= 90))
+        lands = np.isfinite(lonlat).all(axis=1) & (np.abs(lonlat[:, 1]) <= 90)
+    wrong: NDArray[np.bool_] = np.asarray(~lands, dtype=bool)
     return wrong if 2 * np.count_nonzero(wrong) < len(xy) else np.zeros(len(xy), dtype=bool)
 
 

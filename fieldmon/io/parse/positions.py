@@ -12,6 +12,7 @@ import pyproj
 import shapely
 from pyproj.exceptions import CRSError
 
+from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
@@ -371,9 +372,9 @@ def _rounding(step_m: float, n: int) -> tuple[NDArray[np.float64], list[ImportMe
     return np.full(n, step_m / np.sqrt(6)), [  # both axes, each even over the step
         doubtful(
             worded(
-                "Coordinates are rounded to about {step_m:.3g} m: too coarse to name a plant. "
+                "Coordinates are rounded to about {step}: too coarse to name a plant. "
                 "They are used with that accuracy.",
-                step_m=step_m,
+                step=distance_figure(step_m),
             )
         )
     ]

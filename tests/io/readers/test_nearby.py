@@ -32,7 +32,7 @@ def test_a_record_between_everything_lies_on_no_plant_unless_its_accuracy_reache
     beyond = (0.0, -(GRID.xy_m[7, 1] - GRID.xy_m[:, 1].min()) - 5.0)
     (said,) = on_plants(records(beyond), GRID)
     assert said.severity == Severity.DOUBTFUL
-    assert "1 record lies on no plant: 5 m to 5 m from the nearest" in said.sentence
+    assert "1 record lies on no plant: 5 m from the nearest" in said.sentence
     (said,) = on_plants(records(beyond, 4.0), GRID)
     assert said.severity == Severity.SEEN
     assert "placed to 4 m while plants stand 1.5 m apart" in said.sentence

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyproj
 import shapely
+from scipy.spatial import cKDTree
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 _GEOD = pyproj.Geod(ellps="WGS84")
 _FAR_M, _DEGREE_M = 100_000.0, 111_000.0
 _MOST_NAMED = 5
+#: a tenth of a millimetre: one position, read twice
+_SAME_DEG = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,11 +91,13 @@ def records_on_plot(observations: Observations, field: Field) -> Observations:
 
 def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[ImportMessage]]:
     """Return the records of one plot; ask or refuse where not one is there."""
+    corner = _corners(observations.lonlat, field)
+    observations = observations.take(~corner)
     split = near_plot(observations, field)
     if len(split.inside):
         beyond = split.outside.lonlat
         doubts = doubt_of_order(split.outside_m, distance_m(beyond[:, ::-1], field))
-        return split.inside, split.messages(field.name) + doubts
+        return split.inside, [*_said_of(corner), *split.messages(field.name), *doubts]
     nearest = distance_figure(split.outside_m.min())
     swapped_m = distance_m(observations.lonlat[:, ::-1], field)
     if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
@@ -118,6 +123,21 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
             nearest=nearest,
         )
     )
+
+
+def _corners(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.bool_]:
+    """Return which records are the plot's corners, in a file that holds both: all, or none."""
+    corners = np.unique(shapely.get_coordinates(field.boundary), axis=0)
+    away_deg, corner = cKDTree(corners).query(lonlat)
+    met = away_deg < _SAME_DEG
+    every = len(np.unique(corner[met])) == len(corners)
+    return met if every and 2 * np.count_nonzero(met) < len(met) else np.zeros_like(met)
+
+
+def _said_of(corner: NDArray[np.bool_]) -> list[ImportMessage]:
+    n = int(np.count_nonzero(corner))
+    said = worded("{n} records are the corners of the plot and were left out.", n=n)
+    return [dropped(said)] if n else []
 
 
 def on_other_plots(

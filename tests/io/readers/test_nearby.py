@@ -7,7 +7,7 @@ from shapely import MultiPolygon, box
 
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.io.import_report import Remedy, Severity, guessed
-from fieldmon.io.readers.nearby import near_plot, on_plants, records_on_plot
+from fieldmon.io.readers.nearby import near_plot, of_plot, on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
@@ -21,6 +21,18 @@ def records(offset_m, accuracy_m=np.nan):
     lonlat = GRID.frame.lonlat(GRID.xy_m[[7]] + offset_m)
     accuracy = np.full(1, accuracy_m)
     return Observations.of(lonlat, np.array([PRESENT]), accuracy_m=accuracy)
+
+
+def test_the_corners_of_the_plot_are_no_records_where_a_file_holds_both():
+    field = Field("a", GRID.frame.geometry_lonlat(MultiPolygon([box(-40, -40, 40, 40)])))
+    corners = np.array(field.boundary.geoms[0].exterior.coords[:4])
+    lonlat = np.concatenate([GRID.lonlat(np.arange(5)), corners])
+    found = Observations.of(lonlat, np.full(9, PRESENT))
+    kept, (said,) = of_plot(found, field)
+    np.testing.assert_array_equal(kept.lonlat, lonlat[:5])
+    assert (said.severity, said.sentence[:9]) == (Severity.DROPPED, "4 records")
+    for some in (found.take(np.arange(8)), found.take(np.arange(5, 9))):
+        assert len(of_plot(some, field)[0]) == len(some)
 
 
 def test_a_record_at_its_plant_needs_no_words():

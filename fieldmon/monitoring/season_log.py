@@ -296,18 +296,19 @@ _PLANNED_AND_SEEN = (
     " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.from')) AS low,"
     " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.to')) AS high,"
     " json_extract(entry, '$.what.by'), own"
-    " FROM said WHERE kind IN ('planned', 'seen') AND low NOTNULL AND high NOTNULL"
+    " FROM said WHERE kind IN ('planned', 'seen') AND low <= coalesce(?1, low)"
+    " AND high >= coalesce(?1, high)"
     " AND NOT (own AND EXISTS (SELECT 1 FROM batches WHERE undone = 1"
     " AND fid = json_extract(entry, '$.what.batch')"
     " AND source = json_extract(entry, '$.what.source')))"
 )
 
 
-def planned_and_seen(db: sqlite3.Connection) -> list[PlannedOrSeen]:
-    """Return what was planned and recorded and not undone, in order."""
+def planned_and_seen(db: sqlite3.Connection, on: date | None = None) -> list[PlannedOrSeen]:
+    """Return what was planned and recorded and not undone, in order; of one day, or of all."""
     last = {0: "", 1: ""}
     said = []
-    for kind, at, low, high, by, own in db.execute(_PLANNED_AND_SEEN):
+    for kind, at, low, high, by, own in db.execute(_PLANNED_AND_SEEN, (on and str(on),)):
         last[own] = max(last[own], at)  # a clock may be set back: what stands below is later
         marks = None if by is None else json.loads(by)
         said.append((last[own], PlannedOrSeen(kind, at, low, high, marks)))
@@ -329,7 +330,7 @@ def worked_by(db: sqlite3.Connection, on: date, clock: LocalClock) -> Marks | No
     clock, or, if nothing was, before the first of it. A day that was not planned before was worked
     by what counted when it was first recorded. If nothing was recorded, it is the last plan.
     """
-    of_day = [one for one in planned_and_seen(db) if one.low <= str(on) <= one.high]
+    of_day = planned_and_seen(db, on)
     seen = [k for k, one in enumerate(of_day) if one.kind == "seen"]
     that_day = [k for k in seen if clock.at(datetime.fromisoformat(of_day[k].at)).date() == on]
     if not that_day and (before := db.execute(_SEEN_BEFORE, (str(on),)).fetchone()):

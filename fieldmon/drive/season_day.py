@@ -107,7 +107,7 @@ class SeasonDay:
         """Return what people want but for the plants that are left to somebody."""
         if not self.left_out:
             return wishes
-        theirs = np.any([inside(self._season, rows) for rows in self.left_out], axis=0)
+        theirs = np.any([inside(self._season.label, rows) for rows in self.left_out], axis=0)
         return (wishes or Wishes()).never(tuple(np.flatnonzero(theirs).tolist()))
 
     def _plan(self) -> None:

@@ -13,6 +13,7 @@ from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
+from fieldmon.planning.members import person
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
@@ -136,7 +137,7 @@ def who_came(season: Season, on: date, team: tuple[str, ...] = ()) -> tuple[str,
     Whoever is named nowhere is one of several.
     """
     who = season.history.inspections.on(on).inspected.who
-    came = {str(name).casefold(): str(name) for name in who}
+    came = {person(str(name)): str(name) for name in who}
     if not team and len(came) < 2:
         return ()
     named = sorted(name for name in came.values() if name)

@@ -218,11 +218,11 @@ def _choose_day(source: str, key: str, calendar: Calendar) -> None:
 
 
 def whose_day(choices: Choices) -> None:
-    """Let one of a season's team be chosen, whose day is shown and whose findings are recorded."""
-    if len(choices.team) > 1:
+    """Let one of the day's team be chosen, whose day is shown and whose findings are recorded."""
+    if len(team := choices.team_that_day) > 1:
         widget_memory.show(
-            st.segmented_control, texts.WHOSE_DAY, list(choices.team), key=WHOSE_DAY,
-            default=choices.team[0], required=True,
+            st.segmented_control, texts.WHOSE_DAY, list(team), key=WHOSE_DAY,
+            default=team[0], required=True,
         )  # fmt: skip
 
 

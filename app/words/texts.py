@@ -754,9 +754,11 @@ CONTRADICTING_NO_MORE = Plural(
     "{n} result from {source} is not recorded yet, and contradicts nothing any more.",
     "{n} results from {source} are not recorded yet, and contradict nothing any more.",
 )
-RECORD_THESE = "Record these {n}"
+RECORD_THESE = Plural("Record this", "Record these {n}")
 AND_MORE = "... and {n} more."
-LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
+LEAVE_OUT = Plural("Leave these out, record the other one", "Leave these out, record {n} others")
+HOLDS = Plural("The new one holds", "The new ones hold")
+CONFIRM = Plural("Record this too, both hold", "Record these {n} too, both hold")
 RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."

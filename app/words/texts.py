@@ -582,12 +582,12 @@ DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it i
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
-DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "wrong in"
+DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "may be wrong"
 DECIDE_WRONG_HELP = (
-    "By itself: whether the zone alone is above the threshold. Wrong in: the chance that this is "
-    "wrong, on fields drawn from the chance map, neighbours together; where it is not clear, that "
-    "treating would be."
+    "By itself: whether this zone alone needs treating. May be wrong: the chance that this answer "
+    "is wrong; where it is not clear, that treating would be needless."
 )
+DECIDE_SAVING_HELP = "In the currency in which the costs are given."
 DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
 DECIDE_NUMBERS = "numbers of the zones"
 DECIDE_ON_MAP = "zones to treat"

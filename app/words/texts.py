@@ -451,7 +451,7 @@ CHANGED_NONE = "Nothing was recorded on {day}."
 CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were treated on {day}.")
 CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
-CHANGED_ROWS = "Rows whose chance rose most: {rows}."
+CHANGED_ROWS = "Rows whose chance rose most, in percentage points: {rows}."
 DAY_DONE = Plural(
     "Done on {day}: {found:,} found on {inspected:,} plant.",
     "Done on {day}: {found:,} found on {inspected:,} plants.", by="inspected",
@@ -939,8 +939,8 @@ COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (
-    "**{best}** is best: {loss:,.0f} infested plant-days, {percent:.0f} % less than {second} "
-    "({low:,.0f} to {high:,.0f} fewer, 95 % interval)."
+    "**{best}** is best: {loss:,.0f} infested plant-days. {second} has {percent:.0f} % more "
+    "({low:,.0f} to {high:,.0f} more, 95 % interval)."
 )
 VERDICT_ONE = (
     "One season so far: **{best}** is ahead of {second}. That tells little; more would tell."

@@ -356,7 +356,8 @@ WISHES_DROP = "As planned before"
 # -- all plots
 PLOTS_TITLE = Plural("{n} plot", "{n} plots")
 PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
-PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
+PLOTS_COLUMNS = {"name": "plot", "days_since": "days", "expected": "infested"}
+PLOTS_HELP = {"days_since": "days since seen", "expected": "expected infested"}
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
@@ -385,8 +386,10 @@ PLAN_ALL_WAITING = "No time today: {names}."
 PLAN_ALL_FREE = "Free today: {names}."
 PLAN_ALL_WORKING = "Planning the plots ..."
 PLAN_ALL_DOWNLOAD = "Download all routes"
-PLAN_ALL_COLUMNS = {"who": "who", "from": "from", "to": "to", "plants": "plants to inspect",
-                    "finds": "finds expected"}  # fmt: skip
+PLAN_ALL_COLUMNS = {"who": "who", "when": "when", "finds": "finds"}
+PLAN_ALL_WAITING_MANY = (
+    "No time today for {n} plots: those of the table beside which nobody stands."
+)
 PLOTS_LABEL = "{name}\n{who}, {start}-{end}"
 WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
 NO_SEASONS = (

@@ -98,10 +98,8 @@ SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times(
 DATE = "Day"
 DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
 ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
-OTHER_DAY = (
-    "This page is about **{day}**, which is not today ({today}). What you record here is recorded "
-    "for {day}."
-)
+OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
+OTHER_DAY_RECORDED = "What you record here is recorded for {day}."
 BACK_TO_TODAY = "Back to today"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 ASSUMED = "\\* assumed: {what}."

@@ -197,6 +197,7 @@ MAP_WORDS = {
     "live": "live, {seconds} s ago", "paused": "paused, {seconds} s ago",
     "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
     "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
+    "legend": "What the signs mean",
     "away": "the server is not reached",
 }  # fmt: skip
 SEASON_INTRO = (
@@ -497,6 +498,7 @@ LEGEND_HEADLAND, LEGEND_AISLE, LEGEND_NO_GO = "headland", "aisle", "no-go area"
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
 BEARING_IS, SPACING_IS = "Row direction", "Rows / plants apart"
 BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
+LEGEND_PLANT = "plant"
 BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."

@@ -91,6 +91,7 @@ HOT_MEANS = (
     "{rows}: {found:,} found among {inspected:,} inspected of its {plants:,} plants, where "
     "{expected} would be if finds were spread evenly. So many by chance alone: {p}."
 )
+HOT_BROUGHT = "{n:,} of them {n:is|are} known from the records brought only."
 HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"
 HOT_ROW = "Row {first}, plants {low} to {high}"
 HOT_PLANTS = "Plants {low} to {high}"
@@ -106,6 +107,7 @@ BATCH_KINDS = {
     "treatment": "treatment",
     "corrections": "corrections",
 }
+BATCH_BROUGHT = "records brought"
 BATCH_UNDONE = "{kind}, taken back"
 BATCHES_NONE = "Nothing was recorded yet."
 BATCHES_REST = "... and {n} earlier ones; fieldmon status --batches lists them."

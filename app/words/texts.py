@@ -114,6 +114,8 @@ ASSUMED_WHAT = {
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
     "treated": "plants found infested are treated at once",
+    "edge_chance": "{value} % more at edges and paths",
+    "gate": "the gate at the nearest row end",
 }
 ASSUMED_ROBOT_TOO = "how fast and how thoroughly plants are inspected"
 ASSUMED_OF_ROBOT = "Of who inspects: {what}."
@@ -158,7 +160,11 @@ ANSWERS_OF_RECORDS_ALT = Plural(
     "Map of plot {name}: {n} places where the records could lie.",
 )
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
-UNDO_ANSWER = "Take back: {option} = {value}"
+UNDO_ANSWER = "Take back: {answer}"
+# what an answer about a column says of it
+ANSWER_ALL_FINDS = "Every record is a find"
+ANSWER_COLUMNS = {"count": "{name}: how many were found", "present": "{name}: found or not",
+                  "date": "{name}: the day", "plot": "{name}: which plot"}  # fmt: skip
 SEVERITIES = {
     "seen": "Seen",
     "repaired": "Repaired",
@@ -191,13 +197,13 @@ MAP_WORDS = {
     "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
             "Escape leaves.", "corners": "Points: {n}",
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
+    "legend": "What the signs mean",
     "scale": "The scale bar is {bar} long; the arrow points north.",
     "speed": "Speed", "follow": "Follow the robot",
     "driven": "{time} · {stops} stops, {found} found",
     "live": "live, {seconds} s ago", "paused": "paused, {seconds} s ago",
     "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
     "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
-    "legend": "What the signs mean",
     "away": "the server is not reached",
 }  # fmt: skip
 SEASON_INTRO = (
@@ -382,13 +388,13 @@ PLAN_ALL_RULE = (
     "wherever they lie."
 )
 PLAN_ALL_WAITING = "No time today: {names}."
+PLAN_ALL_WAITING_MANY = (
+    "No time today for {n} plots: those of the table beside which nobody stands."
+)
 PLAN_ALL_FREE = "Free today: {names}."
 PLAN_ALL_WORKING = "Planning the plots ..."
 PLAN_ALL_DOWNLOAD = "Download all routes"
 PLAN_ALL_COLUMNS = {"who": "who", "when": "when", "finds": "finds"}
-PLAN_ALL_WAITING_MANY = (
-    "No time today for {n} plots: those of the table beside which nobody stands."
-)
 PLOTS_LABEL = "{name}\n{who}, {start}-{end}"
 WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
 NO_SEASONS = (
@@ -492,13 +498,13 @@ TIP_TREATED, TIP_TREATED_WITH = "treated on {day}", "treated on {day}: {product}
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
 TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
 LABEL_GATE, LABEL_NO_GO, LABEL_BLOCK = "gate", "no-go", "block {n}"
+LEGEND_PLANT = "plant"
 LEGEND_HEADLAND, LEGEND_AISLE, LEGEND_NO_GO = "headland", "aisle", "no-go area"
 
 # -- plot and records
 AREA_IS, PLANTS_ARE, ROWS_ARE = "Area", "Plants", "Rows"
 BEARING_IS, SPACING_IS = "Row direction", "Rows / plants apart"
 BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
-LEGEND_PLANT = "plant"
 BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
@@ -582,6 +588,7 @@ DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
 DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
 DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
+DECIDE_SAVING_HELP = "In the currency in which the costs are given."
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
@@ -590,7 +597,6 @@ DECIDE_WRONG_HELP = (
     "By itself: whether this zone alone needs treating. May be wrong: the chance that this answer "
     "is wrong; where it is not clear, that treating would be needless."
 )
-DECIDE_SAVING_HELP = "In the currency in which the costs are given."
 DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
 DECIDE_NUMBERS = "numbers of the zones"
 DECIDE_ON_MAP = "zones to treat"

@@ -37,10 +37,5 @@ def of(choices: Choices) -> tuple[Assumed, ...]:
     return (*made, *_of_gate(choices.plot))
 
 
-def of_plot(plot: Plot) -> tuple[Assumed, ...]:
-    """Return what a plot itself rests on though nobody said it."""
-    return (*plot.assumed, *_of_gate(plot))
-
-
 def _of_gate(plot: Plot) -> tuple[Assumed, ...]:
     return (Assumed("gate", 1.0),) if plot.field.gate is None else ()

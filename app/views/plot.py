@@ -18,7 +18,7 @@ from ..actions import (
 )
 from ..show import assumed, field_map, plot_figures
 from ..show import records as records_shown
-from ..state import assumptions, plot_before, plot_source, rooms
+from ..state import plot_before, plot_source, rooms
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def show(choices: Choices) -> None:
     if before is not None:
         st.caption(texts.BEFORE_NOTE)
         st.button(texts.BEFORE_DROP, key="forget_before", on_click=plot_before.forget)
-    st.caption(assumed.sentence(assumptions.of_plot(choices.plot), choices.units))
+    st.caption(assumed.sentence(choices.plot.assumed, choices.units))
     turning_rows.show(choices)
     if plot_source.chosen() == plot_source.FILES:
         with st.expander(texts.FILES):

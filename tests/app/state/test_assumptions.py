@@ -25,8 +25,9 @@ def test_without_a_season_nothing_is_said_of_nights():
 
 
 def test_a_gate_is_assumed_where_nobody_said_it():
-    plot = a_plot()
+    here = chosen(a_plot())
+    plot = here.plot
     for gate in (None, tuple(plot.field.boundary.centroid.coords[0])):
         there = replace(plot, field=replace(plot.field, gate=gate))
-        settings = {one.setting for one in assumptions.of_plot(there)}
+        settings = {one.setting for one in assumptions.of(replace(here, plot=there))}
         assert ("gate" in settings) == (gate is None)

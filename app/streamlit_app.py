@@ -32,6 +32,9 @@ st.html(_HERE / "style" / "every_page.css")
 st.html(_HERE / "style" / ("dark.css" if browser.is_dark() else "light.css"))
 if language.is_right_to_left():
     st.html(_HERE / "style" / "right_to_left.css")
+# a slider's knob goes by the browser's own language, its bar always from the left
+side = "right" if browser.language() in language.RIGHT_TO_LEFT else "left"
+st.html(_HERE / "style" / f"slider_from_{side}.css")
 preload.start()
 
 
@@ -75,8 +78,8 @@ def page_of(name: str) -> st.Page:
 
 def in_panel(name: str) -> None:
     """Show a room in the panel: where and when, its parts, and who works."""
-    head, day, said, body, foot = (
-        st.container(key=f"panel_{k}") for k in ("head", "day", "said", "body", "foot")
+    notice, head, day, said, body, foot = (
+        st.container(key=f"panel_{k}") for k in ("notice", "head", "day", "said", "body", "foot")
     )
     links_, ways, head = head.container(), head.container(), head.container()
     with links_:
@@ -93,12 +96,14 @@ def in_panel(name: str) -> None:
         with ways:
             ways_in.show()
 
-    is_planned = rooms.shown_part(name) == "today"
+    part = rooms.shown_part(name)
+    is_planned = part == "today"
     chosen = choose(head, foot, waiting.wait, day if is_planned else None)
-    with said:
+    with notice:
         notices.show()
+    with said:
         if chosen.choices is not None:
-            mark_day(chosen.choices)
+            mark_day(chosen.choices, part)
             show_left_out(chosen.choices)
     with body:
         if chosen.choices is None:

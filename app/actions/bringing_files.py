@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -14,6 +15,7 @@ from ..state import brought_files, chosen_day, rasters
 from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
 from ..state.tried_answers import tried_of_records
 from ..words import texts
+from ..words.answers import in_short
 from ..words.language import in_words, of_error
 
 if TYPE_CHECKING:
@@ -23,7 +25,13 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
     from ..state.tried_answers import TriedAnswer
 
-_ICONS = {"seen": "👁", "repaired": "🔧", "guessed": "💡", "dropped": "🗑", "doubtful": "⚠️"}
+_ICONS = {
+    name: f":material/{icon}:"
+    for name, icon in {
+        "seen": "visibility", "repaired": "build", "guessed": "lightbulb", "dropped": "delete",
+        "doubtful": "warning",
+    }.items()
+}  # fmt: skip
 # questions that another file answers, in a box of its own
 _OTHER_FILES = frozenset({"kind", "plots", "plants"})
 _MOST_BUTTONS = 12
@@ -126,13 +134,14 @@ def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> Non
         return
     offered = [str(choice) for choice in error.choices]
     for number, answer in with_buttons(offered, tried):
-        st.button(_label(number, answer, tried.get(answer)), key=f"pick {asking} {answer}",
-                  width="stretch", on_click=brought_files.answer,
-                  args=(asking, error.option, answer))  # fmt: skip
+        label = _label(number, in_short(answer, error.option), tried.get(answer))
+        st.button(label, key=f"pick {asking} {answer}", width="stretch",
+                  on_click=brought_files.answer, args=(asking, error.option, answer))  # fmt: skip
     label, widget = texts.CHOOSE_OTHER, f"ask {asking} {error.option}"
     with st.container(horizontal=True, vertical_alignment="bottom"):
         if error.choices:
-            st.selectbox(label, offered, key=widget, accept_new_options=True)
+            st.selectbox(label, offered, key=widget, accept_new_options=True,
+                         format_func=partial(in_short, option=error.option))  # fmt: skip
         else:
             st.text_input(label, key=widget)
         st.button(texts.CHOOSE_BUTTON, key=f"use {asking} {error.option}",
@@ -168,7 +177,7 @@ def _offer_undo(key: str) -> None:
     """Offer to take the last answer about a file back, if there is one."""
     if key and answers(key):
         option, value = answers(key)[-1]
-        st.button(texts.UNDO_ANSWER.format(option=option, value=value), key=f"back {key}",
+        st.button(texts.UNDO_ANSWER.format(answer=in_short(value, option)), key=f"back {key}",
                   icon=":material/undo:", on_click=brought_files.take_back,
                   args=(key,))  # fmt: skip
 

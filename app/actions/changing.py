@@ -121,7 +121,7 @@ def _wanted(
                                format_func=who_name, key=f"who {key}",
                                label_visibility="collapsed")  # fmt: skip
     if who != was:
-        robot = scout() if who == SCOUT else Robot()
+        robot = (scout() if who == SCOUT else Robot()).with_hours(robot.hours)
         key = f"{key} {who}"
     # a command, or "one hour more", may have set what is beyond the usual; a program whole numbers
     usual_h, usual_s = float(robot.hours), float(robot.look_s)

@@ -64,6 +64,8 @@ _DAY = "day {source}"
 # in the box names look alike that begin with the same letters, so many
 _CUT_ALIKE = 14
 _MOST_MEASURED = 500
+# where something can be recorded
+_RECORDING = frozenset({"today", "scout", "record", "decide"})
 
 
 def choose(
@@ -226,13 +228,16 @@ def whose_day(choices: Choices) -> None:
         )  # fmt: skip
 
 
-def mark_day(choices: Choices) -> None:
-    """Say above a page that its day is not today, with the way back."""
+def mark_day(choices: Choices, part: str) -> None:
+    """Say above a part of a room that its day is not today, with the way back."""
     if choices.is_today:
         return
     day, now = (choices.units.said_day(on, choices.today) for on in (choices.day, choices.today))
     # below each other: beside the sentence there is no room for the button's words
-    st.warning(texts.OTHER_DAY.format(day=day, today=now))
+    said = [texts.OTHER_DAY.format(day=day, today=now)]
+    if part in _RECORDING:
+        said.append(texts.OTHER_DAY_RECORDED.format(day=day))
+    st.warning(" ".join(said))
     st.button(texts.BACK_TO_TODAY, key="back_to_today",
               on_click=work_day.back_to_today, args=(plot_source.chosen(),))  # fmt: skip
 
@@ -267,7 +272,7 @@ def _work(work: Work) -> tuple[Robot, str]:
         who = widget_memory.show(
             st.segmented_control, texts.WHO, list(changing.WHO), key="who",
             default=changing.ROBOT, required=True, label_visibility="collapsed",
-            format_func=changing.who_name,
+            format_func=changing.who_name, on_change=_keep_hours,
         )  # fmt: skip
         base = robots.scout() if who == changing.SCOUT else robots.Robot()
         with work.hours():
@@ -287,6 +292,14 @@ def _work(work: Work) -> tuple[Robot, str]:
         )  # fmt: skip
         st.caption(sampler_does(sampler))
     return replace(base, hours=float(day_h), look_s=float(inspection_s)), sampler
+
+
+def _keep_hours() -> None:
+    """Let a working day be as long as it was, whoever is to inspect now (for callbacks)."""
+    who = widget_memory.value("who")
+    before = changing.ROBOT if who == changing.SCOUT else changing.SCOUT
+    if (hours_h := widget_memory.value(f"hours {before}")) is not None:
+        widget_memory.put(f"hours {who}", hours_h)
 
 
 # -- language and units

@@ -163,8 +163,9 @@ def content(
         draw = Drawable(_SHAPES[kind], kind, texts.DRAW_HINTS[kind], _corners(field))
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
-        legend=[*turning_rows.legend(choices), *legends.signs(dark=choices.dark)[2:],
-                legends.gate(), *legends.plan(field, dark=choices.dark)],
+        legend=[*turning_rows.legend(choices), legends.plants(),
+                *(legends.records(dark=choices.dark) if len(records) else ()), legends.gate(),
+                *legends.plan(field, dark=choices.dark)],
         draw=draw,
         labels=[*turning_rows.labels(choices), *map_layers.words(choices)],
     )  # fmt: skip

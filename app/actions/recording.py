@@ -255,7 +255,12 @@ def recorded(
 
 def said_of(done: Recorded | None) -> str:
     """Return what recording did, in a sentence; nothing where results wait for a word."""
-    return "" if done is None else texts.RECORDED.format(new=done.new, known=done.known)
+    if done is None:
+        return ""
+    corrected = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
+    if done.new or done.known or not corrected:
+        corrected.append(texts.RECORDED.format(new=done.new, known=done.known))
+    return "\n\n".join(corrected)
 
 
 # -- what contradicts
@@ -280,6 +285,7 @@ def ask_about_contradictions(choices: Choices) -> None:
     with st.container(horizontal=True):
         for key, label, action in (
             ("leave_out", texts.LEAVE_OUT.format(n=others), _leave_out),
+            ("holds", texts.HOLDS.format(n=len(said)), _hold),
             ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
             ("record_none", texts.RECORD_NONE, _drop),
         ):
@@ -332,6 +338,17 @@ def _confirm(choices: Choices) -> str:
 
 
 @notices.reporting
+def _hold(choices: Choices) -> str:
+    """Record all, and let what contradicts hold in place of what was recorded."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    who = choices.who or ""
+    done = choices.season.record_instead(waiting.results, waiting.source, who)
+    return _over(waiting, done)
+
+
+@notices.reporting
 def _leave_out(choices: Choices) -> str:
     """Record what does not contradict."""
     waiting = unconfirmed.of(choices.key, choices.day)
@@ -346,10 +363,14 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     if waiting is None:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
-    done = choices.season.record(taken, waiting.source, who, confirmed=True)
+    return _over(waiting, choices.season.record(taken, waiting.source, who, confirmed=True))
+
+
+def _over(waiting: Unconfirmed, done: Recorded) -> str:
+    """Let nothing wait any more; return what was done."""
     unconfirmed.drop()
     fresh_boxes.empty(waiting.form)
-    return texts.RECORDED.format(new=done.new, known=done.known)
+    return said_of(done)
 
 
 def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others

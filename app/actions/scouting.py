@@ -16,7 +16,7 @@ from ..show import recorded_batches
 from ..state import chosen_day, notices
 from ..words import texts
 from ..words.language import in_words, number
-from . import handing_out
+from . import handing_out, recording
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings
@@ -44,7 +44,7 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
     )  # fmt: skip
     if not len(chosen_day.given_out(choices)):  # from the first tap on it is the day's route
         handing_out.give_out(choices)
-    choices.season.record(results, SOURCE, choices.who or "")
+    recording.recorded(choices, results, SOURCE)
     return ""
 
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from ..state.estate import PlotState
 
 _ON = "plan all"
+# more names than these are a wall of words
+_MOST_NAMED = 5
 #: least, most and step of each number that makes a crew
 _LIMITS = {
     "robots": (0, 20, 1), "robot_hours": (0.5, 16.0, 0.5), "scouts": (0, 20, 1),
@@ -90,7 +92,9 @@ def _say(made: SharedPlots, crew: EstateCrew) -> None:
     st.caption(texts.PLAN_ALL_RULE)
     if made.waiting:
         names = listed(texts.isolated(one.name) for one in made.waiting)
-        st.markdown(texts.PLAN_ALL_WAITING.format(names=names))
+        many = texts.PLAN_ALL_WAITING_MANY.format(n=len(made.waiting))
+        said = texts.PLAN_ALL_WAITING.format(names=names)
+        st.markdown(many if len(made.waiting) > _MOST_NAMED else said)
     busy = {one.who for one in made.turns}
     free = [one.name for one in crew.members() if one.name not in busy]
     if free:

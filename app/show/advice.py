@@ -12,9 +12,10 @@ import shapely
 import streamlit as st
 from pydeck import Layer
 
+from fieldmon.compute.wording import litres_figure, share_figure
 from fieldmon.plot.grid import row_label
 
-from ..state import cached
+from ..state import assumptions, cached
 from ..words import texts
 from ..words.language import about, in_words, number
 from . import map_layers
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
 
 # more numbers than these have no room beside each other
 _MOST_NUMBERS = 200
-# a share below this is said to a tenth of a percent: 0 % says that there is nothing
-_SMALL = 0.01
+# more zones than these are scrolled
+_MOST_ZONES, _TABLE_PX = 10, 420
 # who decides asks where to spray, not where to drive
 _OF_ROUTE = frozenset({"casing", "route", "arrows"})
 
@@ -40,8 +41,13 @@ def headline(choices: Choices, advice: Advice) -> None:
     """Answer the daily question in one sentence, and say what the answer rests on."""
     with st.container(key="lead"):
         st.markdown(f"**{in_words(advice.headline(choices.units.of_library))}**")
-    for sentence in advice.reasons():
-        st.markdown(in_words(sentence))
+    for k, sentence in enumerate(advice.reasons()):
+        st.markdown(_starred(choices, in_words(sentence)) if k == 0 else in_words(sentence))
+
+
+def _starred(choices: Choices, figure: str) -> str:
+    """Return words with a star if what they say rests on what is assumed."""
+    return f"{figure} *" if assumptions.of(choices) else figure
 
 
 def figures(choices: Choices, advice: Advice, product: str) -> None:
@@ -52,16 +58,24 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
     for sentence in advice.though():
         st.markdown(in_words(sentence))
     zones, units = advice.zones, choices.units
-    of_plot = zones.m2 / zones.plot_m2
-    share = number(of_plot, ".1%" if of_plot < _SMALL else ".0%")
+    share = in_words(share_figure(zones.m2 / zones.plot_m2))
+    inside, outside, enough = (
+        _starred(choices, one)
+        for one in (texts.DECIDE_INSIDE, texts.DECIDE_OUTSIDE, texts.DECIDE_ENOUGH)
+    )
     with st.container(horizontal=True):
         st.metric(texts.DECIDE_AREA, f"{units.square(zones.m2)} ({share})", width="content")
-        liquid = texts.DECIDE_LITRES.format(value=number(advice.litres, ",.0f"))
+        liquid = texts.DECIDE_LITRES.format(value=in_words(litres_figure(advice.litres)))
         st.metric(product or texts.DECIDE_LIQUID, liquid, width="content")
-        st.metric(texts.DECIDE_INSIDE, about(zones.inside), width="content")
-        st.metric(texts.DECIDE_OUTSIDE, about(zones.outside), width="content")
-        st.metric(texts.DECIDE_SAVING, in_words(advice.saved), width="content")
-        st.metric(texts.DECIDE_ENOUGH, number(advice.said.enough, ".0%"), width="content",
+        st.metric(inside, about(zones.inside), width="content")
+        st.metric(outside, about(zones.outside), width="content")
+        st.metric(
+            texts.DECIDE_SAVING,
+            in_words(advice.saved),
+            width="content",
+            help=texts.DECIDE_SAVING_HELP,
+        )
+        st.metric(enough, number(advice.said.enough, ".0%"), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip
 
 
@@ -70,8 +84,13 @@ def zones(advice: Advice) -> None:
     if not len(advice.zones):
         return
     with st.expander(texts.DECIDE_ZONES.format(n=len(advice.zones))):
-        st.dataframe(table(advice), hide_index=True)
+        # words that wrap: beside the map, a grid cut off its last columns
+        st.table(table(advice), hide_index=True, border="horizontal", height=_height(advice))
         st.caption(texts.DECIDE_WRONG_HELP)
+
+
+def _height(advice: Advice) -> int | str:
+    return _TABLE_PX if len(advice.zones) > _MOST_ZONES else "content"
 
 
 def table(advice: Advice) -> pd.DataFrame:

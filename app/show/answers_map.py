@@ -78,7 +78,7 @@ def label(number: int, place: list[float]) -> dict[str, Any]:
 
 def said(tried: tuple[TriedAnswer, ...], number: int) -> str:
     """Return what is said of an answer, by its number from 0, where one points at it."""
-    return " · ".join([f"{number + 1}", tried[number].answer, place_of(tried[number])])
+    return " · ".join([f"{number + 1}", tried[number].said, place_of(tried[number])])
 
 
 def place_of(one: TriedAnswer) -> str:

@@ -45,7 +45,7 @@ def content(tried: tuple[TriedAnswer, ...], plot: Plot, *, dark: bool) -> MapCon
     if not same:
         made.append(_places(tried, seen, at))
     items = [("line", answers_map.GROUND, texts.LEGEND_ZONE)] if ground else []
-    rings = [("ring", answers_map.colour(k), f"{k + 1} · {tried[k].answer}") for k in seen]
+    rings = [("ring", answers_map.colour(k), f"{k + 1} · {tried[k].said}") for k in seen]
     numbers = [] if same else [
         answers_map.label(k, place.round(7).tolist())
         for k, place in zip(seen, at, strict=True)
@@ -90,7 +90,7 @@ def _points(tried: tuple[TriedAnswer, ...], seen: list[int]) -> list[Layer]:
             continue
         colour = list(answers_map.colour(k))
         finds = records.take(records.present == PRESENT)
-        said = f"{k + 1} · {tried[k].answer}"
+        said = f"{k + 1} · {tried[k].said}"
         dots = [{"p": place, "t": said} for place in _some(records).round(7).tolist()]
         rings = [{"p": place, "t": said} for place in _some(finds).round(7).tolist()]
         made += [

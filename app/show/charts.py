@@ -25,10 +25,14 @@ if TYPE_CHECKING:
 
     #: names a day on an axis, without its year
     DayName = Callable[[date], str]
+    #: the number of a line's colour, and of its dashes, by its name
+    Styles = dict[str, tuple[int, int]]
 
 # Okabe & Ito's colours for the colour-blind
 # the last one grey, not black, which the dark page swallows
 _COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F"]
+# each way of choosing plants has its own colour on every page
+_OWN = ("adaptive", "dynamic", "naive", "bouncy", "decide", "snake", "neighbor")
 # more lines than colours: the next ones are dashed
 _DASHES = [[1, 0], [6, 3], [2, 2]]
 _LEGEND = alt.Legend(orient="top", title=None, columns=2, labelLimit=300, symbolType="stroke",
@@ -88,13 +92,15 @@ def _sides() -> tuple[str, str]:
 
 
 @_in_language
-def detection(seasons: dict[str, SeasonMetrics], day: int, axes: tuple[str, str]) -> alt.LayerChart:
+def detection(
+    seasons: dict[str, SeasonMetrics], day: int, axes: tuple[str, str], samplers: Sequence[str] = ()
+) -> alt.LayerChart:
     """Return detection per day, a line for each sampler, with a rule at the day shown."""
     table = pd.concat(
         pd.DataFrame({"strategy": name, "day": range(1, len(f.found) + 1), "mean": f.detection_pct})
         for name, f in seasons.items()
     )
-    lines = _lines(table, list(seasons), axes)
+    lines = _lines(table, _styles(list(seasons), samplers), axes)
     rule = (
         alt.Chart(pd.DataFrame({"day": [day]}))
         .mark_rule(strokeDash=[4, 4], color=_GREY)
@@ -109,10 +115,10 @@ def curves(table: pd.DataFrame, axes: tuple[str, str]) -> alt.Chart:
     long = (
         table.rename_axis("day").reset_index().melt("day", var_name="strategy", value_name="mean")
     )
-    return _lines(long, list(table.columns), axes).properties(height=320)
+    return _lines(long, _styles(list(table.columns)), axes).properties(height=320)
 
 
-def _lines(table: pd.DataFrame, names: list[str], axes: tuple[str, str]) -> alt.Chart:
+def _lines(table: pd.DataFrame, styles: Styles, axes: tuple[str, str]) -> alt.Chart:
     """Return the mean by day, a line for each strategy, told apart by colour and by dashes."""
     tooltip = [
         alt.Tooltip("strategy", title=texts.COLUMN_STRATEGY),
@@ -125,20 +131,31 @@ def _lines(table: pd.DataFrame, names: list[str], axes: tuple[str, str]) -> alt.
         .encode(
             x=alt.X("day:Q", title=axes[0], axis=alt.Axis(tickMinStep=1)),
             y=alt.Y("mean:Q", title=axes[1], scale=alt.Scale(domain=[0, 100])),
-            color=alt.Color("strategy:N", scale=_scale(names, _COLOURS), legend=_LEGEND),
-            strokeDash=alt.StrokeDash("strategy:N", scale=_dashes(names), legend=_LEGEND),
+            color=alt.Color("strategy:N", scale=_scale(styles), legend=_LEGEND),
+            strokeDash=alt.StrokeDash("strategy:N", scale=_dashes(styles), legend=_LEGEND),
             tooltip=tooltip,
         )
     )
 
 
-def _scale(names: list[str], colours: list[str]) -> alt.Scale:
-    return alt.Scale(domain=names, range=[colours[k % len(colours)] for k in range(len(names))])
+def _styles(names: Sequence[str], samplers: Sequence[str] = ()) -> Styles:
+    """Return the colour and the dashes of each line, by its name; no two are alike.
+
+    The first line of a sampler has its own colour; the others have those that are free.
+    """
+    every = [(k, dash) for dash in range(len(_DASHES)) for k in range(len(_COLOURS))]
+    first = {sampler: name for name, sampler in zip(names[::-1], samplers[::-1], strict=False)}
+    own = {first[one]: (k, 0) for k, one in enumerate(_OWN) if one in first}
+    free = iter([one for one in every if one not in own.values()])
+    return {name: own.get(name) or next(free, (0, 0)) for name in names}
 
 
-def _dashes(names: list[str]) -> alt.Scale:
-    dashes = [_DASHES[k // len(_COLOURS) % len(_DASHES)] for k in range(len(names))]
-    return alt.Scale(domain=names, range=dashes)
+def _scale(styles: Styles) -> alt.Scale:
+    return alt.Scale(domain=list(styles), range=[_COLOURS[k] for k, _ in styles.values()])
+
+
+def _dashes(styles: Styles) -> alt.Scale:
+    return alt.Scale(domain=list(styles), range=[_DASHES[k] for _, k in styles.values()])
 
 
 @_in_language
@@ -169,12 +186,14 @@ def load() -> None:
 
 @_in_language
 def bands(
-    curves: dict[str, tuple[NDArray[np.float64], ...]], axes: tuple[str, str]
-) -> alt.LayerChart:
+    curves: dict[str, tuple[NDArray[np.float64], ...]], axes: tuple[str, str],
+    samplers: Sequence[str] = (),
+) -> alt.LayerChart:  # fmt: skip
     """Return a line with its interval for each strategy.
 
-    `curves` holds mean, low and high ``(d,)`` each.
+    `curves` holds mean, low and high ``(d,)`` each, `samplers` the sampler of each.
     """
+    styles = _styles(list(curves), samplers)
     table = pd.concat(
         pd.DataFrame({"strategy": name, "day": range(1, len(mean) + 1), "mean": mean, "low": low,
                       "high": high})
@@ -185,10 +204,10 @@ def bands(
         .mark_area(opacity=0.18)
         .encode(
             x="day:Q", y=alt.Y("low:Q", title=axes[1]), y2="high:Q",
-            color=alt.Color("strategy:N", scale=_scale(list(curves), _COLOURS), legend=_LEGEND),
+            color=alt.Color("strategy:N", scale=_scale(styles), legend=_LEGEND),
         )
     )  # fmt: skip
-    return alt.layer(band, _lines(table, list(curves), axes)).properties(height=320)
+    return alt.layer(band, _lines(table, styles, axes)).properties(height=320)
 
 
 @_in_language

@@ -85,13 +85,13 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
     route, n = plan.route, len(choices.plot.grid)
     taken = assumptions.of(choices)
     rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
-    for_finds = (*rows, "background_chance", "rate_per_day", "detects", "treated")
+    for_finds = (*rows, "background_chance", "edge_chance", "rate_per_day", "detects", "treated")
     with st.container(horizontal=True):
         st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows),
                   f"{number(len(route), ',')} / {number(n, ',')}", width="content")  # fmt: skip
-        st.metric(mark(texts.TIME, taken, (*rows, speed)), hours(route.end_s / 3600),
+        st.metric(mark(texts.TIME, taken, (*rows, speed, "gate")), hours(route.end_s / 3600),
                   width="content")  # fmt: skip
-        st.metric(mark(texts.DRIVE, taken, rows), choices.units.metres(route.drive_m),
+        st.metric(mark(texts.DRIVE, taken, (*rows, "gate")), choices.units.metres(route.drive_m),
                   width="content")  # fmt: skip
         st.metric(mark(texts.FINDS, taken, for_finds), about(route.expected_found),
                   width="content")  # fmt: skip
@@ -184,7 +184,7 @@ def _risen(choices: Choices, yesterday: str) -> str:
     total = [np.bincount(line, chance) for chance in chances]
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
-    rises = [texts.isolated(f"+{number(rise[k], '.1%')}") for k in top]
+    rises = [texts.isolated(f"+{number(100 * rise[k], '.1f')}") for k in top]
     return listed(f"{k + 1}\u00a0({said})" for k, said in zip(top, rises, strict=True))
 
 

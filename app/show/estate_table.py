@@ -4,38 +4,80 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
+import shapely
 import streamlit as st
 
+from fieldmon.compute.units import AREAS_M2
 from fieldmon.compute.wording import digits_of_estimate
+from fieldmon.io.rasters.pixels import M_PER_DEGREE
 
+from ..state.chosen_units import units
 from ..words import texts
 
 if TYPE_CHECKING:
+    from shapely import MultiPolygon
+
     from ..state.estate import PlotState
     from ..state.shared_plots import PlannedTurn
+
+# as wide together as the panel of a narrow phone: a number that is cut is another number
+_PX = {"name": 100, "area": 60, "days_since": 56, "expected": 80}
+_PLANNED_PX = {"name": 88, "who": 62, "when": 92, "finds": 58}
+# letters of a name that have room: files number the plots of one name at its end
+_LETTERS = 13
 
 
 def of(
     plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()
 ) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Return the table, a row a plot in their order, and how its columns are written."""
-    names, more = texts.PLOTS_COLUMNS, texts.PLAN_ALL_COLUMNS
-    columns: dict[str, list[Any]] = {names["name"]: [plot.name for plot in plots]}
+    names, more, area = texts.PLOTS_COLUMNS, texts.PLAN_ALL_COLUMNS, texts.UNITS[units().area]
+    columns: dict[str, list[Any]] = {names["name"]: [shortened(plot.name) for plot in plots]}
+    written = st.column_config.NumberColumn
+    name_px = (_PLANNED_PX if turns else _PX)["name"]
+    how = {names["name"]: st.column_config.TextColumn(width=name_px)}
     if turns:
         own = [next((one for one in turns if one.plot is plot), None) for plot in plots]
         columns |= {
             more["who"]: [one and one.who for one in own],
-            more["from"]: [one and f"{one.begins:%H:%M}" for one in own],
-            more["to"]: [one and f"{one.ends:%H:%M}" for one in own],
-            more["plants"]: [one and len(one.plan.route) for one in own],
+            more["when"]: [one and f"{one.begins:%H:%M}-{one.ends:%H:%M}" for one in own],
             more["finds"]: [one and _rounded(one.plan.route.expected_found) for one in own],
         }
+        for k in ("who", "when"):
+            how[more[k]] = st.column_config.TextColumn(width=_PLANNED_PX[k])
+        how[more["finds"]] = written(format="localized", width=_PLANNED_PX["finds"])
+        return pd.DataFrame(columns), how
+    columns[area] = [_area(plot.outline) for plot in plots]
+    how[area] = written(format="localized", width=_PX["area"], help=texts.AREA_IS)
     if any(plot.expected is not None for plot in plots):
         columns[names["days_since"]] = [plot.days_since for plot in plots]
         columns[names["expected"]] = [_rounded(plot.expected) for plot in plots]
-    written = st.column_config.NumberColumn(format="localized")
-    return pd.DataFrame(columns), {names["expected"]: written, more["finds"]: written}
+        how |= {
+            names[k]: written(format="localized", width=_PX[k], help=texts.PLOTS_HELP[k])
+            for k in ("days_since", "expected")
+        }
+    return pd.DataFrame(columns), how
+
+
+def shortened(name: str) -> str:
+    """Return a name with its middle left out if it is long: what tells it apart is at its ends.
+
+    Examples
+    --------
+    >>> shortened("apricot_orchards_north (12)"), shortened("Gate 2026")
+    ('aprico…h (12)', 'Gate 2026')
+    """
+    half = _LETTERS // 2
+    return name if len(name) <= _LETTERS + 1 else f"{name[:half]}…{name[-half:]}"
+
+
+def _area(outline: MultiPolygon) -> float:
+    """Return an area in the chosen unit, as a number of three digits."""
+    lat = outline.centroid.y
+    m2 = shapely.area(outline) * M_PER_DEGREE**2 * np.cos(np.deg2rad(lat))
+    return float(f"{m2 / AREAS_M2[units().area]:.3g}")
 
 
 def _rounded(value: float | None) -> float | None:

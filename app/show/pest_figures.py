@@ -41,7 +41,7 @@ def show(pest: Pest) -> None:
         part = texts.PEST_PARTS.get(citation.part, citation.part)
         st.caption(f"**{part}**: {texts.isolated(citation.source)}")
         if citation.doubt:
-            st.caption(f"⚠️ {texts.isolated(citation.doubt)}")
+            st.caption(f":material/warning: {texts.isolated(citation.doubt)}")
     if pest.not_found:
         said = texts.isolated(pest.not_found.strip())
         st.caption(f"**{texts.PEST_NOT_FOUND}**: {said}")

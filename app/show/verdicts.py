@@ -37,7 +37,7 @@ def sentence(ranked: list[Outcome]) -> str:
         return texts.VERDICT_TIED.format(**names)
     return texts.VERDICT.format(
         **names, loss=best.loss.mean, low=second.behind.low, high=second.behind.high,
-        percent=100 * second.behind.mean / second.loss.mean,
+        percent=100 * second.behind.mean / best.loss.mean,
     )  # fmt: skip
 
 
@@ -60,6 +60,13 @@ def _saved(gain: MarginalGain) -> dict[str, float]:
             "high": round(gain.saved.high) + 0.0}  # fmt: skip
 
 
+def tables(ranked: list[Outcome]) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return what each strategy lost and found, and how it worked; each with room in the panel."""
+    whole = table(ranked)
+    cut = list(whole.columns).index(texts.COLUMN_VISITED)
+    return whole.iloc[:, :cut], whole.iloc[:, [0, *range(cut, whole.shape[1])]]
+
+
 def table(ranked: list[Outcome]) -> pd.DataFrame:
     """Return what each strategy came to, the best first and marked; its verdict beside its name."""
     base = ranked[0].loss.mean
@@ -80,7 +87,7 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
 
 
 def _day(day: float | None) -> str:
-    return "-" if day is None else number(day, "g")
+    return "–" if day is None else number(day, "g")  # a table takes a dash for a list
 
 
 def _none_less(e: SummaryStatistics) -> SummaryStatistics:

@@ -143,6 +143,11 @@ def hot_spots(choices: Choices) -> HotSpots:
     return season_hot_spots(choices, choices.day)
 
 
+def own_states(choices: Choices) -> cached.Array:
+    """Return ``(n,)`` what the season's own inspections say of each plant up to the day."""
+    return choices.season.history.states(choices.season.settings.day(choices.on))
+
+
 def season_hot_spots(choices: Choices, day: str) -> HotSpots:
     """Return a season's hot spots on a day (ISO)."""
     return cached.season_hot_spots(choices.key, choices.revision, day, choices.season)

@@ -17,3 +17,6 @@ def units(code: str | None = None) -> UnitsInLanguage:
     chosen = {name: widget_memory.value(name) for name in KEYS}
     said = {name: value for name, value in chosen.items() if value}
     return replace(usual(code or language.current()), **said)
+
+
+language.say_days(lambda on: units().said_day(on))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from fieldmon.io.read import read_plots, read_records
 from fieldmon.io.readers.nearby import records_on_plot
 from fieldmon.plot.local_clock import clock_at, local_clock
 
+from ..words.answers import in_short
 from . import brought_files, cached_files
 from .brought_files import PLOT, settled
 
@@ -55,6 +56,8 @@ class TriedAnswer:
         The records that it leads to, wherever they lie; None: it is no question about records.
     near
         How many of them lie on the plot or near it.
+    option
+        What is asked.
     """
 
     answer: str
@@ -62,6 +65,12 @@ class TriedAnswer:
     zone: str = ""
     records: Observations | None = None
     near: int = 0
+    option: str = ""
+
+    @property
+    def said(self) -> str:
+        """Return the answer in a grower's words."""
+        return in_short(self.answer, self.option)
 
     @property
     def leads(self) -> bool:
@@ -96,7 +105,9 @@ def tried_of_records(left_out: LeftOut, field: Field) -> tuple[TriedAnswer, ...]
 def _each(problem: ChoiceNeeded, file: File, make: Make) -> tuple[TriedAnswer, ...]:
     before = f"{file.asked} {brought_files.answers(file.asked)} {problem.option}"
     return tuple(
-        cached_files.tried(f"{before} {answer}", partial(make, answer))
+        replace(
+            cached_files.tried(f"{before} {answer}", partial(make, answer)), option=problem.option
+        )
         for answer in map(str, problem.choices[:_MOST])
     )
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 _MOST = 12
 # how often is looked for results
 _EVERY_S = 1.0
-# a verdict with its interval in the longest of the languages
-_VERDICT_PX = 230
 
 
 def show(choices: Choices) -> None:
@@ -65,11 +63,11 @@ def _results(choices: Choices, running: Comparison) -> None:
     if running.running and isnan(ranked[0].loss.low):
         return  # the sentence is there at once; curves and table come with their first interval
     curves = {verdicts.name(one): curve(walked) for one, walked in seasons.items()}
-    st.altair_chart(charts.bands(curves, (texts.DAY_AXIS, texts.DETECTION_AXIS)),
-                    alt=texts.DETECTION_AXIS)  # fmt: skip
-    # columns keep the width of what stood in them first, and verdicts grow
-    verdict = {texts.COLUMN_VERDICT: st.column_config.TextColumn(width=_VERDICT_PX)}
-    st.dataframe(verdicts.table(ranked), hide_index=True, column_config=verdict)
+    axes, samplers = (texts.DAY_AXIS, texts.DETECTION_AXIS), [one.sampler for one in seasons]
+    st.altair_chart(charts.bands(curves, axes, samplers), alt=texts.DETECTION_AXIS)
+    # two tables of words that wrap: of one wide one the last columns were out of sight
+    for table in verdicts.tables(ranked):
+        st.table(table, hide_index=True, border="horizontal")
     alone = [o.strategy for o in ranked if o.strategy.robots == 1]
     if not alone:
         return

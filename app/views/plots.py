@@ -31,6 +31,9 @@ def show() -> None:
     if held:
         st.fragment(_watch, run_every=estate.LOOK_AGAIN_S)(held)
     turns = sharing_plots.show(plots).turns if sharing_plots.is_on() else ()
+    # those with work come first
+    planned = {id(turn.plot) for turn in turns}
+    plots = sorted(plots, key=lambda one: id(one) not in planned) if planned else plots
     field_map.want(estate_map.content(plots, turns), MapAnswers(tapped=partial(_tapped, plots)))
     st.caption(texts.PLOTS_PICK)
     table, config = estate_table.of(plots, turns)

@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 
-from ..actions import choosing, inviting, scouting
+from ..actions import choosing, inviting, recording, scouting
 from ..show import field_map, map_layers
 from ..show.maps import marks
 from ..show.next_stop import next_stop
@@ -32,6 +32,7 @@ def show(choices: Choices) -> None:
     st.html(_STYLE)
     with st.container():  # empty or not: buttons that move are there twice for a moment
         scouting.ask_start(choices)
+        recording.ask_about_contradictions(choices)
     choosing.whose_day(choices)
     plan, progress = choices.plan(), chosen_day.progress(choices)
     if not len(plan.route):

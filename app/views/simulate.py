@@ -47,7 +47,7 @@ def show(choices: Choices) -> None:
     _figures(seasons[name][0][number - 1])
     figures = {sampler_name(name): value[1] for name, value in seasons.items()}
     axes = texts.DAY_AXIS, texts.DETECTION_AXIS
-    st.altair_chart(charts.detection(figures, number, axes), alt=texts.DETECTION_AXIS)
+    st.altair_chart(charts.detection(figures, number, axes, names), alt=texts.DETECTION_AXIS)
     st.altair_chart(charts.found(seasons[name][1], (texts.DAY_AXIS, texts.FOUND_AXIS)),
                     alt=texts.FOUND_AXIS)  # fmt: skip
 

@@ -11,6 +11,7 @@ import gettext
 import re
 import unicodedata
 from contextvars import ContextVar
+from datetime import date, datetime
 from functools import cache, lru_cache
 from io import BytesIO
 from numbers import Real
@@ -18,7 +19,7 @@ from pathlib import Path
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
-from fieldmon.compute.wording import Worded, estimate, written
+from fieldmon.compute.wording import Worded, estimate, joined, worded, written
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
@@ -26,7 +27,6 @@ from .kept_sentences import KnownSentences, sentences
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-    from datetime import date
 
 ENGLISH = "en"
 #: each by its own name
@@ -52,11 +52,17 @@ _NUMBER = re.compile(r"[+−-]?\d[\d,]*(\.\d+)?")
 
 _NOW: ContextVar[str | None] = ContextVar("language", default=None)
 _ASKED: list[Callable[[], str]] = []
+_DAYS: list[Callable[[date], str]] = []
 
 
 def ask(chosen: Callable[[], str]) -> None:
     """Let the language be asked for here wherever none is said: in what a click begins."""
     _ASKED[:] = [chosen]
+
+
+def say_days(by: Callable[[date], str]) -> None:
+    """Let days in sentences of the library be said so."""
+    _DAYS[:] = [by]
 
 
 def use(language: str) -> None:
@@ -225,12 +231,35 @@ def in_words(sentence: str) -> str:
     One that nobody has translated stays English, and is marked as such. Names of files and plots
     stand in it, so nothing in it leads anywhere.
     """
-    language = current()
+    language, sentence = current(), _with_days(sentence)
     if language == ENGLISH or not sentence or isinstance(sentence, Text):  # the app's own has words
         return together(leading_nowhere(str(sentence)))
     said = _said(sentence, language) or _said_again(str(sentence), language)
     said = marked_as_english(sentence) if said is None else _from_the_right(said)
     return together(leading_nowhere(said))
+
+
+def _with_days(sentence: str) -> str:
+    """Return a sentence whose dates are said as the page says days; reports say them in digits."""
+    if not isinstance(sentence, Worded) or not _DAYS:
+        return sentence
+    if sentence.parts:
+        parts = [_with_days(part) for part in sentence.parts]
+        same = all(new is old for new, old in zip(parts, sentence.parts, strict=True))
+        return sentence if same else joined(sentence.between, parts)
+    values = {name: _day_or(value) for name, value in sentence.values.items()}
+    if all(values[name] is value for name, value in sentence.values.items()):
+        return sentence
+    words = sentence.one if sentence.one and sentence.number == 1 else sentence.words
+    made = worded(words, **values)
+    made.words, made.one, made.number = sentence.words, sentence.one, sentence.number
+    return made
+
+
+def _day_or(value: Any) -> Any:  # noqa: ANN401 - whatever stands in a blank
+    if isinstance(value, date) and not isinstance(value, datetime):
+        return _DAYS[0](value)
+    return _with_days(value) if isinstance(value, str) else value
 
 
 def together(text: str) -> str:

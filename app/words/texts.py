@@ -98,10 +98,8 @@ SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times(
 DATE = "Day"
 DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
 ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
-OTHER_DAY = (
-    "This page is about **{day}**, which is not today ({today}). What you record here is recorded "
-    "for {day}."
-)
+OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
+OTHER_DAY_RECORDED = "What you record here is recorded for {day}."
 BACK_TO_TODAY = "Back to today"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 ASSUMED = "\\* assumed: {what}."
@@ -116,6 +114,8 @@ ASSUMED_WHAT = {
     "detects": "an inspection finds {value} % of what is there",
     "rate_per_day": "each neighbour of an infested plant is infested with {value} % a night",
     "treated": "plants found infested are treated at once",
+    "edge_chance": "{value} % more at edges and paths",
+    "gate": "the gate at the nearest row end",
 }
 ASSUMED_ROBOT_TOO = "how fast and how thoroughly plants are inspected"
 ASSUMED_OF_ROBOT = "Of who inspects: {what}."
@@ -160,7 +160,11 @@ ANSWERS_OF_RECORDS_ALT = Plural(
     "Map of plot {name}: {n} places where the records could lie.",
 )
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
-UNDO_ANSWER = "Take back: {option} = {value}"
+UNDO_ANSWER = "Take back: {answer}"
+# what an answer about a column says of it
+ANSWER_ALL_FINDS = "Every record is a find"
+ANSWER_COLUMNS = {"count": "{name}: how many were found", "present": "{name}: found or not",
+                  "date": "{name}: the day", "plot": "{name}: which plot"}  # fmt: skip
 SEVERITIES = {
     "seen": "Seen",
     "repaired": "Repaired",
@@ -193,6 +197,7 @@ MAP_WORDS = {
     "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
             "Escape leaves.", "corners": "Points: {n}",
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
+    "legend": "What the signs mean",
     "scale": "The scale bar is {bar} long; the arrow points north.",
     "speed": "Speed", "follow": "Follow the robot",
     "driven": "{time} · {stops} stops, {found} found",
@@ -357,7 +362,8 @@ WISHES_DROP = "As planned before"
 # -- all plots
 PLOTS_TITLE = Plural("{n} plot", "{n} plots")
 PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
-PLOTS_COLUMNS = {"name": "plot", "days_since": "days since seen", "expected": "expected infested"}
+PLOTS_COLUMNS = {"name": "plot", "days_since": "days", "expected": "infested"}
+PLOTS_HELP = {"days_since": "days since seen", "expected": "expected infested"}
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
@@ -383,11 +389,13 @@ PLAN_ALL_RULE = (
     "wherever they lie."
 )
 PLAN_ALL_WAITING = "No time today: {names}."
+PLAN_ALL_WAITING_MANY = (
+    "No time today for {n} plots: those of the table beside which nobody stands."
+)
 PLAN_ALL_FREE = "Free today: {names}."
 PLAN_ALL_WORKING = "Planning the plots ..."
 PLAN_ALL_DOWNLOAD = "Download all routes"
-PLAN_ALL_COLUMNS = {"who": "who", "from": "from", "to": "to", "plants": "plants to inspect",
-                    "finds": "finds expected"}  # fmt: skip
+PLAN_ALL_COLUMNS = {"who": "who", "when": "when", "finds": "finds"}
 PLOTS_LABEL = "{name}\n{who}, {start}-{end}"
 WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a season"}
 NO_SEASONS = (
@@ -452,7 +460,7 @@ CHANGED_NONE = "Nothing was recorded on {day}."
 CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were treated on {day}.")
 CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
-CHANGED_ROWS = "Rows whose chance rose most: {rows}."
+CHANGED_ROWS = "Rows whose chance rose most, in percentage points: {rows}."
 DAY_DONE = Plural(
     "Done on {day}: {found:,} found on {inspected:,} plant.",
     "Done on {day}: {found:,} found on {inspected:,} plants.", by="inspected",
@@ -491,6 +499,7 @@ TIP_TREATED, TIP_TREATED_WITH = "treated on {day}", "treated on {day}: {product}
 TIP_RECORD, TIP_SEEN = "record of {day}: {result}", {1: "found", 0: "nothing"}
 TIP_INFESTED, TIP_CORNER, TIP_NO_GO = "infested", "corner", "no-go area: not driven through"
 LABEL_GATE, LABEL_NO_GO, LABEL_BLOCK = "gate", "no-go", "block {n}"
+LEGEND_PLANT = "plant"
 LEGEND_HEADLAND, LEGEND_AISLE, LEGEND_NO_GO = "headland", "aisle", "no-go area"
 
 # -- plot and records
@@ -580,14 +589,14 @@ DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
 DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
 DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
+DECIDE_SAVING_HELP = "In the currency in which the costs are given."
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
-DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "wrong in"
+DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "may be wrong"
 DECIDE_WRONG_HELP = (
-    "By itself: whether the zone alone is above the threshold. Wrong in: the chance that this is "
-    "wrong, on fields drawn from the chance map, neighbours together; where it is not clear, that "
-    "treating would be."
+    "By itself: whether this zone alone needs treating. May be wrong: the chance that this answer "
+    "is wrong; where it is not clear, that treating would be needless."
 )
 DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
 DECIDE_NUMBERS = "numbers of the zones"
@@ -755,9 +764,11 @@ CONTRADICTING_NO_MORE = Plural(
     "{n} result from {source} is not recorded yet, and contradicts nothing any more.",
     "{n} results from {source} are not recorded yet, and contradict nothing any more.",
 )
-RECORD_THESE = "Record these {n}"
+RECORD_THESE = Plural("Record this", "Record these {n}")
 AND_MORE = "... and {n} more."
-LEAVE_OUT, CONFIRM = "Leave these out, record {n} others", "Record these {n} too, both hold"
+LEAVE_OUT = Plural("Leave these out, record the other one", "Leave these out, record {n} others")
+HOLDS = Plural("The new one holds", "The new ones hold")
+CONFIRM = Plural("Record this too, both hold", "Record these {n} too, both hold")
 RECORD_NONE = "Record nothing"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
@@ -938,8 +949,8 @@ COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (
-    "**{best}** is best: {loss:,.0f} infested plant-days, {percent:.0f} % less than {second} "
-    "({low:,.0f} to {high:,.0f} fewer, 95 % interval)."
+    "**{best}** is best: {loss:,.0f} infested plant-days. {second} has {percent:.0f} % more "
+    "({low:,.0f} to {high:,.0f} more, 95 % interval)."
 )
 VERDICT_ONE = (
     "One season so far: **{best}** is ahead of {second}. That tells little; more would tell."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import date
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import counted, joined, worded
@@ -98,11 +99,14 @@ class Recorded:
         Its number, for undoing; None if nothing was new.
     new, known
         Inspections or treatments that were added, and those that the season held already.
+    corrected
+        Those that hold in place of what was recorded before.
     """
 
     batch: int | None
     new: int
     known: int
+    corrected: int = 0
 
 
 def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
@@ -267,9 +271,17 @@ def _undone_one(row: int, plant: int, on: str, result: str) -> str:
         "Undone: row {row}, plant {plant} on {date} ({result}).",
         row=row,
         plant=plant,
-        date=on,
+        date=date_or_text(on),
         result=_RESULTS.get(result, result),
     )
+
+
+def date_or_text(said: str) -> date | str:
+    """Return a date of a season's file, which another program may have written."""
+    try:
+        return date.fromisoformat(said)
+    except ValueError:
+        return said
 
 
 def first_day(db: sqlite3.Connection, number: int) -> int:

@@ -55,7 +55,7 @@ def take(
     taken = []
     for one in changes:
         if one.what == "delete":
-            _stand_back(db, one, batch)
+            stand_back(db, one, batch)
             taken.append(one)
         else:
             taken.append(_rewrite(db, theirs, one, (plot, settings, batch)))
@@ -76,24 +76,25 @@ def _is_taken(db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideCh
     return held.fetchone() is not None
 
 
-def _stand_back(db: sqlite3.Connection, one: OutsideChange, batch: int) -> None:
+def stand_back(db: sqlite3.Connection, one: OutsideChange, batch: int) -> None:
+    """Let an inspection stand back for nothing, as a correction of a batch."""
     row = db.execute(f"SELECT {INSPECTED}, batch FROM inspections AS old WHERE fid = ?", (one.row,))  # noqa: S608 - ours
     held = row.fetchone()
     if held is None or held[0] != one.was:
         raise _not_here(one)
-    _note(db, replace(one, before=_as_it_is(db, one.row)), batch, None)
+    note(db, replace(one, before=as_it_is(db, one.row)), batch, None)
     stands_back = "UPDATE inspections SET undone = ? WHERE fid = ? AND undone = 0"
     db.execute(stands_back, (replaced.STANDS_BACK, one.row))
 
 
-def _as_it_is(db: sqlite3.Connection, row: int) -> str:
+def as_it_is(db: sqlite3.Connection, row: int) -> str:
     """Return an inspection as it is kept where it is corrected, see `OutsideChange`."""
     names = [name for name in INSPECTIONS.names if name != "geom"]
     said = db.execute(f"SELECT {', '.join(names)} FROM inspections WHERE fid = ?", (row,))  # noqa: S608 - ours
     return json.dumps(dict(zip(names, said.fetchone(), strict=True)), ensure_ascii=False)
 
 
-def _note(db: sqlite3.Connection, one: OutsideChange, batch: int, now: str | None) -> None:
+def note(db: sqlite3.Connection, one: OutsideChange, batch: int, now: str | None) -> None:
     """Note a correction as those of other programs are, with the digest it came to."""
     change = {
         "at": utc_text(),
@@ -123,13 +124,13 @@ def _rewrite(
     ).fetchone()
     if held is None:
         raise _not_here(one)
-    before = _as_it_is(db, held[0])
+    before = as_it_is(db, held[0])
     sets = ", ".join(f"{name} = ?" for name in outside_changes.SEEN)
     db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*values, held[0]))  # noqa: S608 - ours
     here = replace(one, row=held[0], before=before)
     now = outside_changes.take_row(db, here, *how)
     outside_changes.keep_before(db, here, how[0][0])
-    _note(db, here, how[2], now)
+    note(db, here, how[2], now)
     return here
 
 

@@ -64,7 +64,7 @@ class Contradictions:
             )
             for plant, date, was, now in zip(
                 self.plant.tolist(),
-                self.date.astype(str).tolist(),
+                self.date.tolist(),
                 self.recorded.tolist(),
                 self.brought.tolist(),
                 strict=True,

@@ -14,6 +14,7 @@ from fieldmon.monitoring import (
     batches,
     copy_corrections,
     drafts,
+    held_instead,
     inspection_table,
     merging,
     outside_changes,
@@ -151,6 +152,43 @@ class SeasonRecords(OpenSeason):
             if first:
                 self._refresh(db, min(first), before)
         return tuple(done)
+
+    def record_instead(self, inspections: Inspections, source: str = "", who: str = "") -> Recorded:
+        """Add inspections; where they contradict what is recorded, they hold in its place.
+
+        Those are a batch of corrections, the others one of findings. Undoing the corrections brings
+        back what stood there before. Of results that contradict each other the later one holds.
+
+        Parameters
+        ----------
+        inspections
+            What was found where and when.
+        source, who
+            File or screen it comes from; the person, where the inspections name none.
+
+        Raises
+        ------
+        ObservationError
+            If a plant is not on this plot, or a result has no date or an impossible one.
+        SettingError
+            If a date is not of this season.
+        """
+        with self._writing() as db:
+            before = self._read(db)
+            held = before.history.inspections
+            against = contradictions(inspections, held).which
+            others = inspections.take(np.setdiff1d(np.arange(len(inspections)), against))
+            batch, news = self._add(db, others, held, (source, who, None))
+            holding, plot = inspections.take(against), (self.plot.grid, self.label)
+            taken: tuple[str, ...] = ()
+            if len(holding):
+                said = settings_of(db), (source, who)
+                taken = held_instead.take(db, holding, plot, *said)
+                self._corrected(db, taken, who)
+            elif len(news):
+                self._refresh(db, settings_of(db).day(news.date.min().item()), before)
+        new = len(news)
+        return Recorded(batch if new else None, new, len(others) - new, len(holding))
 
     def _add(
         self,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, litres_figure, worded
+from fieldmon.compute.wording import estimate, figure, litres_figure, share_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.plot.grid import row_label
@@ -53,7 +53,8 @@ def advice_report(
 
 def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
     zones = advice.zones
-    share = worded(words.OF_PLANTED, share=zones.m2 / zones.plot_m2, of=units.square(zones.plot_m2))
+    share = worded(words.OF_PLANTED, share=share_figure(zones.m2 / zones.plot_m2),
+                   of=units.square(zones.plot_m2))  # fmt: skip
     rate = worded(words.RATE, rate=advice.asked.rate_l_ha)
     return KeyFigures(
         (

@@ -47,6 +47,8 @@ _TITLE_MM, _ROW_MM, _NOTE_MM = 5.6, 4.1, 7.5
 _FLOW_GAP = 5.0
 _LEAST_NOTES, _MOST_NOTES = 2, 7
 _LEAST_PICTURE_MM = 35.0
+# smaller than this nobody reads it
+_LEAST_PT = 5.5
 _OTHER_END = {"start": "end", "middle": "middle", "end": "start"}
 
 
@@ -305,6 +307,13 @@ class _Page:
             text = text[:-1]
         return f"{text.rstrip()}..."
 
+    def _fitted(self, text: str, wide: float, size: float, style: str = "") -> tuple[str, float]:
+        """Return a text and the size in which it has room, smaller if need be; then shortened."""
+        while size > _LEAST_PT and wide_mm(self.pdf, self.fonts.printable(text)) > wide:
+            size -= 0.25
+            self.pdf.set_font("open", style, size)
+        return self._shortened(text, wide), size
+
     def _figures(self, block: KeyFigures, y: float) -> None:
         each = (self.wide + 2.0) / len(block.figures)
         for k, figure in enumerate(block.figures):
@@ -318,7 +327,7 @@ class _Page:
             )
             for down, text, size, style, colour in lines:
                 self._font(size, style, colour)
-                said = self._shortened(text, each - 5.0)
+                said, size = self._fitted(text, each - 5.0, size, style)  # noqa: PLW2901
                 part = Lettering(x + 2.0, y + down, said, size, colour, bold=bool(style))
                 self._put(part)
 
@@ -363,15 +372,15 @@ class _Page:
         colour: Colour,
     ) -> None:  # fmt: skip
         x = corner[0]
-        self._font(7.5, "", colour)
         for k, (text, share) in enumerate(zip(row, block.shares, strict=True)):
             room = share * wide
-            said = self._shortened(text, room - 1.5)
+            self._font(7.5, "", colour)
+            said, size = self._fitted(text, room - 1.5, 7.5)
             left = k in block.left
             place = x + 1.0 if left else x + room - 1.5
             self._put(
                 Lettering(
-                    place, corner[1] + _ROW_MM / 2, said, 7.5, colour, "start" if left else "end"
+                    place, corner[1] + _ROW_MM / 2, said, size, colour, "start" if left else "end"
                 )
             )
             x += room

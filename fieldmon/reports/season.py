@@ -277,7 +277,7 @@ def _days(facts: _Facts) -> Table:
 def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     grid = facts.season.plot.grid
     yield from facts.plot_map(by_state=True)
-    meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots))
+    meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots, facts.state))
     yield Listing(words.HOT_LIST, meanings, numbered=bool(len(facts.status.hot_spots)))
     plants = np.flatnonzero(facts.state == PRESENT)
     if not len(plants):
@@ -326,7 +326,8 @@ def _batches(facts: _Facts) -> Block:
         contents = facts.season.contents([one.number for one in batches])
         later = {number for number, of in contents.items() if of.first > str(facts.on)}
         batches = tuple(one for one in batches if one.number not in later)
-    if not batches:
+    brought = len(facts.season.observations)
+    if not batches and not brought:
         return Listing(words.BATCHES, (words.BATCHES_NONE,))
     rows, clock = [], local_clock(facts.season.plot.field)
     for one in batches:
@@ -336,6 +337,9 @@ def _batches(facts: _Facts) -> Block:
         when = f"{facts.units.day(at.date())} {at:%H:%M}"
         who = one.by(contents.get(one.number))
         rows.append((when, said, one.source, who, figure(one.rows)))
+    if brought:
+        begins = facts.units.day(facts.season.settings.begins)
+        rows.append((begins, words.BATCH_BROUGHT, "", "", figure(brought)))
     return Table(
         words.BATCHES, words.BATCH_COLUMNS, tuple(rows), (0.2, 0.24, 0.32, 0.14, 0.1),
         rest=words.BATCHES_REST, left=(0, 1, 2, 3),

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import Worded, counted, estimate, hours_figure, worded
+from fieldmon.compute.wording import Worded, counted, estimate, hours_figure, joined, worded
+from fieldmon.infestation.observations import PRESENT
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import words
 
@@ -41,24 +42,41 @@ def headline(route: Route, day: str) -> str:
     )  # fmt: skip
 
 
-def hot_spot_meanings(grid: PlantGrid, spots: HotSpots) -> list[str]:
-    """Return where each hot spot is and what it means, a sentence each; of eight at most."""
+def hot_spot_meanings(
+    grid: PlantGrid, spots: HotSpots, own: NDArray[np.int8] | None = None
+) -> list[str]:
+    """Return where each hot spot is and what it means, in words; of eight at most.
+
+    `own` ``(n,)`` are the states by a season's own inspections: what is known from the records of
+    before alone is said to be so.
+    """
     if not len(spots):
         return [worded(words.HOT_NONE)]
     said: list[str] = []
+    brought = _brought(grid, spots, own)
     for k in range(min(len(spots), _MOST_SPOTS)):
         p = float(spots.p[k])
         chance = worded(words.CHANCE_P_SMALL)
         if p >= 1e-4:
             chance = worded(words.CHANCE_P, n=max(round(1 / p), 1))
-        said.append(
-            worded(
+        meaning = worded(
                 words.HOT_MEANS, rows=_place(grid, np.flatnonzero(spots.of_plant == k)),
                 found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
                 expected=estimate(spots.expected[k]), p=chance,
-            )
-        )  # fmt: skip
+            )  # fmt: skip
+        of_records = [worded(words.HOT_BROUGHT, n=brought[k])] if brought[k] else []
+        said.append(joined(" ", [meaning, *of_records]) if of_records else meaning)
     return said
+
+
+def _brought(grid: PlantGrid, spots: HotSpots, own: NDArray[np.int8] | None) -> list[int]:
+    """Return how many finds of each hot spot no inspection of the season made."""
+    if own is None:
+        return [0] * len(spots)
+    found = np.zeros(len(grid), bool)
+    found[grid.vine[own == PRESENT]] = True  # the two faces of a vine are one
+    mine = np.bincount(spots.of_plant[found & (spots.of_plant >= 0)], minlength=len(spots))
+    return [int(n) for n in spots.found - mine]
 
 
 def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:

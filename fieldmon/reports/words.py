@@ -91,6 +91,7 @@ HOT_MEANS = (
     "{rows}: {found:,} found among {inspected:,} inspected of its {plants:,} plants, where "
     "{expected} would be if finds were spread evenly. So many by chance alone: {p}."
 )
+HOT_BROUGHT = "{n:,} of them {n:is|are} known from the records brought only."
 HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"
 HOT_ROW = "Row {first}, plants {low} to {high}"
 HOT_PLANTS = "Plants {low} to {high}"
@@ -106,6 +107,7 @@ BATCH_KINDS = {
     "treatment": "treatment",
     "corrections": "corrections",
 }
+BATCH_BROUGHT = "records brought"
 BATCH_UNDONE = "{kind}, taken back"
 BATCHES_NONE = "Nothing was recorded yet."
 BATCHES_REST = "... and {n} earlier ones; fieldmon status --batches lists them."
@@ -138,7 +140,7 @@ FROM_LEARNT = "for chances, not for routes"
 ADVICE_TITLE = "Advice of {day}"
 ADVICE_SHEET = "Treat, or not, and where"
 ADVICE_ALT = "Map of the zones to treat."
-AREA_SPRAYED, OF_PLANTED = "To be sprayed", "{share:.0%} of {of} under plants"
+AREA_SPRAYED, OF_PLANTED = "To be sprayed", "{share} of {of} under plants"
 PRODUCT, PRODUCT_OPEN, RATE = "Product", "not said", "{rate:g} l/ha"
 LIQUID, INFESTED_INSIDE = "Liquid", "Infested plants inside"
 AND_ELSEWHERE, ENOUGH = "{n} elsewhere", "Chance that it is enough"

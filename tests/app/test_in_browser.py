@@ -865,6 +865,15 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     page.evaluate("document.querySelector('.st-key-panel iframe').scrollIntoView({block: 'end'})")
     page.evaluate("() => new Promise((done) => setTimeout(() => requestAnimationFrame(done), 200))")
     assert (np.abs(above() - before).max(axis=2) > 30).mean() < 0.01, "the report hides the map"
+    page.goto(f"{address}/?season=Right&lang=he&part=record")
+    rest(page)
+    batch.get_by_role("button").scroll_into_view_if_needed()
+    batch.get_by_role("button").click()
+    said = page.locator(".st-key-panel_notice [data-testid=stAlert]")
+    said.wait_for()
+    place = said.bounding_box()
+    assert place["y"] >= sheet, "what was done is said where one looks"
+    assert place["y"] + place["height"] <= 844
 
 
 @pytest.mark.parametrize("page", [((960, 600), None)], indirect=True)
@@ -955,6 +964,11 @@ def test_on_a_phone_the_map_s_tools_are_as_large_as_a_thumb_and_layers_lie_above
     )
     assert seen, "the legend lies over it"
     page.get_by_role("button", name=texts.MAP_WORDS["layers"]).click()
+    route = page.locator(".legend").get_by_text(texts.LEGEND_ROUTE)
+    assert not route.is_visible()
+    page.get_by_role("button", name=texts.MAP_WORDS["legend"]).click()
+    assert route.is_visible(), "every sign is explained on a phone too"
+    page.get_by_role("button", name=texts.MAP_WORDS["legend"]).click()
 
 
 def test_the_sheet_is_pulled_up_and_let_down_again(on_a_phone):

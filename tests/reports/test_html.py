@@ -85,3 +85,10 @@ def test_from_the_right_the_words_of_maps_and_charts_stand_where_they_stand_from
     page.close()
     assert len(left) > 20
     assert right == pytest.approx(left, abs=1.0)
+
+
+def test_words_begin_where_reading_begins_and_figures_end_under_each_other(of_season):
+    page = html_text(of_season)
+    assert '<td class="words">day_5.csv</td>' in page
+    assert '<th class="words">from</th>' in page
+    assert "<th>how many</th>" in page

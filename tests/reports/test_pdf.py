@@ -99,6 +99,14 @@ def test_a_table_longer_than_the_page_says_how_many_rows_are_missing():
     assert f"and {1000 - sum(f'r{k} ' in page for k in range(1000))} more" in page
 
 
+def test_words_that_are_too_wide_are_set_smaller_before_they_are_cut():
+    table = Table("Days", ("day", "share found so far"), (("1", "58 %"),), (0.88, 0.12))
+    figures = KeyFigures((KeyFigure("Infested plants inside the zones", "1"),) * 5)
+    (page,) = texts(pdf_bytes(made(table, figures)))
+    assert "share found so far" in page
+    assert "Infested plants inside the zones" in page
+
+
 def test_a_table_that_fits_is_whole():
     (page,) = texts(pdf_bytes(made(rows(37))))
     assert all(f"p{k}" in page for k in range(37))

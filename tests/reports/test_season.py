@@ -78,7 +78,10 @@ def test_the_charts_show_finds_share_expected_and_inspected(of_season):
 def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(of_season, worked, last):
     status = worked.status(last)
     said = one(of_season, Listing, "Hot spots").sentences
-    assert list(said) == hot_spot_meanings(worked.plot.grid, status.hot_spots)
+    assert list(said) == hot_spot_meanings(
+        worked.plot.grid, status.hot_spots, worked.history.states(status.day)
+    )
+    assert any("known from the records brought only" in one for one in said)
     found = np.flatnonzero(worked.history.states(status.day) == PRESENT)
     rows = table(of_season, "Plants found infested, by row").rows
     assert sum(int(row[1]) for row in rows) == len(found) == status.found
@@ -88,6 +91,8 @@ def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(of_se
 
 def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season, worked, last):
     rows = table(of_season, "What was recorded").rows
+    *rows, brought = rows
+    assert brought == (str(BEGINS), "records brought", "", "", f"{len(worked.observations)}")
     assert [row[2] for row in rows] == [batch.source for batch in worked.batches()]
     assert {row[3] for row in rows if row[1] == "inspections"} == {"נועה"}
     # by the clock of the plot, in the chosen way of writing dates
@@ -107,7 +112,8 @@ def test_a_season_just_begun_has_four_pages_too(tmp_path):
     season = a_season(tmp_path / "new.gpkg")
     report = season_report(season, BEGINS, Units())
     assert len(report.sheets) == 4
-    assert one(report, Listing, "What was recorded").sentences == ("Nothing was recorded yet.",)
+    (brought,) = table(report, "What was recorded").rows
+    assert brought[1] == "records brought"
     assert one(report, Listing, "Treatments").sentences == ("No treatment was noted.",)
     assert "No plant was found infested yet." in [
         block.text for block in on_sheet(report, 2, Paragraph)
@@ -127,7 +133,7 @@ def test_up_to_an_earlier_day_nothing_later_is_counted(worked):
     said = worked.contents([batch.number for batch in worked.batches()]).values()
     earlier = sum(of.first <= str(until) for of in said)
     assert 0 < earlier < len(said)
-    assert len(table(report, "What was recorded").rows) == earlier
+    assert len(table(report, "What was recorded").rows) == earlier + 1  # those brought
 
 
 def test_a_day_before_the_season_is_refused(worked):

@@ -373,8 +373,23 @@ class MapPage {
       const name = `${kind} ${colour}`; // loaded ahead, for pictures
       if (!this.signs.has(name)) this.signs.set(name, signPicture(kind, colour));
     }
-    this.legend.replaceChildren(...legendOf(shown));
+    // on a phone there is room for the first part only, until more is asked for
+    const more = shown.length > 1 ? [button("more", this.data.words.legend, () => this.wholeLegend(), { class: "tool more" })] : [];
+    this.legend.replaceChildren(...legendOf(shown), ...more);
+    this.tellLegend();
     this.legend.hidden = !shown.length;
+  }
+
+  // Show the whole legend of a phone, or its first part only.
+  wholeLegend() {
+    this.legend.classList.toggle("whole");
+    this.tellLegend();
+    this.boxes = null;
+    this.drawLayers();
+  }
+
+  tellLegend() {
+    this.legend.querySelector(".more")?.setAttribute("aria-expanded", this.legend.classList.contains("whole"));
   }
 
   zoom(by) {

@@ -62,6 +62,14 @@ function inside(x, half, [left, right]) {
   return x < left || x > right || right - left < 2 * half ? x : Math.min(Math.max(x, left + half), right - half);
 }
 
+// Return where a name may stand, the nearest first: within the edges, or beside what lies over the map.
+function besides([x, y], half, over, free) {
+  const near = over.filter(([left, , right]) => x + half > left && x - half < right);
+  return [x, ...near.flatMap(([left, , right]) => [left - half, right + half])]
+    .sort((a, b) => Math.abs(a - x) - Math.abs(b - x))
+    .map((one) => [inside(one, half, free), y]).filter(([one]) => Math.abs(one - x) <= 2 * half);
+}
+
 // `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row, at, away, gap}, the most important
 // first; `at` are the places to be tried where it may stand at several. One with `away` [lon, lat] stands
 // beyond its place in that direction, `gap` pixels from it; one that is `tight` may be crowded.
@@ -92,7 +100,7 @@ export class Labels {
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99) || row % step) continue;
       const [half, tall] = sizeOf(t).map((one) => (tight ? TIGHT * one : one));
       const places = (at ?? [p]).map((one) => pushed(viewport, one, label, [half, tall]));
-      const place = places.map(([x, y]) => [k === "name" ? inside(x, half + 4, free) : x, y]).find(([x, y]) => {
+      const place = (k === "name" ? places.flatMap((one) => besides(one, half + 4, over, free)) : places).find(([x, y]) => {
         if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) return false;
         return !boxes.some((b) => x - half < b[2] && x + half > b[0] && y - tall < b[3] && y + tall > b[1]);
       });

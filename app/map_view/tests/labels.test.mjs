@@ -130,6 +130,14 @@ test("no word stands below what lies over the map", () => {
   assert.deepEqual(of([[80, 120, 300, 160]]), ["gate", "3"]);
 });
 
+test("a name under the buttons of the map is moved beside them, and no other word is", () => {
+  const at = (k, x) => shown([{ p: [x, -0.3], t: "Gate 2026", k }], view, new Set(), [[650, 200, 700, 400]], [0, 800])[0]?.x;
+  const half = 4 * "Gate 2026".length + 7 + 4;
+  assert.equal(at("name", 0.64), 650 - half);
+  assert.equal(at("name", 0.69), 700 + half);
+  assert.equal(at("place", 0.64), undefined);
+});
+
 test("a name beside the edge is moved to where it is read in full, and no other word is", () => {
   const at = (k, x, t) => shown([{ p: [x, -0.3], t, k }], view, new Set(), [], [100, 700])[0]?.x;
   const half = 4 * "Small vineyard".length + 7 + 4;

@@ -36,10 +36,11 @@ HOT_IN_DARK: Colour = (255, 255, 255)
 ZONE: Colour = (118, 42, 131)
 ZONE_IN_DARK: Colour = (231, 180, 255)
 TREATED: Colour = (0, 104, 116)
-TREATED_IN_DARK: Colour = (120, 226, 226)
+TREATED_IN_DARK: Colour = (150, 230, 120)
 OUTLINE: Colour = (60, 70, 60)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
 ROWS: Colour = (60, 130, 90)
+PLAIN: Colour = (90, 150, 90)
 BEFORE: Colour = (230, 120, 0)
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)
@@ -108,4 +109,4 @@ def by_age(days: NDArray[np.integer], *, dark: bool = False) -> Shade:
 
 def plain(n: int) -> Shade:
     """Return n plants in one colour."""
-    return Shade.of([(90, 150, 90)], np.zeros(n, np.uint8))
+    return Shade.of([PLAIN], np.zeros(n, np.uint8))

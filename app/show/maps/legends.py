@@ -75,6 +75,18 @@ def gate() -> LegendPart:
     return part("", [("ring", colours.GATE, texts.LEGEND_GATE)])
 
 
+def plants() -> LegendPart:
+    """Return the sign of a plant of which nothing is said."""
+    return part("", [("dot", colours.PLAIN, texts.LEGEND_PLANT)])
+
+
+def records(*, dark: bool = False) -> list[LegendPart]:
+    """Return the signs of records."""
+    hot = colours.HOT_IN_DARK if dark else colours.HOT
+    seen = [("dot", hot, texts.LEGEND_SEEN), ("ring", hot, texts.LEGEND_NOT_SEEN)]
+    return [part("", seen, "records")]
+
+
 def signs(*, dark: bool = False, treated: bool = False) -> list[LegendPart]:
     """Return the signs of route, hot spots and records, and of what was treated, if there is."""
     route = colours.ROUTE_IN_DARK if dark else colours.ROUTE
@@ -83,7 +95,6 @@ def signs(*, dark: bool = False, treated: bool = False) -> list[LegendPart]:
     return [
         part("", [("line", route, texts.LEGEND_ROUTE)], "route"),
         part("", [("outline", hot, texts.LEGEND_HOT)], "hot"),
-        part("", [("dot", hot, texts.LEGEND_SEEN), ("ring", hot, texts.LEGEND_NOT_SEEN)],
-             "records"),
+        *records(dark=dark),
         *([part("", [("outline", sprayed, texts.LEGEND_TREATED)], "treated")] if treated else []),
     ]  # fmt: skip

@@ -266,9 +266,8 @@ def _what_was_found(table: _Table) -> ChoiceNeeded:
     return ChoiceNeeded(
         worded(
             "{name} must have a column that says what was found (count, "
-            "found, result), but none was recognised among: {value}. Name it: "
-            "columns=count=NAME, or columns=present=NAME for words; or say "
-            "that every record is a find: columns=present=.",
+            "found, result), but none was recognised among: {value}. Say which one it is, or that "
+            "every record is a find.",
             name=table.layer.name,
             value=", ".join(table.layer.columns) or "none",
         ),

@@ -25,7 +25,7 @@ def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
     assert not app.exception
     assert not app.warning
     assert plot_name(app) == "square"
-    press(app, "Take back: crs = EPSG:2039")
+    press(app, "Take back: EPSG:2039")
     assert "coordinate system" in app.warning[0].value
 
 

@@ -89,7 +89,7 @@ def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season)
     season_app.number_input(key="seeds").set_value(1)
     season_app.number_input(key="n_days").set_value(2).run()
     season_app.button(key="run").click().run()
-    until(lambda: len(season_app.run().dataframe))
+    until(lambda: len(season_app.run().table))
     press(season_app, "Use this strategy")
     assert season_app.success[0].value == "Naive · 12 h · 40 s is in use now."
     assert season().settings.sampler == "naive"

@@ -43,7 +43,17 @@ def test_shorter_hours_give_a_shorter_route_on_every_page(app):
 def test_a_scout_is_planned_for_too(app):
     app.segmented_control(key="who").set_value("Scout on foot").run()
     assert not app.exception
-    assert app.slider(key="hours Scout on foot").value == 4.0
+    assert app.slider(key="hours Scout on foot").value == 12.0, "as long as the robot's day"
+
+
+def test_hours_stay_what_they_are_whoever_inspects(app):
+    app.slider(key="hours Robot").set_value(2.0).run()
+    app.segmented_control(key="who").set_value("Scout on foot").run()
+    assert app.slider(key="hours Scout on foot").value == 2.0
+    app.slider(key="hours Scout on foot").set_value(3.0).run()
+    app.segmented_control(key="who").set_value("Robot").run()
+    assert not app.exception
+    assert app.slider(key="hours Robot").value == 3.0
 
 
 def test_lengths_and_dates_are_written_as_the_person_wants(app):

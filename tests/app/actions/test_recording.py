@@ -299,13 +299,39 @@ def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season
     assert season().history.inspections.result.tolist() == results
 
 
-def test_where_all_contradicts_there_are_no_others_to_record(season_app, season):
+def test_the_new_results_hold_as_corrections_until_these_are_undone(season_app, season):
+    contradicted(season_app, season)
+    assert season_app.button(key="holds").label == "The new ones hold"
+    season_app.button(key="holds").click().run()
+    assert not season_app.exception
+    assert "4 corrections taken" in season_app.success[0].value
+    assert season().history.inspections.result.tolist() == [0] * 5
+    assert season().verify() == ()
+    corrections = next(one for one in season().batches() if one.kind == "corrections")
+    season_app.button(key=f"undo {corrections.number}").click().run()
+    assert sorted(season().history.inspections.result.tolist()) == [0, 1, 1, 1, 1]
+
+
+def test_one_contradiction_is_asked_about_as_one(season_app, season):
+    contradicted_one(season_app, season)
+    assert season_app.button(key="holds").label == "The new one holds"
+    assert season_app.button(key="confirm").label == "Record this too, both hold"
+    # a day is said as everywhere on the page
+    assert "on Mon 16 Nov: recorded as found, now clean" in texts_of(season_app)
+
+
+def contradicted_one(app, season):
+    """Record a find, then say of the same plant that it is clean."""
     season().plan(date(2026, 11, 16))
     plant, day = season().kept_route(date(2026, 11, 16))[:1], np.datetime64("2026-11-16")
     season().record(Inspections.of(plant, np.array([1]), day), "file")
-    go(season_app, "record")
-    boxed(season_app.number_input, "stops_done").set_value(1)
-    send(season_app, "route")
+    go(app, "record")
+    boxed(app.number_input, "stops_done").set_value(1)
+    send(app, "route")
+
+
+def test_where_all_contradicts_there_are_no_others_to_record(season_app, season):
+    contradicted_one(season_app, season)
     assert season_app.warning[0].value.endswith("Nothing is recorded yet. Which holds?")
     keys = [button.key for button in season_app.button]
     assert "confirm" in keys

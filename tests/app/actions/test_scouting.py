@@ -184,3 +184,15 @@ def test_a_day_that_is_past_gets_no_hour_more(season_app, season, monkeypatch):
     go(app, "scout")
     assert "Done for today" in texts_of(app)
     assert not [one for one in app.button if one.key == "scout_hour"]
+
+
+def test_a_tap_that_contradicts_another_tab_is_asked_about_and_not_lost(season_app, season):
+    go(season_app, "scout")
+    plant = season().plan(date(2026, 11, 16)).route.plant[:1]
+    season().record(Inspections.of(plant, np.array([0]), np.datetime64("2026-11-16")), "other tab")
+    tap(season_app, "scout_found")
+    assert not season_app.error
+    assert "contradicts" in season_app.warning[0].value
+    tap(season_app, "holds")
+    assert season().history.inspections.result.tolist() == [1]
+    assert season().history.inspections.plant.tolist() == plant.tolist()

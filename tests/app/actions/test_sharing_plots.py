@@ -8,6 +8,7 @@ from contextlib import nullcontext
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from app.actions import sharing_plots
 from app.state import estate, shared_plots
@@ -52,12 +53,27 @@ def test_the_files_hold_each_route_and_a_table(session):  # noqa: ARG001 - read 
     )  # fmt: skip
 
 
-def test_who_has_no_plot_is_said_to_be_free(monkeypatch):
+@pytest.fixture
+def said(monkeypatch):
     said = []
     monkeypatch.setattr(sharing_plots, "st", SimpleNamespace(
         container=lambda **_: nullcontext(), caption=lambda _: None,
         markdown=said.append, warning=said.append,
     ))  # fmt: skip
+    return said
+
+
+def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
+    for n, words in ((2, "No time today: \u2068Plot 0\u2069"), (96, "No time today for 96 plots")):
+        waiting = tuple(SimpleNamespace(name=f"Plot {k}") for k in range(n))
+        sharing_plots._say(shared_plots.SharedPlots((), waiting), EstateCrew())
+        (told,) = (one for one in said if one.startswith("No time today"))
+        assert told.startswith(words)
+        assert len(told) < 120
+        said.clear()
+
+
+def test_who_has_no_plot_is_said_to_be_free(said):
     sharing_plots._say(shared_plots.SharedPlots((), (), ("broken",)), EstateCrew(robots=2))
     assert "Free today: robot 1, robot 2." in said
     assert "broken" in said

@@ -1,15 +1,23 @@
 """What is shown of advice: a row a zone, an outline a zone on the map, each with its number."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from app.show import advice as shown
 from app.words import texts
+from app.words.units import UnitsInLanguage
+from fieldmon.compute.units import Units
+from fieldmon.compute.wording import litres_figure, share_figure
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
+from fieldmon.reports import words
+from fieldmon.reports.advice import _figures
+from tests.app.driving import apart
 
 GRID = rectangle(12, 30, Planting(90.0, 4.0, 2.0))
 
@@ -42,3 +50,18 @@ def test_each_zone_is_outlined_and_numbered_on_the_map(made):
         corners = np.array(zone["p"])
         assert (corners.min(axis=0) <= number["p"]).all()
         assert (corners.max(axis=0) >= number["p"]).all()
+
+
+def test_a_share_and_litres_are_said_as_in_the_sentence_and_on_paper(made, monkeypatch):
+    said = {}
+    monkeypatch.setattr(shown.st, "metric", lambda label, value, **_: said.update({label: value}))
+    choices = SimpleNamespace(units=UnitsInLanguage())
+    monkeypatch.setattr(shown.assumptions, "of", lambda _: ())
+    shown.figures(choices, made, "")
+    of_plot = share_figure(made.zones.m2 / made.zones.plot_m2)
+    assert apart(of_plot) in apart(made.headline(choices.units))
+    assert apart(said[texts.DECIDE_AREA]).endswith(f"({of_plot})")
+    assert apart(said[texts.DECIDE_LIQUID]) == litres_figure(made.litres, " l")
+    on_paper = {one.label: one for one in _figures(made, "", Units()).figures}
+    assert on_paper[words.AREA_SPRAYED].note.startswith(of_plot)
+    assert on_paper[words.LIQUID].value == litres_figure(made.litres, " l")

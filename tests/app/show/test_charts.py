@@ -57,6 +57,24 @@ def test_lines_are_told_apart_by_colour_and_dashes_together(n):
     assert len(pens) == n
 
 
+def test_a_way_of_choosing_plants_has_one_colour_on_every_page():
+    one = season([10.0], [1])
+    band = (np.array([1.0]),) * 3
+
+    def colours(chart):
+        scale = spec(chart)["layer"][0]["encoding"]["color"]["scale"]
+        return dict(zip(scale["domain"], scale["range"], strict=True))
+
+    samplers = ["naive", "bouncy", "dynamic"]
+    days = charts.detection(dict.fromkeys("abc", one), 1, ("day", "%"), samplers)
+    compared = charts.bands(
+        dict.fromkeys("cad", band), ("day", "%"), ["dynamic", "naive", "dynamic"]
+    )
+    simulated, several = colours(days), colours(compared)
+    assert {name: simulated[name] for name in "ac"} == {name: several[name] for name in "ac"}
+    assert len(set(several.values())) == 3, "two of one kind stay apart"
+
+
 def test_a_band_holds_mean_and_interval():
     one = tuple(np.array(values) for values in ([50.0, 60.0], [40.0, 55.0], [60.0, 65.0]))
     made = rows(charts.bands({"Naive": one}, ("day", "%")))

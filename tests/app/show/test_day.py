@@ -103,6 +103,6 @@ def test_rows_that_rose_most_come_first(worked):
     best = int(np.argmax(rise))
     if rise[best] > 0.001:
         # the sign belongs to its number in a sentence from the right, too
-        assert f"rose most: {best + 1} (\u2068+{100 * rise[best]:.1f} %\u2069)" in apart(said)
+        assert f"percentage points: {best + 1} (\u2068+{100 * rise[best]:.1f}\u2069)" in apart(said)
     else:
         assert "rose most" not in said

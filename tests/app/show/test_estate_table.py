@@ -3,6 +3,7 @@
 from datetime import datetime
 from types import SimpleNamespace
 
+import pytest
 import shapely
 
 from app.show import estate_table
@@ -26,12 +27,13 @@ def turn(plot):
                            ends=datetime(2026, 11, 16, 7, 30), plan=plan)  # fmt: skip
 
 
-def test_plots_stand_in_their_order_with_their_state():
+def test_plots_stand_in_their_order_with_their_area_and_state():
     table, _ = estate_table.of(PLOTS)
     names = texts.PLOTS_COLUMNS
     assert table[names["name"]].tolist() == ["b", "a"]
+    assert table["ha"].iloc[0] == pytest.approx(1.24e6, rel=0.01)  # a degree square at the equator
     assert table[names["expected"]].iloc[0] == 2.5
-    assert list(estate_table.of(PLOTS[1:])[0]) == [names["name"]], "nothing is known of it"
+    assert list(estate_table.of(PLOTS[1:])[0]) == [names["name"], "ha"], "no more is known of it"
 
 
 def test_a_plan_says_who_works_where_and_leaves_the_others_empty():
@@ -39,6 +41,18 @@ def test_a_plan_says_who_works_where_and_leaves_the_others_empty():
     more = texts.PLAN_ALL_COLUMNS
     assert table[more["who"]].iloc[0] == "robot 1"
     assert table[list(more.values())].iloc[1].isna().all()
-    assert table[[more["from"], more["to"]]].iloc[0].tolist() == ["06:00", "07:30"]
-    assert table[more["plants"]].iloc[0] == 3
+    assert table[more["when"]].iloc[0] == "06:00-07:30"
     assert table[more["finds"]].iloc[0] == 1.2
+
+
+@pytest.mark.parametrize("turns", [(), (turn(PLOTS[0]),)])
+def test_every_column_has_room_beside_the_others_on_a_narrow_phone(turns):
+    """A number whose end is out of sight is another number."""
+    table, how = estate_table.of(PLOTS, turns)
+    assert sum(how[name]["width"] for name in table) <= 300
+
+
+def test_a_long_name_keeps_both_ends():
+    names = [estate_table.shortened(f"lleida_apricot_orchards_epsg25831 ({k})") for k in range(96)]
+    assert len(set(names)) == 96
+    assert max(map(len, names)) <= 14

@@ -58,6 +58,8 @@ def test_another_day_is_marked_on_every_page_and_one_click_from_today(season_app
         assert not season_app.exception
         assert "**Fri 20 Nov**" in season_app.warning[0].value, page
         assert "not today (Mon 16 Nov)" in season_app.warning[0].value
+        records = page in {"today", "scout", "record", "decide"}
+        assert ("is recorded for" in season_app.warning[0].value) == records, page
     assert "2026-11-20" in season_app.query_params["day"]
     press(season_app, texts.BACK_TO_TODAY)
     assert not season_app.warning

@@ -33,6 +33,7 @@ def test_the_answer_stands_at_the_top_and_the_zones_on_the_map(recorded):
     said = texts_of(recorded)
     assert said.startswith("**Treat the whole plot")
     assert "Treating pays if it is 5.0 % or more" in said.split("\n")[1]
+    assert said.split("\n")[1].endswith(" *"), "it rests on what is assumed, said below"
     ids = {layer["id"] for layer in map_of(recorded)["layers"]}
     assert {"zones", "zones-edge"} <= ids
     assert metric(recorded, texts.DECIDE_ENOUGH).endswith("%")

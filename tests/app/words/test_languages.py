@@ -142,7 +142,7 @@ def said(app):
         proto = getattr(one, "proto", None)
         lines += [str(getattr(proto, name, "")) for name in ("label", "help", "placeholder")]
         lines += [getattr(option, "content", option) for option in getattr(proto, "options", ())]
-    for table in app.dataframe:
+    for table in (*app.dataframe, *app.table):
         lines += [str(name) for name in (*table.value.columns, table.value.index.name or "")]
     return [line for line in (*lines, *on_map(app)) if line]
 

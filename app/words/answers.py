@@ -1,0 +1,24 @@
+"""What an answer about a file is called. No Streamlit in here."""
+
+from __future__ import annotations
+
+from . import texts
+
+
+def in_short(answer: str, option: str) -> str:
+    """Return an answer to an import's question in a grower's words.
+
+    Examples
+    --------
+    >>> str(in_short("present=", "columns")), in_short("plot=North", "where")
+    ('Every record is a find', 'plot: North')
+    """
+    key, is_pair, value = answer.partition("=")
+    if not is_pair or option not in {"columns", "where"}:
+        return answer
+    if option == "where":
+        return f"{key}: {value}"
+    if key == "present" and not value:
+        return texts.ANSWER_ALL_FINDS
+    said = texts.ANSWER_COLUMNS.get(key)
+    return said.format(name=texts.isolated(value)) if said and value else value or answer

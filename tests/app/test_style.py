@@ -1,0 +1,33 @@
+"""The page's own styles name parts of Streamlit's page that this Streamlit has."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+import streamlit
+
+from app.show.maps import colours
+
+STYLES = sorted((Path(__file__).parents[2] / "app" / "style").glob("*.css"))
+STATIC = Path(streamlit.__file__).parent / "static"
+
+
+@cache
+def script():
+    return "".join(one.read_text(errors="replace") for one in STATIC.rglob("*.js"))
+
+
+@pytest.mark.parametrize("style", STYLES, ids=lambda one: one.stem)
+def test_every_part_of_streamlit_that_a_style_names_is_there(style):
+    css = re.sub(r"/\*.*?\*/|url\(.*?\)", "", style.read_text(), flags=re.DOTALL)
+    attributes = {*re.findall(r"\[(data-[\w-]+)", css)} - {"data-panel-folded"}
+    named = {*re.findall(r"\[data-testid\^?=(\w+)", css), *re.findall(r"\.(st[A-Z]\w*)", css)}
+    gone = {name for name in attributes | named if name not in script()}
+    assert not gone
+
+
+def test_the_route_and_what_was_treated_are_told_apart_on_a_dark_ground_too():
+    for route, treated in ((colours.ROUTE, colours.TREATED),
+                           (colours.ROUTE_IN_DARK, colours.TREATED_IN_DARK)):  # fmt: skip
+        assert sum(abs(a - b) for a, b in zip(route, treated, strict=True)) > 100

@@ -1,0 +1,55 @@
+"""Results that hold in place of what they contradict, and come back when that is undone."""
+
+from datetime import date
+
+import numpy as np
+
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.monitoring import Season
+from tests.monitoring.seasons import BEGINS
+
+DAY = np.datetime64(BEGINS)
+
+
+def said(plants, results, **more):
+    return Inspections.of(np.array(plants), np.array(results), DAY, **more)
+
+
+def test_one_stop_of_a_batch_is_corrected_and_the_others_stay(season: Season):
+    season.record(said([3, 4, 5], [CLEAN] * 3, second=np.array([100.0, 200.0, 300.0])), "route")
+    done = season.record_instead(said([4, 6], [FOUND, CLEAN], count=np.array([7.0, np.nan])), "me")
+    assert (done.new, done.known, done.corrected) == (1, 0, 1)
+    held = season.history.inspections
+    assert dict(zip(held.plant.tolist(), held.result.tolist(), strict=True)) == {
+        3: CLEAN, 4: FOUND, 5: CLEAN, 6: CLEAN
+    }  # fmt: skip
+    corrected = held.take(held.plant == 4)
+    assert (corrected.count.tolist(), corrected.second.tolist()) == ([7.0], [200.0])
+    assert not len(season.contradicting(BEGINS))
+    assert season.verify() == ()
+    correction = next(one for one in season.batches() if one.kind == "corrections")
+    assert (correction.source, correction.rows) == ("me", 1)
+    season.undo(correction.number)
+    held = season.history.inspections
+    assert held.result[held.plant == 4].tolist() == [CLEAN]
+    assert Season(season.path).verify() == ()
+
+
+def test_where_both_were_recorded_the_new_one_holds_in_place_of_each(season: Season):
+    for second in (10.0, 20.0):
+        season.record(said([3], [CLEAN], second=np.array([second])), "route")
+    assert season.record_instead(said([3], [FOUND])).corrected == 1
+    assert season.history.inspections.result.tolist() == [FOUND]
+    season.undo()
+    assert season.history.inspections.result.tolist() == [CLEAN, CLEAN]
+
+
+def test_of_two_results_of_a_plant_brought_at_once_the_later_one_holds(season: Season):
+    done = season.record_instead(said([3, 3], [CLEAN, FOUND]))
+    assert (done.new, done.corrected) == (1, 1)
+    assert season.history.inspections.result.tolist() == [FOUND]
+
+
+def test_an_undo_names_its_day_as_a_day(season: Season):
+    season.record(said([3], [FOUND]))
+    assert season.undo().values["date"] == date(BEGINS.year, BEGINS.month, BEGINS.day)

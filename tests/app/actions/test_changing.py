@@ -104,14 +104,14 @@ def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, sea
     who(season_app).set_value("Scout on foot").run()
     press(season_app, "Use from now on")
     assert not season_app.exception
-    assert season().settings.robot == scout()
+    assert season().settings.robot == scout().with_hours(12.0)  # hours are the plot's
     assert who(season_app).value == "Scout on foot"
     hours_box(season_app).set_value(5.0).run()
     press(season_app, "Use from now on")
     assert season().settings.robot == scout().with_hours(5.0)
     who(season_app).set_value("Robot").run()
     press(season_app, "Use from now on")
-    assert season().settings.robot == Robot()
+    assert season().settings.robot == Robot(hours=5.0)
 
 
 def places_of(app):

@@ -133,9 +133,9 @@ class DayAhead:
         return part.name if is_newer else ""
 
     def plan_of(self, part: Part) -> int | None:
-        """Return the number in the file of the route kept last of a part; None: none is kept."""
+        """Return the number of the route kept last of a part as a plan; None: none is kept."""
         kept = self.last.get(person(self.kept_as(part)))
-        return None if kept is None else kept.number
+        return None if kept is None else kept.plan
 
     def route(self, part: Part) -> Plants:
         """Return the plants of the route kept of a part, wherever they lie."""

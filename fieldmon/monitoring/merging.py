@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import phone_tables, replaced, schema, settings_log
+from fieldmon.monitoring import phone_tables, replaced, schema, season_log, settings_log
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.planning.members import person
@@ -110,7 +110,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set(), set()))
     _count(db, batches)
     _write(db, schema.BATCHES, list(batches.values()))
-    _write_routes(db, copies)
+    _write_routes(db, copies, _given_out(db, other))
     said = _differing(copies)
     _write(db, schema.SETTINGS, _once(copies, "settings", ("changed", "name", "value")))
     _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, ("at",)))
@@ -333,8 +333,19 @@ def _count(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
                 by_number[number]["undone"] = int(undone)
 
 
-def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:
-    """Keep the routes of both with their stops, those of a person and day by their revisions.
+def _given_out(*both: sqlite3.Connection) -> dict[Hashable, list[str]]:
+    """Return when each route was kept, by day, person and digest, as the logs of both say."""
+    told: dict[Hashable, set[str]] = {}
+    for db in both:
+        for one in season_log.given_out(db):
+            told.setdefault((one.date, person(one.who), one.digest), set()).add(one.at)
+    return {key: sorted(at) for key, at in told.items()}
+
+
+def _write_routes(
+    db: sqlite3.Connection, copies: list[dict[str, list[Row]]], given_out: dict[Hashable, list[str]]
+) -> None:
+    """Keep the routes of both with their stops in the order in which they were given out.
 
     One that was given out again after another counts as often as it was.
     """
@@ -349,13 +360,20 @@ def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) ->
             route["person"] = person(route["who"])
             given[_key(route, known_by[:-1])] += 1
             route["again"] = given[_key(route, known_by[:-1])]
+        before = ""
+        for route in copied["routes"]:
+            at = given_out.get(_key(route, ("date", "person", "digest")), [])
+            later = given[_key(route, known_by[:-1])] - route["again"]
+            # a clock may be set back: what stands below is later
+            before = route["at"] = max(before, at[-1 - later] if later < len(at) else "")
             own = stops.get(route["fid"], [])
             kept, _ = found.setdefault(_key(route, known_by), (route, own))
             kept["revision"] = min(kept["revision"], route["revision"])
+            kept["at"] = max(kept["at"], route["at"])
     begin = _alike_at_first(copies, "routes", known_by)
+    order = ("at", "day", "person", "revision", "digest", "again")
     rest = sorted(
-        (key for key in found if key not in begin),
-        key=lambda key: _key(found[key][0], ("day", "person", "revision", "digest", "again")),
+        (key for key in found if key not in begin), key=lambda key: _key(found[key][0], order)
     )
     ordered = [found[key] for key in (*begin, *rest)]
     revisions: Counter[Hashable] = Counter()

@@ -78,8 +78,9 @@ class FileRevision(NamedTuple):
     @classmethod
     def of(cls, db: sqlite3.Connection) -> FileRevision:
         """Return what the file says of itself."""
-        kept = (get_meta(db, name) for name in ("revision", schema.INSPECTIONS_CHANGED))
-        return cls(*(int(value or 0) for value in kept), get_meta(db, schema.WRITTEN) or "")
+        names = ("revision", schema.INSPECTIONS_CHANGED)
+        changes, inspections = (int(get_meta(db, name) or 0) for name in names)
+        return cls(changes, inspections, get_meta(db, schema.WRITTEN) or "")
 
     def once_kept(self, db: sqlite3.Connection) -> FileRevision:
         """Return what the file will say once the transaction that writes it is kept."""

@@ -13,7 +13,7 @@ import json
 from dataclasses import dataclass
 from datetime import datetime
 from hashlib import sha256
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import estimate, worded
 from fieldmon.errors import FileProblem
@@ -361,6 +361,24 @@ def taken_in(ours: sqlite3.Connection, theirs: sqlite3.Connection) -> list[dict[
     known = {mark for mark, _ in _with_those_taken_in(ours)}
     unknown = dict(one for one in _with_those_taken_in(theirs) if one[0] not in known)
     return [{"digest": mark, "entry": content} for mark, content in unknown.items()]
+
+
+class GivenOut(NamedTuple):
+    """What a log says of a route that was kept: when (UTC), for whom, of which day (ISO)."""
+
+    at: str
+    who: str
+    date: str
+    digest: str
+
+
+def given_out(db: sqlite3.Connection) -> Iterator[GivenOut]:
+    """Yield what is told of routes that were kept, here or in a copy that was taken in."""
+    for _, content in _with_those_taken_in(db):
+        if '"kind":"planned"' in content:
+            said = json.loads(content)
+            what = said["what"]
+            yield GivenOut(said["at"], said["who"], what["date"], what["digest"])
 
 
 def _with_those_taken_in(db: sqlite3.Connection) -> Iterator[tuple[str, str]]:

@@ -67,7 +67,7 @@ def _line(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> OutLine:
         others = ", ".join(texts.isolated(name) for name in one.shares)
         parts.append(texts.OUT_SHARES.format(others=others))
     return OutLine(one.name, title, " · ".join(parts), _cautions(choices, one, asked),
-                   one.made is not None)  # fmt: skip
+                   one.holds)  # fmt: skip
 
 
 def _cautions(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> tuple[str, ...]:

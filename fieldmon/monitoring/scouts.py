@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import secrets
 from dataclasses import dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import AccessError, SettingError
-from fieldmon.monitoring import phone_tables
+from fieldmon.monitoring import phone_tables, season_log
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written, names_written
@@ -22,8 +23,11 @@ from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Iterable
+    from datetime import date
 
     from fieldmon.monitoring.season_file import Season
+    from fieldmon.plot.local_clock import LocalClock
 
 _KEY_BYTES = 18
 _LONGEST_NAME = 60
@@ -144,9 +148,42 @@ def scouts_of(season: Season) -> tuple[Scout, ...]:
 
 
 def scouts_in(db: sqlite3.Connection) -> tuple[Scout, ...]:
-    """Return who has a key that holds, as `scouts_of` does, within a transaction."""
-    rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY fid")  # noqa: S608 - ours
-    return tuple(_scout(row) for row in rows)
+    """Return who has a key that holds, as `scouts_of` does, within a transaction.
+
+    Of merged copies somebody may have several keys: what was said with the last one counts.
+    """
+    rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY made, fid")  # noqa: S608 - ours
+    return _last(map(_scout, rows))
+
+
+def scouts_on(db: sqlite3.Connection, clock: LocalClock, on: date) -> tuple[Scout, ...]:
+    """Return who had a key on a day: what was planned of it stays whatever keys are made after it.
+
+    One that was made later counts where a route of the day was given to that person after it, one
+    that was taken back only once the day was over.
+    """
+    rows = db.execute(f"SELECT {_COLUMNS} FROM scouts ORDER BY made, fid")  # noqa: S608 - ours
+    had = [one for one in map(_scout, rows) if not one.ended or _date(clock, one.ended) > on]
+    if any(_date(clock, one.made) > on for one in had):
+        given = {(person(one.who), one.at) for one in season_log.given_out(db)
+                 if one.date == str(on)}  # fmt: skip
+        had = [
+            one
+            for one in had
+            if _date(clock, one.made) <= on
+            or any(who == person(one.name) and at >= one.made for who, at in given)
+        ]
+    return _last(had)
+
+
+def _date(clock: LocalClock, moment: str) -> date:
+    return clock.at(datetime.fromisoformat(moment)).date()
+
+
+def _last(scouts: Iterable[Scout]) -> tuple[Scout, ...]:
+    """Return the last of each person, given them in order."""
+    last = {person(one.name): one for one in scouts}
+    return tuple(sorted(last.values(), key=lambda one: one.made))
 
 
 def who(season: Season, key: str) -> Scout:
@@ -168,7 +205,8 @@ def who_in(db: sqlite3.Connection, season: Season, key: str) -> Scout:
                 "leads the season for a new one."
             )
         )
-    return _scout(row)
+    named = person(row[0])
+    return next(one for one in scouts_in(db) if person(one.name) == named)
 
 
 _COLUMNS = "name, first_row, last_row, made, ended"

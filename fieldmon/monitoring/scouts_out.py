@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,9 @@ import numpy as np
 from fieldmon.monitoring.day_ahead import DayAhead, Part
 from fieldmon.monitoring.findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.history import made_by
+from fieldmon.monitoring.scouts import scouts_on
 from fieldmon.planning.members import person
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     from datetime import date
@@ -43,6 +45,8 @@ class ScoutOut:
         Who else has a code for the same rows.
     has_route
         Whether there is a route for this person: beside the team rows are needed for it.
+    holds
+        Whether this person has a code that holds now.
     """
 
     name: str
@@ -55,6 +59,7 @@ class ScoutOut:
     plan: int | None
     shares: tuple[str, ...]
     has_route: bool
+    holds: bool
 
     @property
     def clock_is_wrong(self) -> bool:
@@ -63,9 +68,17 @@ class ScoutOut:
 
 
 def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
-    """Return who is out on the day `on`: who has a code, and then who of the team has none."""
+    """Return who is out on the day `on`: who has a code, and then who of the team has none.
+
+    Of a day that is over it is who was out then.
+    """
     ahead, done = DayAhead.of(season, on), season.history.inspections.on(on)
+    holding = {person(one.name) for one in ahead.scouts}
+    is_earlier = season.is_earlier(on)
     with season.store.reading() as db:
+        if is_earlier:  # as its plan is counted, see `Season.planned_and_done`
+            then = scouts_on(db, local_clock(season.plot.field), on)
+            ahead = replace(ahead, scouts=then, settings=season.planned_by(on))
         sent = {person(who): (at, clock) for who, at, clock in db.execute(_LAST_SENT)}
         photos = {person(who): at for who, at in db.execute(_LAST_PHOTO)}
     coded = {person(one.name): one for one in ahead.scouts}
@@ -82,7 +95,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
                 len(np.unique(made_by(done, who).plant)),
                 int((~np.isin(ahead.given(part), done.plant)).sum()),
                 ahead.plan_of(part), () if ahead.member(part) else ahead.others(part),
-                ahead.has_route(part),
+                ahead.has_route(part), who in holding,
             )
         )  # fmt: skip
     return tuple(out)

@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import phone_tables, routes, season_log
+from fieldmon.monitoring import routes, scouts, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.mornings import is_behind
@@ -160,7 +160,8 @@ class SeasonPlans(OpenSeason):
             contents = self._read(db)
             day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
             kept = routes.of_day(db, day)
-            codes = phone_tables.codes_on(db, local_clock(self.plot.field), on)
+            out_then = scouts.scouts_on(db, local_clock(self.plot.field), on)
+            codes = {person(one.name): one.rows for one in out_then}
             last = routes.kept_last(db, day)
         if who is None:
             out = _out(last, codes, self._planned_by(contents, on))

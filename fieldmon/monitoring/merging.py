@@ -64,12 +64,20 @@ class Merged:
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
         Whether batches have other numbers now than earlier entries of the log say.
+    treatments, codes
+        Treatments that count now and did not before, and keys of scouts that hold and were not
+        there.
+    overlaps
+        A sentence for each two codes whose rows overlap.
     """
 
     new: int
     contradictions: tuple[str, ...]
     taken_back: int = 0
     moved: bool = False
+    treatments: int = 0
+    codes: int = 0
+    overlaps: tuple[str, ...] = ()
 
 
 class MergedCopy(NamedTuple):
@@ -81,11 +89,15 @@ class MergedCopy(NamedTuple):
         As `Merged` has them.
     settings
         A sentence for each setting that differs.
+    treatments, codes
+        As `Merged` has them.
     """
 
     new: int
     taken_back: int
     settings: tuple[str, ...]
+    treatments: int = 0
+    codes: int = 0
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -94,6 +106,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     Raise `FileProblem` if it is no copy of the same season.
     """
     refuse_strangers(db, other)
+    before = _counting(db)
     less = [table for table in TAKEN if table is not schema.INSPECTIONS]
     copies = [{table.name: _rows(one, table) for table in less} for one in (db, other)]
     phones = [phone_tables.brought(one) for one in (db, other)]
@@ -116,7 +129,15 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, ("at",)))
     _write(db, schema.LABELS, _once(copies, "labels", schema.LABELS.names, ("product",)))
     phone_tables.bring_together(db, phones)
-    return MergedCopy(new, taken_back, said)
+    treatments, codes = (len(now - was) for now, was in zip(_counting(db), before, strict=True))
+    return MergedCopy(new, taken_back, said, treatments, codes)
+
+
+def _counting(db: sqlite3.Connection) -> tuple[set[str], set[str]]:
+    """Return the treatments that count, and the keys of scouts that hold, by their digests."""
+    treated = db.execute("SELECT digest FROM treatments WHERE undone = 0")
+    keys = db.execute("SELECT key_digest FROM scouts WHERE ended IS NULL")
+    return {mark for (mark,) in treated}, {mark for (mark,) in keys}
 
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
@@ -452,10 +473,16 @@ def _apart(ours: str, theirs: str) -> tuple[str, str]:
         return ours, theirs
     names = [name for name in {**one, **other} if one.get(name) != other.get(name)]
     here, there = (
-        ", ".join(f"{name} {json.dumps(told.get(name), ensure_ascii=False)}" for name in names)
-        for told in (one, other)
+        ", ".join(_with_unit(name, told.get(name)) for name in names) for told in (one, other)
     )
     return here, there
+
+
+def _with_unit(name: str, value: object) -> str:
+    """Return what a part of a setting says; other names end in their unit."""
+    if name == "hours" and isinstance(value, int | float):
+        return f"{value:g} h"
+    return f"{name} {json.dumps(value, ensure_ascii=False)}"
 
 
 def _key(row: Row, names: Iterable[str]) -> tuple[Any, ...]:

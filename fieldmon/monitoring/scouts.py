@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.monitoring.season_file import Season
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.local_clock import LocalClock
 
 _KEY_BYTES = 18
@@ -59,7 +60,7 @@ def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> st
     Whoever the season knows already is named as it is written there.
 
     Raise `SettingError` if there is no name, if the rows are not on the plot, if they are others'
-    in part, or if somebody beside the season's team has none.
+    in part, if somebody beside the season's team has none, or somebody of it has some.
 
     Examples
     --------
@@ -96,6 +97,14 @@ def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> st
         name = as_written(names_written(db), name)
         if settings_of(db).named(name) is None:
             _must_be_own(db, name, rows, lines)
+        elif rows is not None:
+            raise SettingError(
+                worded(
+                    "Rows must be of somebody beside the team, but {name} is of it: the team's "
+                    "plan says where they go. Leave the rows out.",
+                    name=name,
+                )
+            )
         _end(db, name)
         row = (name, _key_digest(season, key), utc_text(), None, first, last)
         insert(db, phone_tables.SCOUTS, [row])
@@ -116,20 +125,45 @@ def _must_be_own(
                 name=name, names=", ".join(one.name for one in settings.team),
             )
         )  # fmt: skip
+    new = Scout(name, rows, "")
+    for other in overlapping(new, scouts_in(db), settings, n_lines):
+        (low, high), (first, last) = (one.rows or (1, n_lines) for one in (new, other))
+        raise SettingError(
+            worded(
+                "Rows must be one's own, or the same as another's to share them, but rows "
+                "{low} to {high} overlap with {first} to {last}, which are {name}'s. Give "
+                "other rows, or take that code back.",
+                low=low, high=high, first=first, last=last, name=other.name,
+            )
+        )  # fmt: skip
+
+
+def overlapping(
+    scout: Scout, scouts: Iterable[Scout], settings: MonitoringSettings, n_lines: int
+) -> list[Scout]:
+    """Return others beside the team whose rows are in part somebody's, and in part not."""
     lines = 1, n_lines
-    low, high = rows or lines
-    for other in scouts_in(db):
-        first, last = other.rows or lines
-        is_beside = person(other.name) == person(name) or settings.named(other.name) is not None
-        if not is_beside and (first, last) != (low, high) and first <= high and low <= last:
-            raise SettingError(
-                worded(
-                    "Rows must be one's own, or the same as another's to share them, but rows "
-                    "{low} to {high} overlap with {first} to {last}, which are {name}'s. Give "
-                    "other rows, or take that code back.",
-                    low=low, high=high, first=first, last=last, name=other.name,
-                )
-            )  # fmt: skip
+    low, high = rows = scout.rows or lines
+    if settings.named(scout.name) is not None:
+        return []
+    return [
+        other
+        for other in scouts
+        if person(other.name) != person(scout.name) and settings.named(other.name) is None
+        and (span := other.rows or lines) != rows and span[0] <= high and low <= span[1]
+    ]  # fmt: skip
+
+
+def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
+    """Return a sentence for each two codes whose rows overlap, as they may in merged copies."""
+    settings, known = settings_of(db), scouts_in(db)
+    return tuple(
+        f"{one.name} has rows {low} to {high}, and {other.name} rows {first} to {last}: both go to "
+        "plants that are in both. Make one of them a code with other rows."
+        for k, one in enumerate(known)
+        for other in overlapping(one, known[k + 1 :], settings, n_lines)
+        for (low, high), (first, last) in [(one.rows or (1, n_lines), other.rows or (1, n_lines))]
+    )  # fmt: skip
 
 
 def take_back(season: Season, name: str) -> None:

@@ -1,11 +1,13 @@
 """Who is out: a line for each with a code or of the team, as the season's file knows it."""
 
+import shutil
 from dataclasses import replace
 from datetime import timedelta
 
 import pytest
 
-from fieldmon.monitoring import scouts, transactions
+from fieldmon.infestation.inspections import FOUND
+from fieldmon.monitoring import Season, scouts, transactions
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.scouts_out import scouts_out
@@ -135,3 +137,39 @@ def test_a_code_made_after_a_day_changes_nothing_of_its_plan_or_of_who_was_out(f
     fresh.change(replace(before, team=team_of(2)), before)
     assert [(one.name, one.has_route) for one in scouts_out(fresh, BEGINS)] == [("Ann", True)]
     assert {one.name for one in scouts_out(fresh, on(1))} >= {"Dan", "Eve", "robot-1"}
+
+
+def test_rows_that_overlap_after_a_merge_are_said_there_and_of_each(fresh, tmp_path):
+    other = Season(shutil.copy(fresh.path, tmp_path / "other.gpkg"))
+    scouts.let_in(fresh, "Ann", (1, 9))
+    scouts.let_in(fresh, "Cem", (1, 9))
+    scouts.let_in(other, "Ben", (5, 12))
+    said = fresh.merge(other).overlaps
+    assert len(said) == 2
+    assert said[0].startswith("Ann has rows 1 to 9, and Ben rows 5 to 12")
+    assert {one.name: one.overlaps for one in scouts_out(fresh, BEGINS)} == {
+        "Ann": ("Ben",), "Cem": ("Ben",), "Ben": ("Ann", "Cem")
+    }  # fmt: skip
+
+
+def test_finds_that_came_in_after_a_route_was_given_out_are_counted_but_ones_own(
+    fresh, monkeypatch
+):
+    keys = {name: scouts.let_in(fresh, name) for name in ("Ann", "Ben")}
+    take(fresh, keys["Ann"], [a_finding(2, FOUND, on=BEGINS)], utc_now())
+    route_ahead(fresh, on(1), Part(None, "Ann"))
+    monkeypatch.setattr(fresh, "is_earlier", lambda _day: False)
+
+    def newer():
+        return [one.newer for one in scouts_out(fresh, on(1))]
+
+    assert newer() == [0, 0]
+    for name, plant, day in (("Ann", 3, 0), ("Ben", 4, 1), ("Ann", 5, 1), ("Ann", 6, 2)):
+        take(fresh, keys[name], [a_finding(plant, FOUND, on=on(day))], utc_now())
+    take(fresh, keys["Ben"], [a_finding(7, on=BEGINS)], utc_now())
+    assert newer() == [2, 2]
+    planned_again(fresh, on(1), Part(None, "Ann"), seconds_left=3000.0)
+    assert newer() == [0, 0]
+    route_ahead(fresh, on(2), Part(None, "Ann"))
+    take(fresh, keys["Ben"], [a_finding(8, FOUND, on=BEGINS)], utc_now())
+    assert newer() == [1, 1]

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from datetime import date
 
-    from fieldmon.monitoring.season_file import Season
+    from fieldmon.monitoring.open_season import OpenSeason
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.local_clock import LocalClock
 
@@ -54,7 +54,7 @@ class Scout:
     ended: str = ""
 
 
-def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> str:
+def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -> str:
     """Make a key for somebody and return it; an earlier key of that person ends at once.
 
     Whoever the season knows already is named as it is written there.
@@ -166,7 +166,7 @@ def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def take_back(season: Season, name: str) -> None:
+def take_back(season: OpenSeason, name: str) -> None:
     """End the key of somebody, at once; raise `SettingError` if nobody of that name has one."""
     with season.store.writing() as db:
         if not _end(db, name):
@@ -175,7 +175,7 @@ def take_back(season: Season, name: str) -> None:
             )
 
 
-def scouts_of(season: Season) -> tuple[Scout, ...]:
+def scouts_of(season: OpenSeason) -> tuple[Scout, ...]:
     """Return who has a key that holds, in the order in which the keys were made."""
     with season.store.reading() as db:
         return scouts_in(db)
@@ -220,13 +220,13 @@ def _last(scouts: Iterable[Scout]) -> tuple[Scout, ...]:
     return tuple(sorted(last.values(), key=lambda one: one.made))
 
 
-def who(season: Season, key: str) -> Scout:
+def who(season: OpenSeason, key: str) -> Scout:
     """Return whose key it is; raise `AccessError` unless it holds on this season."""
     with season.store.reading() as db:
         return who_in(db, season, key)
 
 
-def who_in(db: sqlite3.Connection, season: Season, key: str) -> Scout:
+def who_in(db: sqlite3.Connection, season: OpenSeason, key: str) -> Scout:
     """Return whose key it is, within a transaction: who is taken back writes nothing more."""
     row = db.execute(
         f"SELECT {_COLUMNS} FROM scouts WHERE key_digest = ? AND ended IS NULL",  # noqa: S608 - ours
@@ -259,5 +259,5 @@ def _end(db: sqlite3.Connection, name: str) -> int:
     return db.executemany(ended, names).rowcount if names else 0
 
 
-def _key_digest(season: Season, key: str) -> str:
+def _key_digest(season: OpenSeason, key: str) -> str:
     return digest(season.path.name, key)

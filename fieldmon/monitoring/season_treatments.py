@@ -193,7 +193,7 @@ class SeasonTreatments(OpenSeason):
         return cautions.cautions(done, rules, on)
 
     def closed(self, on: date) -> tuple[tuple[NDArray[np.bool_], datetime], ...]:
-        """Return plants ``(n,)`` where nobody may enter when a day's work starts.
+        """Return plants ``(n,)`` where nobody may enter when work starts on the day `on`.
 
         With each the local time until which that is so.
         """

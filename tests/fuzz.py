@@ -359,7 +359,7 @@ def _through(seed: Seed, source: Any) -> None:
         options = seed.options or RecordOptions()
         _check_places(reading.read_records(source, options, None, places).value.lonlat)
     elif seed.door == "crews":
-        _check_shapes(reading.read_crews(source)[0].value)
+        _check_shapes(reading.read_crews(source).value[0])
     elif seed.door == "rows":
         rows = reading.read_rows(source).value
         _check_shapes(rows)

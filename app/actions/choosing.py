@@ -10,6 +10,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.io.import_report import ImportMessage, Severity
+from fieldmon.io.parse.geometry import area_m2
 from fieldmon.monitoring.settings import MOST_DAYS
 from fieldmon.plot import robot as robots
 from fieldmon.plot.local_clock import local_clock
@@ -54,11 +55,15 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
 
     from ..state.brought_files import File
+    from ..words.units import UnitsInLanguage
 
     #: waits until plants can be laid, while a plot's outline may be shown
     Wait = Callable[[Field | None], None]
 
 _DAY = "day {source}"
+# in the box names look alike that begin with the same letters, so many
+_CUT_ALIKE = 14
+_MOST_MEASURED = 500
 
 
 def choose(
@@ -213,11 +218,11 @@ def _choose_day(source: str, key: str, calendar: Calendar) -> None:
 
 
 def whose_day(choices: Choices) -> None:
-    """Let one of a season's team be chosen, whose day is shown and whose findings are recorded."""
-    if len(choices.team) > 1:
+    """Let one of the day's team be chosen, whose day is shown and whose findings are recorded."""
+    if len(team := choices.team_that_day) > 1:
         widget_memory.show(
-            st.segmented_control, texts.WHOSE_DAY, list(choices.team), key=WHOSE_DAY,
-            default=choices.team[0], required=True,
+            st.segmented_control, texts.WHOSE_DAY, list(team), key=WHOSE_DAY,
+            default=team[0], required=True,
         )  # fmt: skip
 
 
@@ -232,12 +237,29 @@ def mark_day(choices: Choices) -> None:
               on_click=work_day.back_to_today, args=(plot_source.chosen(),))  # fmt: skip
 
 
-def _which(file: File, names: list[str]) -> int:
+def _which(file: File, fields: tuple[Field, ...]) -> int:
+    labels = _labels(fields, chosen_units.units())
     number = widget_memory.show(
-        st.selectbox, texts.WHICH_PLOT, range(len(names)), format_func=names.__getitem__,
+        st.selectbox, texts.WHICH_PLOT, range(len(labels)), format_func=labels.__getitem__,
         key=plot_source.feature_key(file.key), default=0, label_visibility="collapsed",
     )  # fmt: skip
     return number or 0
+
+
+def _labels(fields: tuple[Field, ...], units: UnitsInLanguage) -> list[str]:
+    """Return what plots are called in the box: by number and area where names would be cut alike.
+
+    Many of them go without their areas, which take time.
+    """
+    names = [field.name for field in fields]
+    if len({name[:_CUT_ALIKE] for name in names}) == len(names):
+        return names
+    few = len(fields) <= _MOST_MEASURED
+    areas = [[units.square(area_m2(field.boundary))] if few else [] for field in fields]
+    return [
+        " · ".join([f"{k}", *area, texts.isolated(name)])
+        for k, (name, area) in enumerate(zip(names, areas, strict=True), 1)
+    ]
 
 
 def _work(work: Work) -> tuple[Robot, str]:

@@ -77,7 +77,7 @@ def undo(choices: Choices, batch: int) -> str:
 
 def can_be_longer(choices: Choices) -> bool:
     """Return whether the day shown would go by other hours: one that is past would not."""
-    return choices.who is not None or not choices.season.is_earlier(choices.on)
+    return not choices.season.is_earlier(choices.on)
 
 
 @notices.reporting

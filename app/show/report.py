@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.io.import_report import Severity
 from fieldmon.reports.certification import certification_report
-from fieldmon.reports.day import DayFacts, day_report, results_on
+from fieldmon.reports.day import DayFacts, day_report, results_on, who_came
 from fieldmon.reports.settings_rows import WorkSettings
 
 from ..state import assumptions, cached, chosen_day
@@ -50,7 +50,8 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
         None if season is None else season.planned_and_done(choices.on),
-        who=choices.who or "" if season is not None and season.settings.team else "",
+        who=choices.who or "",
+        team=who_came(season, choices.on) if season and shown.worked and not choices.who else (),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     return lambda: day_report(facts, units).said_in(of_paper)

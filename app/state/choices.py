@@ -124,15 +124,22 @@ class Choices:
 
     @property
     def team(self) -> tuple[str, ...]:
-        """Return the names of a season's team; none where one works."""
+        """Return the names of a season's team of now; none where one works."""
         if self.season is None:
             return ()
         return tuple(member.name for member in self.season.settings.team)
 
     @property
+    def team_that_day(self) -> tuple[str, ...]:
+        """Return the names of the team that the day is planned for, or was worked by."""
+        if self.season is None:
+            return ()
+        return tuple(member.name for member in self.season.planned_by(self.on).team)
+
+    @property
     def who(self) -> str | None:
-        """Return whose day is shown, of a season's team; None where one works."""
-        if not (team := self.team):
+        """Return whose day is shown, of the team of that day; None where one works."""
+        if not (team := self.team_that_day):
             return None
         chosen = widget_memory.value(WHOSE_DAY)
         return chosen if chosen in team else team[0]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
 
     #: asks which plot of a file is meant, by the file and the plots' names
-    Which = Callable[[File, list[str]], int]
+    Which = Callable[[File, tuple[Field, ...]], int]
 
 #: what is put into cache keys for the sample estate's files
 _SAMPLE = "sample/"
@@ -127,7 +127,7 @@ def outline(files: Files, which: Which) -> Outline:
         return Outline(key, None, (), measured, heard)
     options = settled(files.plot, PlotOptions())
     read = cached_files.plots(files.plot.key, options, files.plot.source)
-    number = which(files.plot, [field.name for field in read.value])
+    number = which(files.plot, read.value)
     field = read.value[number]
     if measured is not None:
         field = with_plants(field, measured)

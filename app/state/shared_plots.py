@@ -166,7 +166,7 @@ def _of_season(plot: PlotState) -> _Ready:
 def _of_files(plot: PlotState) -> _Ready:
     is_sample = plot.source == plot_source.SAMPLE
     files = plot_files.of_sample() if is_sample else plot_files.of_session()
-    outline = plot_files.outline(files, lambda _file, _names: plot.number)
+    outline = plot_files.outline(files, lambda _file, _fields: plot.number)
     made = plot_files.prepared(files, outline)
     on = sample_estate.LAST_DAY if is_sample else local_clock(made.plot.field).today()
     settings = PlanSettings(Robot(hours=1), sampler(USUAL), assumptions.prior())

@@ -119,7 +119,7 @@ def compare(options: CompareOptions) -> None:
     can_be_folder(options.output)
     sizes = robot_numbers(options.robots)
     settings = [each for one in _scenarios(options) for each in _settings(one, sizes, options)]
-    made = rows(_outcomes(settings, options))
+    made = rows(_outcomes(settings, options), options.days)
     for sentence in sentences(made):
         typer.echo(sentence)
     write_all(options.output, {"robots.md": table(made), "robots.html": report_html(made)})

@@ -263,9 +263,10 @@ def decide(
         short = " ".join([*said, advice.zones.sentence()])
     where = advice.said_of_zones(above=of_plants)
     typer.echo("\n".join([f"{when}, after the day's work.", threshold.sentence(), *said, *where]))
+    refused = _write(_AdviceAsked(kept, when, advice, files.product), files.output or [])
     kept.advise(when, short)
-    if files.output:
-        _write(_AdviceAsked(kept, when, advice, files.product), files.output)
+    if refused is not None:
+        raise refused
 
 
 def _refuse_idle(*each: tuple[object, str]) -> None:
@@ -302,16 +303,26 @@ def _check_name(path: Path) -> None:
     require_place(path)
 
 
-def _write(asked: _AdviceAsked, paths: list[Path]) -> None:
+def _write(asked: _AdviceAsked, paths: list[Path]) -> SettingError | None:
+    """Write the pages, then the zones; return why there are none, where spraying pays nowhere."""
+    if not paths:
+        return None
     from fieldmon.compute.units import Units
     from fieldmon.io.writers.treatment_map import write_treatment_map
     from fieldmon.reports.advice import advice_report
     from fieldmon.reports.write import write_report
 
+    zones = [path for path in paths if path.suffix.lower() not in _PAPER]
     for path in paths:
-        if path.suffix.lower() in _PAPER:
+        if path not in zones:
             made = advice_report(asked.kept, asked.when, asked.advice, Units(), asked.product)
             typer.echo(f"Advice written to {write_report(made, path)}")
-            continue
+    if not zones:
+        return None
+    try:
         of = asked.advice.treatment_map(asked.kept.plot.field, asked.product)
+    except SettingError as none:
+        return none
+    for path in zones:
         typer.echo(f"Zones written to {write_treatment_map(of, path)}")
+    return None

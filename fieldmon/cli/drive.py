@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from datetime import time
+from datetime import datetime, time, timedelta
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -33,11 +33,11 @@ from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from datetime import date, datetime
+    from collections.abc import Iterator, Sequence
+    from datetime import date
 
-    from fieldmon.drive.day import DrivenDay
-    from fieldmon.drive.errand import DayToDrive, DrivingRobot
+    from fieldmon.drive.day import DrivenDay, DrivenStop
+    from fieldmon.drive.errand import DayToDrive, DrivingRobot, Errand
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.wire import RobotName
@@ -217,6 +217,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
 
 def _season(options: DriveOptions, file: Path) -> None:
     """Drive what is left of a day of a season, each plant told recorded at once."""
+    from fieldmon.drive.day import DrivenDay
     from fieldmon.drive.season_day import SeasonDay
     from fieldmon.monitoring import Season
 
@@ -226,18 +227,27 @@ def _season(options: DriveOptions, file: Path) -> None:
             "Drive a copy of the season with --made-up, or a robot with --robot vda5050."
         )
     season = Season(file)
-    on, worker = day_on(season.plot.field, day(options.on)), season.settings.robot
+    on = day_on(season.plot.field, day(options.on))
+    settings = season.planned_by(on)
+    worker = settings.robot
     aisles = season.plot.aisles.for_robot(worker)
     made_up = "" if options.robot is Drives.VDA5050 else ", finds made up"
     today = SeasonDay(season, on, f"{_name(options)}{made_up}")
-    tell_assumed(season.assumed())
+    tell_assumed(season.assumed(settings))
+    _tell_others(season, on, today.left_out)
     if told := aisles.shut_sentence():
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
+    begins, so_far = _begins(season, on, today.begun_s), DrivenDay()
     with _driver(options, season.plot, worker, (season.morning(on), on)) as driver:
-        driven = _driven(options, today, aisles, (worker, driver), _begins(season, on))
+        try:
+            driven = _driven(options, today, aisles, (worker, driver), begins, so_far)
+        except KeyboardInterrupt:
+            _write(so_far, on, options, _name(options), before)
+            _tell_stopped(season, on, today.batch)
+            raise
     _write(driven, on, options, _name(options), before)
 
 
@@ -246,7 +256,9 @@ def _team(options: DriveOptions, file: Path) -> bool:
     from fieldmon.monitoring import Season
 
     season = Season(file)
-    if not season.settings.team:
+    on = day_on(season.plot.field, day(options.on))
+    settings = season.planned_by(on)
+    if not settings.team:
         return False
     if options.robot is not Drives.VDA5050:
         raise SettingError(
@@ -260,11 +272,10 @@ def _team(options: DriveOptions, file: Path) -> bool:
     from fieldmon.drive.vda5050.wire import Broker
     from fieldmon.monitoring.history import made_by
 
-    on = day_on(season.plot.field, day(options.on))
     asked = [path for path in (options.output, options.bag) if path is not None]
     today = TeamSeason(season, on, options.manufacturer)
     files = files_of_each(asked, today.robots) if asked else [[] for _ in today.robots]
-    tell_assumed(season.assumed())
+    tell_assumed(season.assumed(settings))
     _tell_left_out([one.name for one in today.team if one not in today.robots])
     done = season.history.inspections.on(on)
     before = {one.name: len(made_by(done, one.name)) for one in today.robots}
@@ -272,6 +283,7 @@ def _team(options: DriveOptions, file: Path) -> bool:
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
     }
+    begins = {one.name: _begins(season, on, today.member(one.name).begun_s) for one in today.robots}
     broker = Broker.of(options.broker)
     driven = drive_team(today, broker, _robot_name(options), _say, recordings)
     missing: dict[str, None] = {}
@@ -284,8 +296,11 @@ def _team(options: DriveOptions, file: Path) -> bool:
         output = own.pop(0) if options.output is not None else None
         bag = own.pop(0) if options.bag is not None else None
         mine = replace(options, output=output, bag=bag, serial=one.name)
-        _write_bag(recordings[one.name], _begins(season, on), mine)
+        _write_bag(recordings[one.name], begins[one.name], mine)
         _write(each, on, mine, one.name, before[one.name])
+    if today.stopped:
+        _tell_stopped(season, on, today.batch)
+        raise KeyboardInterrupt
     if missing:
         raise SettingError(" ".join(missing))
     return True
@@ -301,10 +316,33 @@ def _tell_left_out(scouts: list[str]) -> None:
         )
 
 
-def _begins(season: Season, on: date) -> datetime:
+def _tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) -> None:
+    """Print that others are out, and what is left to them."""
+    from fieldmon.reports.words import DAY_OF_NOBODY
+
+    if not (codes := season.codes_on(on)):
+        return
+    rows = ", ".join(f"{first} to {last}" for first, last in sorted(left_out))
+    said = [DAY_OF_NOBODY, *([f"Left to those with a code for them: rows {rows}."] if rows else [])]
+    if None in codes.values():
+        said.append("Whoever has a code for the whole plot may be sent to the same plants.")
+    typer.echo(" ".join(said), err=True)
+
+
+def _tell_stopped(season: Season, on: date, batch: int | None) -> None:
+    """Print what is kept of a day that somebody stopped."""
+    from fieldmon.compute.wording import counted
+
+    n = counted(0 if batch is None else season.contents([batch])[batch].n, "result")
+    typer.echo(f"{n} of {on} in the season; the same command goes on from there.")
+
+
+def _begins(season: Season, on: date, begun_s: float) -> datetime:
+    """Return the moment from which the seconds of a day's driving count."""
     from fieldmon.plot.local_clock import local_clock
 
-    return local_clock(season.plot.field).moment(on, season.settings.starts)
+    begins = datetime.combine(on, time()) + timedelta(seconds=begun_s)
+    return local_clock(season.plot.field).moment(begins.date(), begins.time())
 
 
 def _driven(
@@ -313,11 +351,19 @@ def _driven(
     aisles: Aisles,
     who: tuple[Robot, tuple[DrivingRobot, Recording]],
     begins: datetime,
+    so_far: DrivenDay | None = None,
 ) -> DrivenDay:
+    """Drive a day; each stop that was told is also put into `so_far`."""
     from fieldmon.drive.day import drive_day
 
     robot, (driver, recording) = who
-    driven = drive_day(today, aisles, (robot, driver), recording.note)
+
+    def watch(stop: DrivenStop, errand: Errand) -> None:
+        if so_far is not None:
+            so_far.stops.append(stop)
+        recording.note(stop, errand)
+
+    driven = drive_day(today, aisles, (robot, driver), watch)
     _write_bag(recording, begins, options)
     return driven
 

@@ -133,9 +133,14 @@ def describe(plot: Plot) -> None:
 
 def tell_assumed(assumed: Iterable[Assumed]) -> None:
     """Print what the figures of a day rest on though nobody said it, in one line."""
-    said = "; ".join(str(one).removeprefix("guessed: ") for one in assumed)
+    said = assumed_in_words(assumed)
     if said:
         typer.echo(f"assumed: {said}", err=True)
+
+
+def assumed_in_words(assumed: Iterable[Assumed]) -> str:
+    """Return what was assumed in one line, each apart by a semicolon."""
+    return "; ".join(str(one).removeprefix("guessed: ") for one in assumed)
 
 
 def tell_drafts(sentences: Iterable[str]) -> None:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from fieldmon.cli.messages import assumed_in_words
 from fieldmon.cli.waiting import progress
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
@@ -23,6 +24,7 @@ from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.batch import plan_task
 
 if TYPE_CHECKING:
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
 SUMMARY = "summary.csv"
 _COLUMNS = (
     *("plot", "state", "file", "plants", "rows", "stops", "hours", "drive_km"),
-    *("infested_expected", "sentence", "digest"),
+    *("infested_expected", "sentence", "digest", "assumed"),
 )
 # the summary on disk is never older than this while plots are planned
 _EVERY_S = 2.0
@@ -86,7 +88,8 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
     digests = {
         name: task.digest(plots.records.candidates(task.plot.name)) for name, task in tasks.items()
     }
-    rows = _finished(day.folder, digests)
+    files = {task.plot.name: name for name, task in tasks.items()}
+    rows = _finished(day.folder, files, digests)
     left = {name: task for name, task in tasks.items() if name not in rows}
     if len(left) < len(tasks):
         typer.echo(f"{len(tasks) - len(left)} of {len(tasks)} plots were planned already.")
@@ -122,8 +125,11 @@ def _plain(name: str) -> str:
     return kept.encode()[:_NAME_BYTES].decode(errors="ignore") or "plot"
 
 
-def _finished(folder: Path, digests: dict[str, str]) -> dict[str, Row]:
-    """Return the rows of an earlier run that still hold, by the names of their files."""
+def _finished(folder: Path, files: dict[str, str], digests: dict[str, str]) -> dict[str, Row]:
+    """Return the rows of an earlier run that still hold, by the names of their files.
+
+    `files` names those of each plot: the row of a plot that was refused names none.
+    """
     try:
         text = (folder / SUMMARY).read_text(encoding="utf-8-sig")
     except FileNotFoundError:
@@ -132,7 +138,11 @@ def _finished(folder: Path, digests: dict[str, str]) -> dict[str, Row]:
         raise FileProblem(
             f"{folder / SUMMARY} must be readable, but it is not ({error})."
         ) from error
-    same = {row["file"]: row for row in csv.DictReader(io.StringIO(text)) if "digest" in row}
+    same = {
+        name: row | {"file": name}
+        for row in csv.DictReader(io.StringIO(text))
+        if "digest" in row and (name := files.get(row["plot"]))
+    }
     return {
         name: row
         for name, row in same.items()
@@ -224,22 +234,25 @@ def _work(name: str, task: Task) -> Row:
     row = dict.fromkeys(_COLUMNS, "") | {"plot": task.plot.name, "file": name}
     try:
         choices = PlantingChoices(**task.orders.planting)  # type: ignore[arg-type]
-        plot = lay(task.plot, choices).plot
-        today = plan_task(task, plot, day.records.on(task.plot))
+        laid = lay(task.plot, choices)
+        today = plan_task(task, laid.plot, day.records.on(task.plot))
     except FieldmonError as error:
         (day.folder / name).unlink(missing_ok=True)
         return row | {"state": "refused", "sentence": str(error)}
     route = today.route
     notes = RouteNotes(task.plot.name, task.orders.sampler, day.began)
+    robot, grid = today.scene.robot, route.aisles.grid
+    assumed = assumed_by(laid.assumed, task.orders.prior, robot, grid)
     replace(route, notes=notes).to_file(day.folder / name, "geojson")
     return row | {
         "state": "planned",
-        "plants": len(route.aisles.grid),
-        "rows": route.aisles.grid.n_rows,
+        "plants": len(grid),
+        "rows": grid.n_rows,
         "stops": len(route),
         "hours": round(route.end_s / 3600, 3),
         "drive_km": round(route.drive_m / 1000, 3),
         "infested_expected": round(route.expected_finds, 3),
+        "assumed": assumed_in_words(assumed),
     }
 
 
@@ -247,7 +260,12 @@ def _write(folder: Path, order: Iterable[str], rows: dict[str, Row]) -> None:
     text = io.StringIO()
     table = csv.DictWriter(text, _COLUMNS)
     table.writeheader()
-    table.writerows(rows[name] for name in order if name in rows)
+    # no file is written for a plot that was refused
+    table.writerows(
+        rows[name] | ({"file": ""} if rows[name]["state"] == "refused" else {})
+        for name in order
+        if name in rows
+    )
     # the mark at the beginning tells a spreadsheet that names may be in any script
     write_whole(folder / SUMMARY, text.getvalue().encode("utf-8-sig"))
 
@@ -256,12 +274,31 @@ def _tell(rows: dict[str, Row], folder: Path) -> None:
     from fieldmon.compute.wording import counted
 
     planned = [row for row in rows.values() if row["state"] == "planned"]
+    if told := _assumptions(planned):
+        typer.echo(f"assumed: {told}", err=True)
     for line in _refusals([row for row in rows.values() if row["state"] == "refused"]):
         typer.echo(line, err=True)
     stops = sum(int(row["stops"]) for row in planned)
     typer.echo(
         f"{len(planned)} of {len(rows)} plots planned, {counted(stops, 'plant')} in "
         f"{sum(float(row['hours']) for row in planned):.0f} h. Routes and {SUMMARY} in {folder}"
+    )
+
+
+def _assumptions(planned: list[Row]) -> str:
+    """Return what was assumed of which plots; empty where nothing was."""
+    from fieldmon.compute.wording import counted, first_few
+
+    plots: dict[str, list[str]] = {}
+    for row in planned:
+        for one in (row.get("assumed") or "").split("; "):
+            plots.setdefault(one, []).append(row["plot"])
+    plots.pop("", None)
+    return "; ".join(
+        one
+        if len(named) == len(planned)
+        else f"{one} ({counted(len(named), 'plot')}: {first_few(named, _NAMED)})"
+        for one, named in plots.items()
     )
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from fieldmon.cli.plan_options import PlanOptions
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.settings import MonitoringSettings
 
 # what a plan of a season may be told; all else was chosen when it began
 _OF_A_PLAN = {"plot", "output", "on", "now", "chance_map", "bound"}
@@ -31,6 +32,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     from fieldmon.monitoring import Season
     from fieldmon.planning.day_bound import with_bound
     from fieldmon.planning.route import with_forecast
+    from fieldmon.reports.words import DAY_OF_NOBODY
 
     refuse_what_was_chosen(context, _OF_A_PLAN)
     season = Season(file)
@@ -40,8 +42,8 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, field)
     tell_past_midnight(datetime.combine(on, settings.starts), hours)
-    if season.settings.team:
-        _plan_team(season, options, on)
+    if settings.team:
+        _plan_team(season, options, on, settings)
         return
     refuse_unrecorded(season, options.output or ())
     today = season.plan(on, None if now is None else clock(now, "--now"))
@@ -58,6 +60,8 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     done = f"{len(seen)} done, " if len(seen) else ""
     infested = float(season.evening_planned_by(on)[route.plant].sum())
     typer.echo(f"{on}: {done}{day_in_words(route, infested)}")
+    if [*season.codes_on(on).values()] not in ([], [None]):
+        typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
@@ -83,12 +87,14 @@ def _tell_detection(season: Season, on: date) -> None:
                 )
 
 
-def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
+def _plan_team(
+    season: Season, options: PlanOptions, on: date, settings: MonitoringSettings
+) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
     from fieldmon.planning.route import with_forecast
     from fieldmon.planning.team import bound_of_days
 
-    team = season.settings.team
+    team = settings.team
     files = files_of_each(options.output, team)
     refuse_unrecorded(season, (file for each in files for file in each))
     days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
@@ -104,7 +110,7 @@ def _plan_team(season: Season, options: PlanOptions, on: date) -> None:
             tell_member(member.name, notes.start, today.route)
     if options.bound and (said := bound_of_days(days)):
         typer.echo(said)
-    tell_assumed(season.assumed())
+    tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     ahead = cache(lambda: season.forecast(on))
     for member, today, paths in zip(team, days, files, strict=True):

@@ -103,6 +103,7 @@ def _options(given: dict[str, str]) -> tuple[RasterOptions, How | None]:
 def _risk_settings(given: dict[str, str]) -> RiskSettings:
     """Return what was said of the meaning, taken out of the options."""
     from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.io.options import yes_or_no
 
     said: dict[str, Any] = {
         name: given.pop(name) for name in [f.name for f in fields(RiskSettings)] if name in given
@@ -110,7 +111,7 @@ def _risk_settings(given: dict[str, str]) -> RiskSettings:
     if "mean_share" in said:
         said["mean_share"] = _number(said["mean_share"])
     if "low_is_risky" in said:
-        said["low_is_risky"] = said["low_is_risky"].lower() in {"yes", "true", "1"}
+        said["low_is_risky"] = yes_or_no("low_is_risky", said["low_is_risky"])
     return replace(RiskSettings(), **said)
 
 

@@ -10,8 +10,12 @@ import typer
 from fieldmon.cli.numbers import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
-from fieldmon.compute.ranges import SEASONS
+from fieldmon.compute.ranges import SEASONS, AllowedRange
 from fieldmon.errors import SettingError
+
+# how long the seasons are
+_DAYS = 12
+_APART = AllowedRange(1, _DAYS)
 
 
 def beliefs(
@@ -28,6 +32,10 @@ def beliefs(
         ),
     ] = None,
     sampler: Annotated[str, typer.Option(help="Sampler that inspects.")] = "adaptive",
+    every: Annotated[
+        int,
+        typer.Option(help="Days from one inspection to the next.", callback=within(_APART)),
+    ] = 1,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the report (HTML).")
     ] = Path(),
@@ -43,6 +51,7 @@ def beliefs(
     from fieldmon.studies.samplers.calibration import (
         BELIEFS,
         OF_PESTS,
+        OnSomeDays,
         calibration,
         report_html,
     )
@@ -60,14 +69,15 @@ def beliefs(
     chosen = next((each for each in known if each.name.startswith(scenario or "")), None)
     if chosen is None:
         raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
-    made = {}
+    made, inspects = {}, OnSomeDays(named(sampler), every)
     for name, believe in (BELIEFS if pest_in_weather is None else OF_PESTS).items():
-        made[name] = c = calibration([chosen], named(sampler), believe, seeds)
+        made[name] = c = calibration([chosen], inspects, believe, seeds, _DAYS)
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
             f"(as suspicious or not {c.suspicious_log_score:.4f}), skill {c.skill:.2f}, intervals "
             f"of 90 and 50 % hold on {c.covered:.0%} and {c.half_covered:.0%} of mornings, "
             f"{1000 * c.seconds_a_day:.0f} ms a day"
         )
-    about = f"{chosen.name}; {seeds} seasons of 12 days inspected by {sampler}."
+    days = "on each" if every == 1 else f"every {every} days"
+    about = f"{chosen.name}; {seeds} seasons of {_DAYS} days, inspected {days} by {sampler}."
     write_all(output, {"beliefs.html": report_html(made, about, seeds)})

@@ -25,6 +25,19 @@ def in_unit(value: float, form: str, unit: str) -> Worded:
     return worded(IN_UNIT[unit], value=figure(value, form))
 
 
+def distance_figure(metres: float) -> Worded:
+    """Return a distance in metres, or in kilometres.
+
+    Examples
+    --------
+    >>> distance_figure(2.53), distance_figure(111.32), distance_figure(11132.0)
+    ('2.5 m', '111 m', '11.13 km')
+    """
+    if metres < 1000:
+        return in_unit(metres, ".2g" if metres < 10 else ".0f", "m")
+    return in_unit(metres / 1000, ".4g" if metres < 1e6 else ".0f", "km")
+
+
 @dataclass(frozen=True)
 class Units:
     """How numbers are written.

@@ -8,15 +8,16 @@ import numpy as np
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.monitoring.day_ahead import inside
+from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.monitor import PlantToInspect
-from fieldmon.monitoring.settings import seconds
+from fieldmon.planning.wishes import Wishes
 
 if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.monitoring.season_file import Season
     from fieldmon.planning.plan import DayPlan
-    from fieldmon.planning.wishes import Wishes
 
 #: a robot that is so much later or earlier than planned is planned for anew
 LATE_S = 30.0
@@ -26,7 +27,7 @@ class SeasonDay:
     """A day of a season that is asked for the next plant and told what was seen there.
 
     All that is told of a day is one batch. Who begins again after a crash goes on from the plant
-    told last, at its time.
+    told last, at its time. Who is out with a code works beside it: their rows are left to them.
 
     Parameters
     ----------
@@ -41,7 +42,14 @@ class SeasonDay:
     def __init__(
         self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None
     ) -> None:
-        self._season, self._on, self._wishes = season, on, wishes
+        codes = season.codes_on(on)
+        #: first and last row of each part that is left to somebody
+        self.left_out = tuple(rows for rows in codes.values() if rows is not None)
+        self._season, self._on = season, on
+        self._wishes = self._without(wishes)
+        self._who = Besides(tuple(codes)) if codes else None
+        #: the second of the day at which its work began, from which seconds count here
+        self.begun_s = season.begun_s(on, self._who or "")
         self._source = f"{source} {on}"
         self.batch = begun_batch(season, self._source)
         self.replanned = 0
@@ -91,17 +99,26 @@ class SeasonDay:
             self._plan()
 
     def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
-        starts_s = seconds(self._season.settings.starts)
-        one = as_inspection(plant, found, (self._on, starts_s + now_s))
+        one = as_inspection(plant, found, (self._on, self.begun_s + now_s))
         done = self._season.record(one, self._source, into=self.batch)
         self.batch = self.batch or done.batch
 
+    def _without(self, wishes: Wishes | None) -> Wishes | None:
+        """Return what people want but for the plants that are left to somebody."""
+        if not self.left_out:
+            return wishes
+        theirs = np.any([inside(self._season.label, rows) for rows in self.left_out], axis=0)
+        return (wishes or Wishes()).never(tuple(np.flatnonzero(theirs).tolist()))
+
     def _plan(self) -> None:
-        today = self._season.plan(self._on, keep=self.batch is None, wishes=self._wishes)
+        season, on, who = self._season, self._on, self._who
+        today = season.plan(on, keep=self.batch is None, wishes=self._wishes, who=who)
         self._today: DayPlan = today
         self._next, self._late_s = 0, 0.0
         self._at = today.scene.at
-        self._gone_s = today.scene.robot.day_s - today.scene.seconds_left
+        # a first result that came late or early shows that the day began otherwise
+        since_s = season.begun_s(on, who or "") - self.begun_s
+        self._gone_s = since_s + today.scene.robot.day_s - today.scene.seconds_left
         self._since_s = self._gone_s
         self.replanned += 1
 

@@ -11,7 +11,6 @@ from fieldmon.drive.aisle_keeper import AisleKeeper
 from fieldmon.drive.season_day import LATE_S, as_inspection, begun_batch
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.monitoring.monitor import PlantToInspect
-from fieldmon.monitoring.settings import seconds
 from fieldmon.plot.travel import GATE, travel_s
 
 if TYPE_CHECKING:
@@ -49,7 +48,8 @@ class TeamSeason:
     """
 
     def __init__(self, season: Season, on: date, source: str = "robots") -> None:
-        self.team = season.settings.team
+        self.settings = season.planned_by(on)
+        self.team = self.settings.team
         if not self.team:
             raise SettingError("A day of several robots needs a season with a team (--robots).")
         #: who of the team drives: people walk their own routes
@@ -63,6 +63,8 @@ class TeamSeason:
         self.source = f"{source} {on}"
         self.batch = begun_batch(season, self.source)
         self.replanned = 0
+        #: whether somebody stopped it: nobody is given another plant
+        self.stopped = False
         #: plants that somebody has set out for
         self.errands: dict[str, int] = {}
         grid = season.plot.grid
@@ -77,7 +79,7 @@ class TeamSeason:
 
     def member(self, name: str) -> MemberDay:
         """Return the day of one of the team."""
-        return MemberDay(self, self.season.settings.member(name))
+        return MemberDay(self, self.settings.member(name))
 
     def plan(self) -> None:
         """Plan the rest of the day for all, each from where it was told of last."""
@@ -96,6 +98,8 @@ class MemberDay:
         scene = team.days[member.name].scene
         self.aisles: Aisles = scene.aisles
         self._stands = _Stands(scene.at, member.robot.day_s - scene.seconds_left)
+        #: the second of the day at which its work began, from which seconds count here
+        self.begun_s = team.season.begun_s(team.on, member.name)
 
     def __repr__(self) -> str:
         """Say whose day it is."""
@@ -118,6 +122,8 @@ class MemberDay:
         """
         team, name = self._team, self._member.name
         with team.lock:
+            if team.stopped:
+                return None
             if self._asked is None and (left := self._left()):
                 team.errands[name] = left[0]
                 self._asked = self._stop(left[0])
@@ -194,7 +200,6 @@ class MemberDay:
 
     def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
         team = self._team
-        starts_s = seconds(team.season.settings.starts) + self._member.starts_s
-        one = as_inspection(plant, found, (team.on, starts_s + now_s), self._member.name)
+        one = as_inspection(plant, found, (team.on, self.begun_s + now_s), self._member.name)
         done = team.season.record(one, team.source, into=team.batch)
         team.batch = team.batch or done.batch

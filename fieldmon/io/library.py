@@ -13,7 +13,14 @@ from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.kinds import must_be_of
 from fieldmon.errors import ImportDoubt
 from fieldmon.io.import_report import Severity
-from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Upload
+from fieldmon.io.options import (
+    PlotOptions,
+    ReadOptions,
+    RecordOptions,
+    Upload,
+    as_texts,
+    yes_or_no,
+)
 from fieldmon.io.plot_records import records_on
 from fieldmon.io.prepare import prepare
 from fieldmon.io.read import read_plots as read_fields
@@ -38,8 +45,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
 
-#: files of rows and blocks that a plot may have besides
-_DRAWN = ("rows", "blocks", "contours")
+#: files of rows, blocks and paths that a plot may have besides
+_DRAWN = ("rows", "blocks", "contours", "paths")
 _DOUBTS = (Severity.GUESSED, Severity.DROPPED, Severity.DOUBTFUL)
 
 
@@ -49,7 +56,7 @@ def read_plot(
     plants: Source | None = None,
     planting: PlantingChoices | None = None,
     gate: tuple[float, float] | None = None,
-    **options: str,
+    **options: object,
 ) -> Plot:
     """Return one plot of a file with its plants in rows.
 
@@ -67,10 +74,11 @@ def read_plot(
     gate
         ``(lon, lat)`` where days start and end; None: the nearest row end.
     **options
-        What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``; and
-        ``doubles="one"`` of plants measured twice. ``rows``, ``blocks`` and ``contours`` are more
-        files: rows or their end posts, areas of blocks or lines that part them, and a raster of
-        heights. ``guess_blocks="yes"`` parts the plot as its outline asks for.
+        What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``,
+        ``columns={"lon": "Ost", "lat": "Nord"}``, ``near=(35.1, 30.3)``; and ``doubles="one"`` of
+        plants measured twice. ``rows``, ``blocks``, ``contours`` and ``paths`` are more files: rows
+        or their end posts, areas of blocks or lines that part them, a raster of heights, and lines
+        along which insects enter. ``guess_blocks=True`` parts the plot as its outline asks for.
 
     Returns
     -------
@@ -105,7 +113,7 @@ def read_plot(
     must_be_of("A plot's planting", "PlantingChoices | None", planting)
     must_be_of("A plot's gate", "tuple[float, float] | None", gate)
     drawn: dict[str, Any] = {name: options.pop(name) for name in _DRAWN if name in options}
-    drawn["guess_blocks"] = options.pop("guess_blocks", "no") in {"yes", "true", "1"}
+    drawn["guess_blocks"] = yes_or_no("guess_blocks", options.pop("guess_blocks", False))
     chosen = _chosen(PlotOptions(), options)
     if feature is not None:
         chosen = chosen.choose("feature", str(feature))
@@ -118,7 +126,7 @@ def read_plot(
     return ready.plot
 
 
-def read_plots(source: Source, **options: str) -> tuple[Field, ...]:
+def read_plots(source: Source, **options: object) -> tuple[Field, ...]:
     """Return the outlines of all plots of a file, without plants; as `read_plot` otherwise.
 
     Examples
@@ -133,7 +141,7 @@ def read_plots(source: Source, **options: str) -> tuple[Field, ...]:
     return read.value
 
 
-def read_records(source: Source, near: Plot, **options: str) -> Observations:
+def read_records(source: Source, near: Plot, **options: object) -> Observations:
     """Return the dated pest records on a plot or near it.
 
     Parameters
@@ -144,7 +152,8 @@ def read_records(source: Source, near: Plot, **options: str) -> Observations:
     near
         The plot; records more than 100 m away are kept apart.
     **options
-        What the file leaves open: ``date_order="dmy"``, ``crs="EPSG:2039"``.
+        What the file leaves open: ``date_order="dmy"``, ``crs="EPSG:2039"``,
+        ``columns={"date": "Datum", "count": "Milben"}``.
 
     Returns
     -------
@@ -178,7 +187,7 @@ def read_records(source: Source, near: Plot, **options: str) -> Observations:
     return read.value
 
 
-def read_inspections(source: Source, plot: Plot, **options: str) -> Inspections:
+def read_inspections(source: Source, plot: Plot, **options: object) -> Inspections:
     r"""Return what was found at which plants, from a route file filled in or any table of finds.
 
     Parameters
@@ -252,7 +261,7 @@ def read_pest(said: str) -> Pest:
     return pest_of(said)
 
 
-def read_weather(source: Source, plot: Plot, **options: str) -> Weather:
+def read_weather(source: Source, plot: Plot, **options: object) -> Weather:
     r"""Return the weather of a station's table, or of IPM Decisions' JSON, by hours or days.
 
     Parameters
@@ -312,9 +321,10 @@ def _must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - 
         must_be_name_of_file(what, source)
 
 
-def _chosen(options: Any, more: dict[str, str]) -> Any:  # noqa: ANN401 - options of any kind
+def _chosen(options: Any, more: dict[str, object]) -> Any:  # noqa: ANN401 - options of any kind
     for name, value in more.items():
-        options = options.choose(name, str(value))
+        for said in as_texts(name, value):
+            options = options.choose(name, said)
     return options
 
 

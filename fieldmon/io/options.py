@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Literal, Self, TypeAlias
@@ -193,9 +194,10 @@ class ReadOptions:
             raise SettingError(
                 worded("There is no option {option!r} for this file.", option=option)
             )
-        now = getattr(self, option)
-        if isinstance(now, bool):
-            return replace(self, **{option: value.lower() in {"yes", "true", "1"}})  # type: ignore[arg-type]
+        if isinstance(getattr(self, option), bool):
+            return replace(self, **{option: yes_or_no(option, value)})  # type: ignore[arg-type]
+        if option == "header":
+            return replace(self, header="yes" if yes_or_no(option, value) else "no")
         if option == "near":
             return replace(self, near=_lonlat(value))
         return replace(self, **{option: value})  # type: ignore[arg-type]
@@ -245,6 +247,33 @@ class RecordOptions(ReadOptions):
                     date_order=self.date_order,
                 )
             )
+
+
+_YES, _NO = {"yes", "true", "1", "on"}, {"no", "false", "0", "off"}
+
+
+def yes_or_no(option: str, said: object) -> bool:
+    """Return whether an option is said to hold: True, or yes, true, 1 or on in any case."""
+    word = str(said).strip().casefold()
+    if word not in _YES | _NO:
+        raise SettingError(
+            worded("{option} must be yes or no, but it is {said!r}.", option=option, said=said)
+        )
+    return word in _YES
+
+
+def as_texts(option: str, said: object) -> tuple[str, ...]:
+    """Return an option told in Python as the texts that `ReadOptions.choose` takes.
+
+    ``columns`` may be a dict of columns by role, or several of ``"role=column"``; ``near`` a pair.
+    """
+    if option == "columns" and isinstance(said, Mapping):
+        return tuple(f"{role}={column}" for role, column in said.items())
+    if option == "columns" and isinstance(said, list | tuple):
+        return tuple(map(str, said))
+    if option == "near" and isinstance(said, list | tuple):
+        return (",".join(map(str, said)),)
+    return (str(said),)
 
 
 def _lonlat(text: str) -> tuple[float, float]:

@@ -12,6 +12,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
+from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.observations import Observations
@@ -28,6 +31,7 @@ from fieldmon.io.read import (
     read_plots,
     read_rows,
 )
+from fieldmon.io.readers.nearby import distance_m
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
@@ -36,12 +40,10 @@ from fieldmon.plot.plot import Plot, planting_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
-    from fieldmon.io.readers.crews import Crew
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
         CanopySource,
@@ -54,6 +56,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+_FARTHEST_GATE_M = 10_000.0
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 
 
@@ -100,11 +103,16 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     """Return the plot with its plants, and those measured on it."""
     sources, measured = request.sources, None
     if sources.plot is None and sources.plants is None and sources.rows is not None:
-        return _along_rows(request, hearing), None
+        laid = _along_rows(request, hearing)
+        _refuse_far_gate(sources, laid.plot.field)
+        return laid, None
     if sources.plot is None:
         measured = _measured(sources, hearing)
-        return lay_around(sources, measured, request.planting), measured
+        laid = lay_around(sources, measured, request.planting)
+        _refuse_far_gate(sources, laid.plot.field)
+        return laid, measured
     field = one_of(_fields(sources, hearing))
+    _refuse_far_gate(sources, field)
     if sources.plants is not None:
         measured = _measured(sources, hearing)
         field = with_plants(field, measured)
@@ -113,6 +121,24 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     field = _with_paths((field,), sources, hearing)[0]
     gate = field.gate if sources.gate is None else sources.gate
     return lay(replace(field, gate=gate), request.planting), measured
+
+
+def _refuse_far_gate(sources: PlotSources, field: Field) -> None:
+    """Raise `SettingError` where the gate told by hand lies where nobody drives from in a day."""
+    if sources.gate is None:
+        return
+    away_m = float(distance_m(np.array([sources.gate]), field)[0])
+    if away_m > _FARTHEST_GATE_M:
+        raise SettingError(
+            worded(
+                "The gate at {lon:g}, {lat:g} (longitude, latitude) lies {away} from {name}. "
+                "Correct it.",
+                lon=sources.gate[0],
+                lat=sources.gate[1],
+                away=distance_figure(away_m),
+                name=field.name,
+            )
+        )
 
 
 def _refuse_wrong_rows(field: Field, by_hand: PlantingChoices, hearing: _Hearing) -> None:
@@ -147,11 +173,7 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
     if (file := sources.plot) is None:
         raise SettingError(worded("Give a file of plots."))
 
-    def read() -> Imported[tuple[tuple[Field, ...], dict[str, Crew]]]:
-        plots, crews = read_crews(file, sources.plot_options)
-        return plots.having((plots.value, crews))
-
-    fields, crews = hearing.read("plot", file, read)
+    fields, crews = hearing.read("plot", file, partial(read_crews, file, sources.plot_options))
     hearing.say("plot", file, gathered(one for each in fields for one in said_of_place(each)))
     fields = with_rows(fields, sources, request.planting, hearing)
     fields = _with_paths(fields, sources, hearing)

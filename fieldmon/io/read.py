@@ -58,9 +58,9 @@ def read_plots(source: Source, options: PlotOptions | None = None) -> Imported[t
 
 def read_crews(
     source: Source, options: PlotOptions | None = None
-) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
+) -> Imported[tuple[tuple[Field, ...], dict[str, Crew]]]:
     """Return the plots of a source as `read_plots`, and by name who works on each."""
-    read: tuple[Imported[tuple[Field, ...]], dict[str, Crew]] = _read(
+    read: Imported[tuple[tuple[Field, ...], dict[str, Crew]]] = _read(
         "crews", source, options or PlotOptions()
     )
     return read

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from datetime import timedelta
 from functools import cached_property
 from numbers import Real
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -51,6 +51,18 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 #: who begins later than this after the day's start, or sooner before it, has hours of their own
 LATE_S = 300.0
+
+
+class Besides(NamedTuple):
+    """Whoever works beside some others: what is not theirs is of this one.
+
+    Parameters
+    ----------
+    others
+        Their names.
+    """
+
+    others: tuple[str, ...]
 
 
 class _Last(Generic[_T]):
@@ -424,7 +436,7 @@ class History:
         day: int,
         morning: Belief,
         now_s: float | None = None,
-        who: str | None = None,
+        who: str | Besides | None = None,
     ) -> Scene:
         """Return the scene of a day as it stands after what was recorded of it.
 
@@ -440,7 +452,8 @@ class History:
             Seconds since midnight; None: when the last inspection recorded was done, by its own
             time or, where none was noted, by what driving and looking cost.
         who
-            Whose scene it is, of a team; None: all inspections were made by the one who works.
+            Whose scene it is, of a team or beside others; None: all inspections were made by the
+            one who works.
         """
         aisles, robot = shift.aisles, shift.robot
         today, believed = self.on(day), in_sight(self.evening(morning, day))
@@ -464,7 +477,7 @@ class History:
             key=shift.streams.key("sampler", day),
         )
 
-    def begun_s(self, shift: Shift, day: int, who: str | None = None) -> float:
+    def begun_s(self, shift: Shift, day: int, who: str | Besides | None = None) -> float:
         """Return the second of a day at which somebody's work began; `who` is that of `scene`.
 
         It is the shift's, unless the first inspection shows that it was more than `LATE_S` off:
@@ -473,7 +486,7 @@ class History:
         resting = resting_place(shift.robot, self._trail(day, who))
         return _begun_s(shift, made_by(self.on(day), who), resting)
 
-    def _trail(self, day: int, who: str | None) -> NDArray[np.int32]:
+    def _trail(self, day: int, who: str | Besides | None) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
         earlier = made_by(self.until(day - 1).inspected, who)
         if not len(earlier):
@@ -491,11 +504,13 @@ def in_hindsight(evening: Belief, night: Spread) -> Belief:
     return evening.in_hindsight(night) if isinstance(evening, TracedPairs) else evening
 
 
-def made_by(inspections: Inspections, who: str | None) -> Inspections:
+def made_by(inspections: Inspections, who: str | Besides | None) -> Inspections:
     """Return those that somebody made; None: all."""
     if who is None:
         return inspections
     names = np.array([person(str(name)) for name in inspections.who], np.str_)
+    if isinstance(who, Besides):
+        return inspections.take(~np.isin(names, [person(one) for one in who.others]))
     return inspections.take(names == person(who))
 
 

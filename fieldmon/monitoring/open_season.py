@@ -28,7 +28,7 @@ from fieldmon.monitoring import (
     tables,
     treatments,
 )
-from fieldmon.monitoring.history import History, Shift
+from fieldmon.monitoring.history import Besides, History, Shift
 from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
 from fieldmon.monitoring.mornings import take as take_mornings
@@ -170,8 +170,9 @@ class OpenSeason:
     def settings_on(self, on: date) -> MonitoringSettings:
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
 
-        As when the day was planned last or, if it never was, first recorded. What is believed is
-        of now, for all days (but see `fieldmon.monitoring.told_detection`).
+        As when the day was planned before its work or, if it never was, first recorded: whatever is
+        planned of it later changes nothing, see `season_log.worked_by`. What is believed is of now,
+        for all days (but see `fieldmon.monitoring.told_detection`).
         """
         return self._counted_on(on)
 
@@ -180,17 +181,18 @@ class OpenSeason:
     ) -> MonitoringSettings:
         """Return what counted on the first of some days that was planned or recorded; else now."""
         with self.store.reading() if read is None else nullcontext(read) as db:
-            now = settings_of(db)
-            moments = (season_log.planned_last(db, str(day)) for day in days)
-            moment = next((one for one in moments if one is not None), None)
-            parts = {} if moment is None else settings_log.at(db, moment)
-        if not parts:
-            return now
-        then = from_json(parts)
+            now, parts = settings_of(db), settings_log.of(db, self._chosen_on(db, *days))
+        then = from_json(parts) if parts else now
         return replace(
             now, robot=then.robot, starts=then.starts, sampler=then.sampler,
             sampler_settings=then.sampler_settings, team=then.team, teamwork=then.teamwork,
         )  # fmt: skip
+
+    def _chosen_on(self, db: sqlite3.Connection, *days: date) -> settings_log.Marks:
+        """Return by which settings the first of some days was worked; else those of now."""
+        clock = local_clock(self.plot.field)
+        worked = (season_log.worked_by(db, day, clock) for day in days)
+        return next((one for one in worked if one is not None), None) or settings_log.marks(db)
 
     @property
     def was_changed(self) -> bool:
@@ -212,9 +214,15 @@ class OpenSeason:
     ) -> MonitoringSettings:
         if not self._is_earlier(contents, on):
             return contents.settings
-        recorded = contents.history.inspections.date
-        before = recorded[recorded <= np.datetime64(on, "D")][-1:].tolist()
-        return self._counted_on(on, *before, read=read)
+        return self._counted_on(on, *_recorded_before(contents, on), read=read)
+
+    def _chosen_for(
+        self, contents: SeasonContents, on: date, db: sqlite3.Connection
+    ) -> settings_log.Marks:
+        """Return which settings `_planned_by` gives."""
+        if not self._is_earlier(contents, on):
+            return settings_log.marks(db)
+        return self._chosen_on(db, on, *_recorded_before(contents, on))
 
     def is_earlier(self, on: date) -> bool:
         """Return whether the day `on` goes by what counted then, see `planned_by`."""
@@ -267,21 +275,21 @@ class OpenSeason:
         with self._lock, self.store.reading() as db:  # all of one moment
             return self._scene(self._read(db), on, now, who, db)
 
-    def begun_s(self, on: date, who: str = "") -> float:
-        """Return the second of the day `on` at which work began, or will; `who` as in `scene`.
+    def begun_s(self, on: date, who: str | Besides = "") -> float:
+        """Return the second of the day `on` at which work began, or will; `who` as in `plan`.
 
         That is as the settings say, unless the first inspection was made minutes before or after.
         """
         with self._lock:
             return self._begun_s(self._now(), on, who)
 
-    def _begun_s(self, contents: SeasonContents, on: date, who: str) -> float:
+    def _begun_s(self, contents: SeasonContents, on: date, who: str | Besides) -> float:
         shift, name = self._shift(self._planned_by(contents, on), who)
         return contents.history.begun_s(shift, contents.settings.day(on), name)
 
     def _scene(
-        self, contents: SeasonContents, on: date, now: time | None = None, who: str = "",
-        read: sqlite3.Connection | None = None,
+        self, contents: SeasonContents, on: date, now: time | None = None,
+        who: str | Besides = "", read: sqlite3.Connection | None = None,
     ) -> Scene:  # fmt: skip
         settings, day = self._planned_by(contents, on, read), contents.settings.day(on)
         now_s = None if now is None else seconds(now)
@@ -298,10 +306,12 @@ class OpenSeason:
             self._aisles[gate] = self.plot.with_gate(gate).aisles
         return self._aisles[gate]
 
-    def _shift(self, settings: MonitoringSettings, who: str) -> tuple[Shift, str | None]:
+    def _shift(
+        self, settings: MonitoringSettings, who: str | Besides
+    ) -> tuple[Shift, str | Besides | None]:
         """Return how somebody works, and whose inspections are theirs; None: everybody's."""
         starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
-        member = settings.at_work(who)
+        member = settings.at_work(who) if isinstance(who, str) else None
         if member is None:
             return Shift(self.plot.aisles, settings.robot, starts_s, streams), who or None
         aisles, starts_s = self.aisles_from(member.gate), starts_s + member.starts_s
@@ -422,6 +432,13 @@ def nothing_yet(
         recorded=record_states(plot.grid, known) if len(known) else None,
         pest_in_weather=settings.pest_in_weather(),
     )
+
+
+def _recorded_before(contents: SeasonContents, on: date) -> list[date]:
+    """Return the last day up to the day `on` on which anything was recorded, if there is one."""
+    recorded = contents.history.inspections.date
+    before: list[date] = recorded[recorded <= np.datetime64(on, "D")][-1:].tolist()
+    return before
 
 
 def _mean_told(settings: MonitoringSettings) -> float:

@@ -27,7 +27,12 @@ _TABLE = (
 )
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _MOST_DAYS = 14
-_LAST_ROUTE = "(SELECT fid FROM routes ORDER BY day DESC, revision DESC LIMIT 1)"
+#: SQL of the last route of each who has one on a day; nobody's own is that of who works alone
+_LAST_ROUTES = (
+    '(SELECT max("fid") FROM "routes" WHERE "date" = {day} AND ("who" = \'\') = (SELECT "who" = '
+    '\'\' FROM "routes" WHERE "date" = {day} ORDER BY "fid" DESC LIMIT 1) GROUP BY "who")'
+)
+_TODAYS = _LAST_ROUTES.format(day='(SELECT max("date") FROM "routes")')
 _SHAPES = {"POINT": "Point", "LINESTRING": "Line", "MULTIPOLYGON": "Polygon"}
 _RESULTS = (("found infested", "found"), ("looked clean", "clean"), ("could not look", "skipped"))
 _HIDDEN = ("fid", "plant", "line", "number", "day", "time", "batch", "digest", "undone")
@@ -73,8 +78,8 @@ _TODAY = (
     Shown("inspections", "Findings", '"undone" = 0', edited=True),
     Shown("photo_places", "Photos"),
     Shown("photos_asked", "Photos asked for", '"ended" IS NULL'),
-    Shown("stops", "Stops today", f'"route" = {_LAST_ROUTE}'),
-    Shown("routes", "Route today", f'"fid" = {_LAST_ROUTE}'),
+    Shown("stops", "Stops today", f'"route" IN {_TODAYS}'),
+    Shown("routes", "Route today", f'"fid" IN {_TODAYS}'),
 )
 _PLOT = (
     Shown("hot_spots", "Hot spots"),
@@ -108,8 +113,9 @@ def keep(db: sqlite3.Connection, file: str) -> None:
 
 
 def _last_of(on: str) -> str:
-    """Return SQL of the last route kept for a day."""
-    return f'"fid" IN (SELECT max("fid") FROM "routes" WHERE "date" = \'{on}\')'  # noqa: S608 - a date of ours
+    """Return SQL of the last route of each who has one on a day."""
+    day = f"'{on}'"
+    return f'"fid" IN {_LAST_ROUTES.format(day=day)}'
 
 
 def _packed(project: str) -> str:

@@ -190,15 +190,17 @@ def scouts_in(db: sqlite3.Connection) -> tuple[Scout, ...]:
     return _last(map(_scout, rows))
 
 
-def scouts_on(db: sqlite3.Connection, clock: LocalClock, on: date) -> tuple[Scout, ...]:
-    """Return who had a key on a day: what was planned of it stays whatever keys are made after it.
+def scouts_on(
+    db: sqlite3.Connection, clock: LocalClock, on: date, *, is_over: bool = True
+) -> tuple[Scout, ...]:
+    """Return who has a key on a day: what was planned of it stays whatever keys are made after it.
 
-    One that was made later counts where a route of the day was given to that person after it, one
-    that was taken back only once the day was over.
+    One that was taken back counts if the day was over by then. Of a day that `is_over` one that was
+    made later counts only where a route of the day was given to that person after it.
     """
     rows = db.execute(f"SELECT {_COLUMNS} FROM scouts ORDER BY made, fid")  # noqa: S608 - ours
     had = [one for one in map(_scout, rows) if not one.ended or _date(clock, one.ended) > on]
-    if any(_date(clock, one.made) > on for one in had):
+    if is_over and any(_date(clock, one.made) > on for one in had):
         given = {(person(one.who), one.at) for one in season_log.given_out(db)
                  if one.date == str(on)}  # fmt: skip
         had = [

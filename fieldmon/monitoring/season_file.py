@@ -230,8 +230,8 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                         "window changed them. Look again and repeat your change."
                     )
                 )
-            before = settings_log.now(db)
-            settings_log.write(db, as_json(settings))
+            before = settings_log.as_written_now(settings_log.now(db))
+            settings_log.change(db, settings)
             self._log_change(db, before, who)
             self._refresh(db)
 
@@ -247,14 +247,14 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         Raise `SettingError` if there is none.
         """
         with self._lock, self.store.writing() as db:
-            before = settings_log.now(db)
+            before = settings_log.as_written_now(settings_log.now(db))
             settings = settings_log.undo(db)
             self._log_change(db, before, who)
             self._refresh(db)
         return settings
 
     def _log_change(self, db: sqlite3.Connection, before: settings_log.Parts, who: str) -> None:
-        now = settings_log.now(db)
+        now = settings_log.as_written_now(settings_log.now(db))
         names = [name for name in now if now[name] != before.get(name)]
         season_log.append(
             db, "changed", who,

@@ -17,14 +17,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import estimate, worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import schema, settings_log
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable, Iterator, Sequence
+    from datetime import date
 
+    from fieldmon.monitoring.settings_log import Marks
     from fieldmon.plot.local_clock import LocalClock
 
 #: in `fieldmon`: how many entries the log has, and the last one's digest
@@ -103,6 +105,10 @@ _SAID = {
 }
 
 
+# what is done by settings, which the entry names: see `settings_log.marks`
+_BY_SETTINGS = ("planned", "seen")
+
+
 # -- writing
 
 
@@ -137,6 +143,8 @@ def append(
     number, before = _head(db)
     if states:
         what["states"] = states
+    if kind in _BY_SETTINGS and (chosen := settings_log.marks(db)):
+        what.setdefault("by", chosen)
     content = _canonical(
         {"entry": number + 1, "at": utc_text(), "kind": kind, "who": who, "what": what}
     )
@@ -254,33 +262,83 @@ def entries(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
     return tuple(made)
 
 
-# entries of other copies that were merged are among them
+class PlannedOrSeen(NamedTuple):
+    """What the log says of some days: that they were planned, or recorded.
+
+    Parameters
+    ----------
+    kind
+        ``"planned"`` or ``"seen"``.
+    at
+        When, UTC.
+    low, high
+        The first and the last of the days (ISO).
+    by
+        By which settings; None: an earlier version did not say.
+    """
+
+    kind: str
+    at: str
+    low: str
+    high: str
+    by: Marks | None
+
+    def chosen(self, db: sqlite3.Connection) -> Marks:
+        """Return by which settings it was done."""
+        return settings_log.marks(db, self.at) if self.by is None else self.by
+
+
+# entries of other copies that were merged are among them; what was undone was not worked
 _PLANNED_AND_SEEN = (
-    "WITH said (entry) AS (SELECT entry FROM log UNION ALL SELECT json_extract(value, '$.entry') "
-    "FROM log, json_each(log.entry, '$.what.theirs')) "
-    "SELECT json_extract(entry, '$.kind') AS kind, json_extract(entry, '$.at'),"
+    "WITH said (entry, own) AS (SELECT entry, 1 FROM log UNION ALL "
+    "SELECT json_extract(value, '$.entry'), 0 FROM log, json_each(log.entry, '$.what.theirs')) "
+    "SELECT json_extract(entry, '$.kind') AS kind, json_extract(entry, '$.at') AS at,"
     " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.from')) AS low,"
-    " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.to')) AS high"
-    " FROM said WHERE kind IN ('planned', 'seen') AND low NOTNULL AND high NOTNULL"
+    " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.to')) AS high,"
+    " json_extract(entry, '$.what.by'), own"
+    " FROM said WHERE kind IN ('planned', 'seen') AND low <= coalesce(?1, low)"
+    " AND high >= coalesce(?1, high)"
+    " AND NOT (own AND EXISTS (SELECT 1 FROM batches WHERE undone = 1"
+    " AND fid = json_extract(entry, '$.what.batch')"
+    " AND source = json_extract(entry, '$.what.source')))"
 )
 
 
-def planned_and_seen(db: sqlite3.Connection) -> list[tuple[str, str, str, str]]:
-    """Return what was planned and recorded: ``"planned"`` or ``"seen"``, when, and of which days.
+def planned_and_seen(db: sqlite3.Connection, on: date | None = None) -> list[PlannedOrSeen]:
+    """Return what was planned and recorded and not undone, in order; of one day, or of all."""
+    last = {0: "", 1: ""}
+    said = []
+    for kind, at, low, high, by, own in db.execute(_PLANNED_AND_SEEN, (on and str(on),)):
+        last[own] = max(last[own], at)  # a clock may be set back: what stands below is later
+        marks = None if by is None else json.loads(by)
+        said.append((last[own], PlannedOrSeen(kind, at, low, high, marks)))
+    return [one for _, one in sorted(said, key=lambda each: each[0])]
 
-    When is UTC, as the log has it; the days (ISO) are the first and the last.
+
+# what was recorded before an older season's file had a log
+_SEEN_BEFORE = (
+    "SELECT at FROM batches WHERE at < (SELECT json_extract(entry, '$.at') FROM log ORDER BY fid "
+    "LIMIT 1) AND EXISTS (SELECT 1 FROM inspections WHERE batch = batches.fid AND date = ? "
+    "AND undone = 0 AND digest NOTNULL) ORDER BY at LIMIT 1"
+)
+
+
+def worked_by(db: sqlite3.Connection, on: date, clock: LocalClock) -> Marks | None:
+    """Return by which settings a day was worked; None: the file says nothing of it.
+
+    Those of its last plan before the last of it was recorded on the day itself, by the plot's
+    clock, or, if nothing was, before the first of it. A day that was not planned before was worked
+    by what counted when it was first recorded. If nothing was recorded, it is the last plan.
     """
-    return db.execute(_PLANNED_AND_SEEN).fetchall()
-
-
-def planned_last(db: sqlite3.Connection, on: str) -> str | None:
-    """Return when a day (ISO) was planned last or, if it never was, when it was first recorded.
-
-    UTC, as the log has it; None where the log says nothing of the day.
-    """
-    of_day = [(kind, at) for kind, at, low, high in planned_and_seen(db) if low <= on <= high]
-    planned, seen = ([at for kind, at in of_day if kind == one] for one in ("planned", "seen"))
-    return max(planned, default=None) or min(seen, default=None)
+    of_day = planned_and_seen(db, on)
+    seen = [k for k, one in enumerate(of_day) if one.kind == "seen"]
+    that_day = [k for k in seen if clock.at(datetime.fromisoformat(of_day[k].at)).date() == on]
+    if not that_day and (before := db.execute(_SEEN_BEFORE, (str(on),)).fetchone()):
+        return settings_log.marks(db, before[0])
+    if not seen:
+        return of_day[-1].chosen(db) if of_day else None
+    plans = [one for one in of_day[: (that_day or seen[:1])[-1]] if one.kind == "planned"]
+    return (plans[-1] if plans else of_day[seen[0]]).chosen(db)
 
 
 def refuse_changed(

@@ -13,7 +13,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes, scouts, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
-from fieldmon.monitoring.history import made_by
+from fieldmon.monitoring.history import Besides, made_by
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.monitoring.settings import seconds
@@ -25,6 +25,7 @@ from fieldmon.planning.team_worker import Posted
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from datetime import date, time
 
     from numpy.typing import NDArray
@@ -42,7 +43,7 @@ class SeasonPlans(OpenSeason):
 
     def plan(
         self, on: date, now: time | None = None, *, keep: bool = True,
-        wishes: Wishes | None = None, who: str | None = None,
+        wishes: Wishes | None = None, who: str | Besides | None = None,
     ) -> DayPlan:  # fmt: skip
         """Plan what is left of a day from all that is known; see `planned_by`.
 
@@ -58,11 +59,18 @@ class SeasonPlans(OpenSeason):
         wishes
             What people want of the day besides.
         who
-            Whose day, of a team; None: the first one's. All are planned, see `plan_each`.
+            Whose day, of a team; None: the first one's. All are planned, see `plan_each`. Or that
+            of the season's robot `Besides` others, who is not where they inspected last.
         """
-        days = self.plan_each(on, now, keep=keep, wishes=wishes)
-        team = self.settings.team
-        return days[team.index(self.settings.member(who)) if who and team else 0]
+        with self._lock:
+            contents = self._now()
+            settings = self._planned_by(contents, on)
+            if isinstance(who, Besides):
+                scene = self._scene(contents, on, now, who)
+                alone = (plan_in(scene, settings.decides(), wishes),)
+                return self._given(contents, on, alone, (who,), ("",), keep=keep)[0]
+            days = self.plan_each(on, now, keep=keep, wishes=wishes)
+        return days[settings.team.index(settings.member(who)) if who and settings.team else 0]
 
     def plan_each(
         self, on: date, now: time | None = None, *, keep: bool = True,
@@ -128,16 +136,18 @@ class SeasonPlans(OpenSeason):
 
     def _given(
         self, contents: SeasonContents, on: date, days: tuple[DayPlan, ...],
-        who: tuple[str, ...], kept_as: tuple[str, ...] | None = None, *, keep: bool = True,
+        who: Sequence[str | Besides], kept_as: tuple[str, ...] | None = None, *,
+        keep: bool = True,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Return the days of those named, each route with its notes; keep the routes."""
-        names, settings = who if kept_as is None else kept_as, self._planned_by(contents, on)
+        settings = self._planned_by(contents, on)
+        names = tuple(str(one) for one in who) if kept_as is None else kept_as
         noted = tuple(
             self._noted(settings, today, (name, self._begun_s(contents, on, one)))
             for today, name, one in zip(days, names, who, strict=True)
         )
         if keep:
-            self._keep(settings, noted, names)
+            self._keep(contents, on, noted, names)
         return noted
 
     def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
@@ -145,10 +155,20 @@ class SeasonPlans(OpenSeason):
 
         Of a team it is that of `who` is named, or of the first; a scout beside it has one, too.
         """
-        with self.reading() as (db, settings):
+        with self._lock, self.store.reading() as db:  # both of one moment
+            settings = self._planned_by(self._read(db), on, db)
             named = settings.at_work(who)
             last = routes.kept_last(db, settings.day(on))
             return routes.plants(db, last.get(person(who if named is None else named.name)))
+
+    def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
+        """Return who has a code for work on the day `on` now, by `person`, and of which rows."""
+        return self._codes(on, is_over=False)
+
+    def _codes(self, on: date, *, is_over: bool) -> dict[str, tuple[int, int] | None]:
+        with self.store.reading() as db:
+            known = scouts.scouts_on(db, local_clock(self.plot.field), on, is_over=is_over)
+        return {person(one.name): one.rows for one in known}
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
@@ -160,8 +180,7 @@ class SeasonPlans(OpenSeason):
             contents = self._read(db)
             day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
             kept = routes.of_day(db, day)
-            out_then = scouts.scouts_on(db, local_clock(self.plot.field), on)
-            codes = {person(one.name): one.rows for one in out_then}
+            codes = self._codes(on, is_over=self._is_earlier(contents, on))
             last = routes.kept_last(db, day)
         if who is None:
             out = _out(last, codes, self._planned_by(contents, on))
@@ -178,12 +197,15 @@ class SeasonPlans(OpenSeason):
         )
 
     def _keep(
-        self, settings: MonitoringSettings, noted: tuple[DayPlan, ...], names: tuple[str, ...]
-    ) -> None:
+        self, contents: SeasonContents, on: date, noted: tuple[DayPlan, ...],
+        names: tuple[str, ...],
+    ) -> None:  # fmt: skip
         """Keep routes; those that are kept already are not written: that would wait for readers."""
+        settings = self._planned_by(contents, on)
         named = [(today, who) for today, who in zip(noted, names, strict=True) if len(today.route)]
         with self.store.reading() as db:
             is_kept = all(routes.is_kept(db, today, who) for today, who in named)
+            by = self._chosen_for(contents, on, db)
         if is_kept:
             self._keep_what_was_worked_out()
             return
@@ -195,7 +217,7 @@ class SeasonPlans(OpenSeason):
                 if routes.keep(db, settings, self.label, today, who)
             ]
             for today, who in kept:
-                season_log.append(db, "planned", who, **routes.in_words(settings, today))
+                season_log.append(db, "planned", who, by=by, **routes.in_words(settings, today))
             if kept:
                 self._refresh(db, named[0][0].scene.day, before)
 

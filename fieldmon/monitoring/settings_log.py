@@ -13,7 +13,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import insert
-from fieldmon.monitoring.settings import from_json
+from fieldmon.monitoring.settings import as_json, from_json
 from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: each part of the settings as JSON, by name
 Parts = dict[str, str]
+#: when each part of the settings was chosen, by name
+Marks = dict[str, str]
 
 
 def now(db: sqlite3.Connection) -> Parts:
@@ -31,15 +33,38 @@ def now(db: sqlite3.Connection) -> Parts:
     return dict(db.execute("SELECT name, value FROM settings ORDER BY fid").fetchall())
 
 
+# the clock of a computer may be set back: what was chosen later stands below
+_UNTIL = (
+    " FROM settings WHERE fid <= coalesce((SELECT max(fid) FROM settings WHERE changed <= ?1),"
+    " (SELECT max(fid) FROM settings WHERE changed ="
+    " (SELECT changed FROM settings ORDER BY fid LIMIT 1))) ORDER BY fid"
+)
+
+
 def at(db: sqlite3.Connection, moment: str) -> Parts:
-    """Return what counted at a moment (UTC, as `utc_text` writes it); nothing before the first."""
-    counted = "SELECT name, value FROM settings WHERE changed <= ? ORDER BY fid"
-    return dict(db.execute(counted, (moment,)).fetchall())
+    """Return what counted at a moment (UTC, as `utc_text` has it); before the first, the first."""
+    return dict(db.execute("SELECT name, value" + _UNTIL, (moment,)).fetchall())
+
+
+def marks(db: sqlite3.Connection, moment: str | None = None) -> Marks:
+    """Return when what counts now, or counted at a `moment`, was chosen: `of` finds it by that."""
+    if moment is not None:
+        return dict(db.execute("SELECT name, changed" + _UNTIL, (moment,)).fetchall())
+    return dict(db.execute("SELECT name, changed FROM settings ORDER BY fid").fetchall())
+
+
+def of(db: sqlite3.Connection, chosen: Marks) -> Parts:
+    """Return what was chosen then; nothing where a part of it is not in the file."""
+    wanted = "SELECT name, value FROM settings WHERE (name, changed) IN (VALUES {}) ORDER BY fid"
+    values = ", ".join(["(?, ?)"] * len(chosen))
+    said = [text for one in chosen.items() for text in one]
+    parts = dict(db.execute(wanted.format(values), said).fetchall()) if chosen else {}
+    return parts if parts.keys() == chosen.keys() else {}
 
 
 def all_moments(db: sqlite3.Connection) -> list[str]:
     """Return when anything was chosen (UTC), the first time first."""
-    chosen = db.execute("SELECT DISTINCT changed FROM settings ORDER BY changed")
+    chosen = db.execute("SELECT changed FROM settings GROUP BY changed ORDER BY min(fid)")
     return [moment for (moment,) in chosen]
 
 
@@ -57,6 +82,22 @@ def write(db: sqlite3.Connection, parts: Parts) -> list[str]:
     changed = [(name, text, at) for name, text in wanted.items() if before.get(name) != text]
     insert(db, schema.SETTINGS, changed)
     return [name for name, _, _ in changed]
+
+
+def change(db: sqlite3.Connection, settings: MonitoringSettings) -> None:
+    """Keep what differs from what counts now; what an earlier version wrote otherwise stays."""
+    before = now(db)
+    same = as_written_now(before)
+    parts = as_json(settings).items()
+    write(
+        db,
+        {name: before.get(name, text) if same.get(name) == text else text for name, text in parts},
+    )
+
+
+def as_written_now(parts: Parts) -> Parts:
+    """Return settings as this version writes them: an earlier one took some of it for granted."""
+    return {**parts, **as_json(from_json(parts))} if parts else {}
 
 
 # of settings that their own names do not tell

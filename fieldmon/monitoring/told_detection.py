@@ -2,13 +2,14 @@
 
 A day's inspections are read by what it was planned with last before they were recorded, or by what
 counted when the day was first recorded. So another robot, look or team changes nothing of before.
+What is planned again of an earlier day is planned by what counted then, and the log says so.
 """
 
 from __future__ import annotations
 
 import json
 from bisect import bisect_right
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring.season_log import PlannedOrSeen
     from fieldmon.monitoring.settings_log import Parts
 
     Floats = NDArray[np.float64]
@@ -66,83 +68,110 @@ class ToldDetection(NamedTuple):
         return np.array([known[name] for name in who], np.float64)
 
 
-class _Changes(NamedTuple):
-    """When it was told otherwise (UTC), and what; the first counts of all before, too."""
+class _Told(NamedTuple):
+    """All that was ever told, and which of it counted since when."""
 
     since: list[str]
-    told: list[ToldDetection]
+    which: list[int]
+    all: list[ToldDetection]
+
+    def add(self, told: ToldDetection) -> int:
+        """Return which it is."""
+        if told not in self.all:
+            self.all.append(told)
+        return self.all.index(told)
 
     def at(self, moment: str) -> int:
-        """Return which counted at a moment."""
-        return max(bisect_right(self.since, moment) - 1, 0)
+        """Return which counted at a moment (UTC); before the first, the first."""
+        # a clock may be set back, as in `settings_log.at`
+        last = (k for k in reversed(range(len(self.since))) if self.since[k] <= moment)
+        return self.which[next(last, 0)]
+
+
+class _OfDay(NamedTuple):
+    """When a day was planned, in order, and which of what was told that was by.
+
+    And when it was recorded, and by which it was at first.
+    """
+
+    planned: list[str]
+    by: list[int]
+    seen: list[str]
+    first: int | None
+
+    def counted(self, recorded: Iterable[str], told: _Told) -> list[int]:
+        """Return which counted for what was recorded of it at some moments."""
+        if (first := self.first) is None:
+            first = told.at(min(recorded, default=""))
+        before = [bisect_right(self.planned, at) for at in recorded]
+        return [self.by[k - 1] if k else first for k in before]
 
 
 def told_detection(db: sqlite3.Connection, inspections: Inspections, begins: date) -> Floats:
     """Return what each inspection of a season was told to find of what is there, ``(k,)``."""
-    changes = _changes(db)
-    if len(changes.told) == 1:
-        return changes.told[0].by(inspections.who)
-    which = _which(db, inspections, begins, changes)
-    told = np.empty(len(which))
+    told = _told(db)
+    if len(told.all) == 1:
+        return told.all[0].by(inspections.who)
+    which = _which(db, inspections, begins, told)
+    found = np.empty(len(which))
     for k in set(which.tolist()):
-        told[which == k] = changes.told[k].by(inspections.who[which == k])
-    return told
+        found[which == k] = told.all[k].by(inspections.who[which == k])
+    return found
 
 
 def told_at_first(db: sqlite3.Connection) -> float:
     """Return what inspections were told to find when the season began."""
-    return _changes(db).told[0].usual
+    return _told(db).all[0].usual
 
 
-def _changes(db: sqlite3.Connection) -> _Changes:
-    now, changes = settings_log.now(db), _Changes([], [])
+def _told(db: sqlite3.Connection) -> _Told:
+    now, told = settings_log.now(db), _Told([], [], [])
     for moment in settings_log.all_moments(db):
-        told = ToldDetection.in_parts(settings_log.at(db, moment), now)
-        if changes.told[-1:] != [told]:
-            changes.since.append(moment)
-            changes.told.append(told)
-    return changes
+        told.since.append(moment)
+        told.which.append(told.add(ToldDetection.in_parts(settings_log.at(db, moment), now)))
+    return told
 
 
-def _which(
-    db: sqlite3.Connection, inspections: Inspections, begins: date, changes: _Changes
-) -> Ints:
-    """Return which of the changes counted for each inspection."""
-    said = season_log.planned_and_seen(db)
+def _which(db: sqlite3.Connection, inspections: Inspections, begins: date, told: _Told) -> Ints:
+    """Return which of what was told counted for each inspection."""
+    said = _said(db, told)
     dates, first = np.unique(inspections.date, return_index=True)
     which = np.zeros(len(inspections), np.int64)
-    unclear: dict[int, tuple[slice, list[str], list[str]]] = {}
+    unclear: dict[int, tuple[slice, _OfDay]] = {}
     ends = pairwise([*first.tolist(), len(inspections)])
     for on, (low, high) in zip(dates, ends, strict=True):
-        planned, seen = _of(str(on), said)
-        counted = {*_counted(seen, planned, min(seen, default=""), changes)}
+        day = _of(str(on), said)
+        counted = {*day.counted(day.seen, told)}
         if len(counted) == 1:
             which[low:high] = counted.pop()
         else:
             number = int((on - np.datetime64(begins, "D")).astype(int))
-            unclear[number] = slice(low, high), planned, seen
+            unclear[number] = slice(low, high), day
     for number, recorded in _recorded(db, unclear).items():
-        rows, planned, seen = unclear[number]
-        which[rows] = _counted(recorded, planned, min((*seen, *recorded)), changes)
+        rows, day = unclear[number]
+        which[rows] = day.counted(recorded, told)
     return which
 
 
-def _of(on: str, said: Iterable[tuple[str, str, str, str]]) -> tuple[list[str], list[str]]:
-    """Return when a day was planned, in order, and when it was recorded."""
-    of_day = [(kind, at) for kind, at, low, high in said if low <= on <= high]
-    planned, seen = ([at for kind, at in of_day if kind == one] for one in ("planned", "seen"))
-    return sorted(planned), seen
+def _said(db: sqlite3.Connection, told: _Told) -> list[tuple[PlannedOrSeen, int]]:
+    """Return what was planned and recorded, and by which of what was told."""
+    now, said = settings_log.now(db), []
+    known: dict[str, int] = {}
+    for one in season_log.planned_and_seen(db):
+        if (by := repr(one.by)) not in known and one.by is not None:
+            known[by] = told.add(ToldDetection.in_parts(settings_log.of(db, one.by), now))
+        said.append((one, told.at(one.at) if one.by is None else known[by]))
+    return said
 
 
-def _counted(
-    recorded: Iterable[str], planned: list[str], first: str, changes: _Changes
-) -> list[int]:
-    """Return which of the changes counted for what was recorded of a day at some moments.
-
-    `planned` is when it was planned, `first` when anything was first recorded of it.
-    """
-    before = [bisect_right(planned, at) for at in recorded]
-    return [changes.at(planned[k - 1] if k else first) for k in before]
+def _of(on: str, said: Iterable[tuple[PlannedOrSeen, int]]) -> _OfDay:
+    """Return what was said of a day."""
+    of_day = [(one, k) for one, k in said if one.low <= on <= one.high]
+    planned = [(one.at, k) for one, k in of_day if one.kind == "planned"]
+    seen = [(one.at, k) for one, k in of_day if one.kind == "seen"]
+    moments = [*accumulate((at for at, _ in planned), max)]  # a clock may be set back
+    first = min(seen)[1] if seen else None
+    return _OfDay(moments, [k for _, k in planned], [at for at, _ in seen], first)
 
 
 def _recorded(db: sqlite3.Connection, days: Iterable[int]) -> dict[int, list[str]]:

@@ -47,8 +47,8 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     """
     settings, aisles = season.settings_on(on), season.plot.aisles
     robot, starts_s = settings.robot, seconds(settings.starts)
-    if who is not None and settings.team:
-        member = settings.member(who)
+    # a team that was changed since has others
+    if who is not None and (member := settings.named(who)) is not None:
         robot, aisles = member.robot, season.aisles_from(member.gate)
         starts_s += member.starts_s
     history, day = season.history, settings.day(on)

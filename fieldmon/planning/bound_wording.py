@@ -8,6 +8,8 @@ from fieldmon.compute.wording import digits_of_estimate, figure, worded
 
 #: gaps up to this are none, but for rounding
 PROVED = 1e-6
+#: of a smaller share, figures rounded as they are would say more
+_SMALL = 0.01
 
 
 def share_above(held: float, bound: float) -> float:
@@ -38,24 +40,37 @@ def bound_sentence(held: float, bound: float, what: str = FINDS, routes: str = "
 
 
 def _of_route(held: float, bound: float, what: str) -> str:
-    values = {"held": _figure(held), "what": what, "bound": _figure(bound, up=True)}
     gap = share_above(held, bound)
+    digits = _digits_for(held, bound, gap)
+    values = {"held": figure(held, f",.{digits}f"), "what": what}
+    most = figure(_up(bound, digits), f",.{digits}f")
     if gap <= PROVED:
         return worded("{held} {what} expected; no route of these hours can expect more.", **values)
     if not math.isfinite(gap):
         return worded(
             "{held} {what} expected; no route of these hours can expect more than "
-            "{bound}.", **values,
+            "{bound}.", **values, bound=most,
+        )  # fmt: skip
+    share = _up(100.0 * gap, 1)
+    if gap < _SMALL:
+        return worded(
+            "{held} {what} expected; no route of these hours can expect over {share:.1f} % more.",
+            **values, share=share,
         )  # fmt: skip
     return worded(
         "{held} {what} expected; no route of these hours can expect more than "
-        "{bound} ({share:.1f} %).", **values, share=_up(100.0 * gap, 1),
+        "{bound} ({share:.1f} %).", **values, bound=most, share=share,
     )  # fmt: skip
 
 
-def _figure(value: float, *, up: bool = False) -> str:
-    digits = _digits(value)
-    return figure(_up(value, digits) if up else value, f",.{digits}f")
+def _digits_for(held: float, bound: float, gap: float) -> int:
+    """Return decimals as of any estimate; more where the two figures would belie their share."""
+    digits = _digits(held or bound)
+    if not _SMALL <= gap < math.inf:
+        return digits
+    while _up(bound, digits) > round(held, digits) * (1.0 + 2.0 * gap):
+        digits += 1
+    return digits
 
 
 def _digits(value: float) -> int:

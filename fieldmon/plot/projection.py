@@ -35,8 +35,8 @@ def on_both_sides() -> str:
     """Return what to say of a plot that does."""
     return worded(
         "A plot must lie on one side of longitude 180, but this one lies on both, and longitudes "
-        "jump from 180 to -180 there. Bring what lies east of it and what lies west of it as two "
-        "plots."
+        "jump from 180 to -180 there. Write them from 0 to 360, or bring two plots: what lies east "
+        "of it and what lies west."
     )
 
 

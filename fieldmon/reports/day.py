@@ -13,6 +13,7 @@ from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
+from fieldmon.planning.members import person
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import PlannedAndDone, Season
     from fieldmon.planning.route import Route
 
+#: stands where plants have no row, a stop no time, or somebody no name
+NO_ROW = "–"
 # of more rows, three tables stand side by side instead of two
 _MOST_WIDE = 24
 # as many letters as a column has room for, in two tables and in three
@@ -79,8 +82,8 @@ class DayFacts:
     who
         Whose route it is, of a team; empty: that of all who work.
     team
-        Names of those of a team whose results are shown together. Nobody went from one to the
-        next: no times are said, and no way is drawn.
+        Names of those whose results are shown together, of a team or with codes of their own.
+        Nobody went from one to the next: no times are said, and no way is drawn.
     """
 
     name: str
@@ -116,17 +119,30 @@ class DayFacts:
                 begins = shown.notes.start
             names = tuple(one.name for one in settings.team)
             state, done = season.history.known(day), season.history.on(day).inspected
-            came = tuple(sorted({*map(str, done.who)} - {""}))
             return cls(
                 season.plot.field.name, begins,
                 shown, season.evening(on), state,
                 hot_spots(season.plot.grid, state),
                 WorkSettings.of_season(season, on, worked=worked),
-                len(done), np.unique(done.plant[done.result == FOUND]),
+                len(np.unique(done.plant)), np.unique(done.plant[done.result == FOUND]),
                 worked, results_on(season, on), season.planned_and_done(on),
                 who="" if worked else "".join(names[:1]),
-                team=(came or names) if worked and names else (),
+                team=who_came(season, on, names) if worked else (),
             )  # fmt: skip
+
+
+def who_came(season: Season, on: date, team: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Return who inspected on a day, if several did or there is a `team`; else nobody.
+
+    Whoever is named nowhere is one of several.
+    """
+    who = season.history.inspections.on(on).inspected.who
+    came = {person(str(name)): str(name) for name in who}
+    if not team and len(came) < 2:
+        return ()
+    named = sorted(name for name in came.values() if name)
+    unnamed = [NO_ROW] if "" in came and not team else []
+    return (*named, *unnamed) or team
 
 
 def results_on(season: Season, on: date) -> dict[int, int]:
@@ -182,7 +198,8 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     route, n = facts.route, len(facts.chance)
     inspected = KeyFigure(
         words.INSPECTED if facts.worked else words.PLANTS_TO_INSPECT,
-        figure(len(route)), worded(words.OF_PLANTS, n=n),
+        # a plant that was come to twice is one
+        figure(len(np.unique(route.plant))), worded(words.OF_PLANTS, n=n),
     )  # fmt: skip
     hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
     ahead = KeyFigure(
@@ -195,7 +212,6 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     if facts.team:
         names = ", ".join(map(words.isolated, facts.team))
         together = KeyFigure(words.TEAM, figure(len(facts.team)), names)
-        # a plant that two of them came to is one
         return KeyFigures((replace(inspected, value=figure(facts.inspected)), together, done))
     return KeyFigures(
         (
@@ -236,10 +252,6 @@ def legend_block(
         lambda size: maps.legend(size[0], route=route, by_state=by_state, zones=zones),
         (8.0, 8.0), is_read=True,
     )  # fmt: skip
-
-
-#: stands where plants have no row, or a stop has no time
-NO_ROW = "–"
 
 
 def _stops(facts: DayFacts) -> Table:

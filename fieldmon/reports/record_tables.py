@@ -92,7 +92,8 @@ def inspections_table(season: Season) -> Table:
         "date": dates,
         "time": _each(done.second, clock),
         "row": label.line[done.plant].tolist(),
-        "plant": label.number[done.plant].tolist(),
+        # no column "plant": in route files that is the number on the plot, from 0
+        "number": label.number[done.plant].tolist(),
         "lon": lon[of].tolist(),
         "lat": lat[of].tolist(),
         "result": results,

@@ -88,6 +88,15 @@ def test_what_cannot_be_is_a_sentence_and_nothing_is_written(run, season, words,
     assert not made
 
 
+def test_where_no_zone_pays_the_page_is_written_and_the_zones_are_refused(run, season):
+    words = ["decide", season, "--threshold", "5%", "--per-ha", "1e9"]
+    code, out, err, made = run(*words, "-o", "z.gpkg", "-o", "z.html")
+    assert (code, {path.name for path in made}) == (2, {"z.html"})
+    assert "Advice written to z.html" in out
+    assert "pays nowhere. No zones are written." in err
+    assert Season(season).log()[-1].kind == "advised"
+
+
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [("z.png", "advice to print ends in .pdf or .html"), ("none/z.gpkg", "folder none must exist")],

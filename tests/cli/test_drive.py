@@ -2,7 +2,9 @@
 
 import pytest
 
+from fieldmon.drive.charged import ChargedRobot
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.scouts import let_in
 from tests.cli.estate import BEGINS, ZIP, table
 
 PLOT = ("drive", ZIP, "--feature", "Nursery", "--hours", "0.3", "--date", BEGINS)
@@ -46,6 +48,28 @@ def test_a_day_of_a_season_is_one_batch_and_is_not_driven_twice(run, season):
     assert "goes on after plant" in out
     assert f"{batch.rows} inspections of the day before that are in the season only" in out
     assert Season(season).batches() == (batch,)
+
+
+def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
+    run, season, tmp_path, monkeypatch
+):
+    visit, left = ChargedRobot.visit, iter([True] * 3)
+
+    def stopped(robot, errand):
+        if not next(left, False):
+            raise KeyboardInterrupt
+        return visit(robot, errand)
+
+    monkeypatch.setattr(ChargedRobot, "visit", stopped)
+    let_in(Season(season), "Ann", (1, 2))
+    code, out, err, _ = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
+    assert code == 130
+    assert f"3 results of {BEGINS} in the season; the same command goes on" in out
+    assert "those who are out have their own. Left to those with a code for them: rows 1 to" in err
+    assert len(table(tmp_path / "day.stops.csv")) == 3
+    assert len(Season(season).history.inspections) == 3
+    _, _, err, _ = run("plan", season, "--date", BEGINS, "--no-bound", "-o", "r.csv")
+    assert "those who are out have their own" in err
 
 
 def test_where_no_broker_answers_it_is_a_sentence(run):

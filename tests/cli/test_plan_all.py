@@ -49,7 +49,7 @@ def parcels(tmp_path):
     write_geojson(
         tmp_path / "parcels.geojson",
         shapes,
-        hours=[None, 1.5, None, None, 3.0, 3.0],
+        hours=[None, 1.5, "abc", None, 3.0, 3.0],
         robot=["robot", None, "scout", "donkey", None, None],
     )
     return tmp_path / "parcels.geojson"
@@ -68,6 +68,14 @@ def test_every_plot_is_planned_and_those_that_cannot_be_are_named(run, parcels, 
     assert refused == {"Plot 4", "Plot 6"}
     assert "donkey" in rows["Plot 4"]["sentence"]
     assert "refused: Plot 6" in err
+    assert (
+        "Column 'hours' says what cannot be used, and was left aside, of 1 plot: Plot 3 ('abc')"
+        in err
+    )
+    assert "assumed: row spacing 4 m; plant spacing 3 m; " in err
+    assert "speed 2.5 km/h (3 plots: Plot 1, Plot 2, Plot 5)" in err
+    assert "row spacing 4 m; plant" in rows["Plot 1"]["assumed"]
+    assert {rows[name]["file"] for name in refused} == {""}
     assert "4 of 6 plots planned" in out
     folder = parcels.parent / "routes"
     files = {path.name for path in folder.iterdir()} - {"summary.csv"}

@@ -9,8 +9,9 @@ from fieldmon.drive.charged import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Season
+from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.plot.robot import Robot
 
@@ -87,6 +88,46 @@ def test_after_a_crash_it_goes_on_from_the_plant_told_last(season):
     assert day.gone_s <= again.settings.robot.day_s
     times = again.history.inspections.second
     assert (np.diff(times) > 0).all()
+
+
+def noted(plants, second, who=""):
+    n = len(plants)
+    return Inspections.of(
+        np.array(plants, np.int32), np.zeros(n, np.int8), np.datetime64(ON),
+        second=np.linspace(second, second + 60.0 * (n - 1), n), who=np.full(n, who, object),
+    )  # fmt: skip
+
+
+def test_a_day_that_did_not_begin_at_the_seasons_hour_goes_on_at_its_own(season):
+    season.record(noted([0, 1], 34_200.0), "by hand")  # half past nine
+    next_s = season.plan(ON, keep=False).route.notes.start
+    done, day = driven(season, ChargedRobot(found_at))
+    seconds = season.history.on(0).second[2:]
+    assert (np.diff(seconds) >= 1).all()
+    assert 0 <= seconds[0] - (next_s.hour * 3600 + next_s.minute * 60 + next_s.second) < 120
+    assert seconds[-1] == pytest.approx(day.begun_s + day.gone_s, abs=1.0)
+    left_s = season.scene(ON).seconds_left
+    assert left_s == pytest.approx(season.settings.robot.day_s - day.gone_s, abs=2.0)
+    assert len(done.stops) > 5
+
+
+def test_beside_scouts_it_keeps_its_own_place_and_time_and_leaves_their_rows(season):
+    scouts.let_in(season, "Ann", (1, 3))
+    line = season.label.line
+    season.record(noted(np.flatnonzero(line == 2)[:3], 40_000.0, "Ann"), "phone")
+    first = CrashesAfter(4)
+    with pytest.raises(KeyboardInterrupt):
+        driven(season, first)
+    season.record(noted(np.flatnonzero(line == 3)[:3], 50_000.0, "Ann"), "phone again")
+    second = CrashesAfter(4)
+    with pytest.raises(KeyboardInterrupt):
+        driven(season, second)
+    assert first.begun == (pytest.approx(season.plot.aisles.gate_m), 0.0)
+    assert second.begun[0] == pytest.approx(season.plot.aisles.stop_m[first.asked[-1]])
+    assert (line[first.asked + second.asked] > 3).all()
+    seconds = made_by(season.history.on(0), "").second
+    assert (np.diff(seconds) > 0).all()
+    assert seconds[-1] < 6 * 3600.0 + season.settings.robot.day_s
 
 
 def test_a_late_robot_is_planned_for_anew(season):

@@ -1,15 +1,18 @@
 """A team's day in a season: asked and told by each, one batch, planned for all after a find."""
 
+from dataclasses import replace
+
 import pytest
 
 from fieldmon.drive.team_season import TeamSeason
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
 from fieldmon.plot.robot import Robot
-from tests.drive.test_season_day import ON
+from tests.drive.test_season_day import ON, noted
 
 
 def season_of(plot, path, members):
@@ -66,6 +69,34 @@ def test_after_a_crash_each_goes_on_where_it_was_told_of_last(team):
     assert again.member("robot-2").gone_s == pytest.approx(day.gone_s, abs=1.0)
     assert again.member("robot-1").at == -1
     assert plant not in again.member("robot-1").ahead(500)
+
+
+def test_each_goes_on_at_the_time_of_its_own_last_result(team):
+    plant = int(team.days["robot-2"].route.plant[0])
+    team.season.record(noted([plant], 34_200.0, "robot-2"), "by hand")
+    again = TeamSeason(team.season, ON)
+    for name, earliest in (("robot-1", 6 * 3600.0), ("robot-2", 34_200.0)):
+        day = again.member(name)
+        day.ask()
+        day.tell(found=False)
+        last = made_by(team.season.history.on(0), name).second[-1]
+        assert earliest < last < earliest + 300.0
+
+
+def test_an_earlier_day_is_driven_by_the_team_of_then(team):
+    season = team.season
+    day = team.member("robot-1")
+    day.ask()
+    day.tell(found=False)
+    season.change(replace(season.settings, team=team_of(3)), season.settings)
+    again = TeamSeason(season, ON)  # which is past by the plot's clock
+    assert [one.name for one in again.team] == ["robot-1", "robot-2"]
+    assert again.member("robot-1").at == day.at
+
+
+def test_nobody_is_given_another_plant_once_it_is_stopped(team):
+    team.stopped = True
+    assert team.member("robot-1").ask() is None
 
 
 def test_no_way_leads_into_an_aisle_where_another_stays_for_today(team):

@@ -49,6 +49,28 @@ def test_what_is_assumed_of_the_rows_is_a_warning_and_what_is_said_is_none():
     assert not [sentence for sentence in quiet if "planting=" in sentence]
 
 
+def test_options_are_told_as_python_has_them(gate):
+    lon, lat = gate.grid.frame.lonlat(gate.grid.xy_m[:1])[0]
+    file = Upload("r.csv", f"Ost,Nord,Tag,Milben\n{lon},{lat},2026-11-01,3\n".encode())
+    as_dict = {"lon": "Ost", "lat": "Nord", "date": "Tag", "count": "Milben"}
+    for columns in (as_dict, [f"{role}={name}" for role, name in as_dict.items()]):
+        assert heard(library.read_records, file, gate, columns=columns)[0].count.tolist() == [3]
+    _, doubts = heard(library.read_plots, ESTATE, near=(35.0, 29.0))
+    assert [one for one in doubts if "from the place nearby" in one]
+
+
+def test_a_plot_may_have_paths_and_be_parted_into_blocks():
+    arms = "7,49 7.004,49 7.004,49.0005 7.0008,49.0005 7.0008,49.003 7,49.003"
+    file = Upload("L.csv", "\n".join(["lon,lat", *arms.split()]).encode())
+    parted, _ = heard(library.read_plot, file, guess_blocks=True)
+    assert parted.grid.n_blocks > 1
+    assert heard(library.read_plot, file, guess_blocks="Off")[0].grid.n_blocks == 1
+    with pytest.raises(SettingError, match="guess_blocks must be yes or no, but it is 'ja'"):
+        library.read_plot(file, guess_blocks="ja")
+    tracks = SAMPLE_DATA / "tracks.geojson"
+    assert heard(library.read_plot, ESTATE, "Gate", paths=tracks)[0].field.paths
+
+
 def test_several_plots_are_asked_apart_and_the_answer_is_an_argument():
     with pytest.raises(ChoiceNeeded) as asked:
         library.read_plot(ESTATE)

@@ -58,15 +58,18 @@ def test_every_option_can_be_set_from_text(kind):
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("yes", True), ("TRUE", True), ("1", True), ("no", False)]
+    ("text", "value"),
+    [("yes", True), ("TRUE", True), ("1", True), ("On", True), ("no", False), ("off", False)],
 )
 def test_a_switch_is_on_only_where_it_is_said(text, value):
     assert ReadOptions().choose("swap_axes", text).swap_axes is value
+    assert ReadOptions().choose("header", text).header == ("yes" if value else "no")
 
 
 def test_what_is_set_from_text_is_checked_as_any_other():
     for option, text, words in (
         ("decimal", "x", "decimal mark"),
+        ("swap_axes", "ja", "yes or no, but it is 'ja'"),
         ("near", "35.1", "must be written lon,lat"),
         ("near", "35.1;30.2", "must be written lon,lat"),
         ("columns", "height=h", "but not for 'height'"),

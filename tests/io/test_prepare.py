@@ -63,6 +63,13 @@ def test_a_spacing_that_no_rows_have_is_refused_with_file_column_and_value(tmp_p
     assert prepare(one(file, "wide", planting=by_hand)).plot.grid.row_spacing_m == 5.0
 
 
+@pytest.mark.parametrize(("gate", "away"), [((35.0, 30.0), "4"), ((30.349, 35.141), "69")])
+def test_a_gate_from_which_nobody_drives_in_a_day_is_refused_with_its_distance(gate, away):
+    sources = PlotSources(ZIP, PlotOptions(feature="Nursery"), gate=gate)
+    with pytest.raises(SettingError, match=f"The gate at .* lies {away}[.0-9]* km from Nursery"):
+        prepare(PlotRequest(sources))
+
+
 def test_paths_and_gate_belong_to_the_plot():
     sources = PlotSources(ZIP, PlotOptions(feature="Nursery"), paths=TRACKS, gate=(35.141, 30.349))
     made = prepare(PlotRequest(sources))

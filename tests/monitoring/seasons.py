@@ -1,6 +1,6 @@
 """Seasons for tests: a small plot with records, and what a day's work finds on it."""
 
-from datetime import date, timedelta
+from datetime import UTC, date, datetime, time, timedelta
 
 import numpy as np
 from shapely import MultiPolygon, box
@@ -12,6 +12,7 @@ from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.spread import night
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.workday import draw_detections
+from fieldmon.plot import local_clock
 from fieldmon.plot.field import Field
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
@@ -24,6 +25,12 @@ ROBOT = Robot(hours=1.5)
 def on(day):
     """Return the date of a day of the season."""
     return BEGINS + timedelta(days=day)
+
+
+def clock_on(monkeypatch, day):
+    """Let it be noon of a day of the season."""
+    noon = datetime.combine(on(day), time(12), UTC)
+    monkeypatch.setattr(local_clock, "utc_now", lambda: noon)
 
 
 def a_plot(width=0.0008, height=0.0007, **planting):

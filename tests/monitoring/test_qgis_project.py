@@ -18,6 +18,8 @@ from pyproj import Transformer
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.qgis_project import _mercator
+from fieldmon.planning.members import team_of
+from fieldmon.plot.robot import Robot
 from tests.monitoring.seasons import BEGINS, a_season
 
 INTERNAL = {"fieldmon", "settings", "import_findings", "arrays", "batches", "days", "plant_state"}
@@ -66,6 +68,17 @@ def test_only_todays_route_is_on_and_earlier_days_are_a_group(season):
     assert named == [f"Route {BEGINS + timedelta(days=k)}" for k in (1, 0)]
     for name in named:
         assert len(rows_shown(season.path, layers(project)[name])) == 1
+
+
+def test_of_a_team_the_last_route_of_each_is_shown(tmp_path):
+    team = a_season(tmp_path / "team.gpkg", team=team_of(2, Robot(hours=0.5)))
+    team.plan_each(BEGINS)
+    last = team.plan_each(BEGINS + timedelta(days=1))
+    shown = layers(project_of(team.path))
+    for name in ("Route today", f"Route {BEGINS}"):
+        assert len(rows_shown(team.path, shown[name])) == 2
+    stops = rows_shown(team.path, shown["Stops today"])
+    assert len(stops) == sum(len(day.route) for day in last)
 
 
 def test_every_layer_of_the_tree_is_there_and_none_is_internal(season):

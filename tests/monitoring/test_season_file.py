@@ -224,8 +224,24 @@ def test_a_day_worked_before_a_change_keeps_who_worked_when_and_who_chose(season
     assert then == replace(first, harvest=BEGINS)  # what is not of the work is of now
     tomorrow = BEGINS + timedelta(days=1)
     assert season.settings_on(tomorrow) == season.settings  # neither planned nor recorded
-    season.plan(BEGINS)  # what was left of it, as is chosen by now
-    assert season.settings_on(BEGINS).robot == later
+    season.plan(BEGINS)  # once more, of a day that is past
+    season.record(some_results(season, n=2))
+    assert season.settings_on(BEGINS).robot == first.robot
+
+
+@pytest.mark.parametrize("planned", [True, False])
+def test_a_day_worked_in_one_copy_was_not_worked_by_what_another_chose(season, tmp_path, planned):
+    first = season.settings
+    season.store.back_up(tmp_path / "copy.gpkg")
+    other = Season(tmp_path / "copy.gpkg")
+    other.change(replace(first, robot=first.robot.with_hours(4.0)), first)
+    if planned:
+        season.plan(BEGINS)
+    season.record(some_results(season))
+    for one, copy in ((season, other), (other, season)):
+        one.merge(copy)
+        assert one.settings.robot.hours == 4.0
+        assert one.settings_on(BEGINS).robot == first.robot
 
 
 def test_a_day_recorded_without_a_plan_was_worked_by_what_counted_at_first(season):

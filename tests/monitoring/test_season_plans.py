@@ -1,7 +1,7 @@
 """A season's days are planned from all that is known, and their routes are kept."""
 
 from dataclasses import replace
-from datetime import UTC, date, datetime, time
+from datetime import date, time
 
 import numpy as np
 import pytest
@@ -10,14 +10,17 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.history import Besides
+from fieldmon.monitoring.routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.planning.members import team_of
-from fieldmon.plot import local_clock
+from fieldmon.planning.members import person, team_of
+from fieldmon.plot.local_clock import local_clock
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
     a_plot,
     a_season,
+    clock_on,
     on,
     some_records,
     some_results,
@@ -82,12 +85,6 @@ def test_the_time_now_is_a_time_or_a_sentence(season):
         season.plan(BEGINS, "11:00")
 
 
-def clock_on(monkeypatch, day):
-    """Let it be noon of a day of the season."""
-    noon = datetime.combine(on(day), time(12), UTC)
-    monkeypatch.setattr(local_clock, "utc_now", lambda: noon)
-
-
 def test_an_earlier_day_is_planned_by_what_counted_then(season, monkeypatch):
     clock_on(monkeypatch, 0)
     first = season.settings
@@ -119,6 +116,40 @@ def test_the_last_worked_day_is_an_earlier_one_once_it_is_past(season, monkeypat
     assert season.planned_by(on(1)) == season.settings
 
 
+def test_a_day_that_is_planned_again_keeps_the_team_it_was_worked_with(season, monkeypatch):
+    clock_on(monkeypatch, 0)
+    first, names = season.settings, ("rob1", "Mia")
+    team = tuple(replace(one, name=name) for one, name in zip(team_of(2), names, strict=True))
+    season.change(replace(first, team=team), first)
+    days = season.plan_each(on(0))
+    season.record(some_results(season, n=3), "f", "Mia")
+    clock_on(monkeypatch, 1)
+    later = (replace(team[0], starts_s=3600.0), replace(team[1], name="Noa"), *team_of(1))
+    season.change(replace(season.settings, team=later), season.settings)
+    for _ in range(2):
+        again = season.plan_each(on(0))
+        assert [one.route.notes.who for one in again] == [*names]
+        assert season.settings_on(on(0)).team == team
+        assert season.plan(on(0), who="mia").route.notes.who == "Mia"
+    assert np.isin(again[1].route.plant, days[1].route.plant).any()
+    assert season.kept_route(on(0), "mia").tolist() == again[1].route.plant.tolist()
+    with season.reading() as (db, _):
+        assert {*kept_last(db, 0)} == {*map(person, names)}
+    assert season.planned_by(on(1)).team == later
+
+
+def test_beside_others_the_seasons_robot_goes_on_from_where_it_was(season):
+    route = season.plan(on(0), keep=False).route
+    for k, who, second in ((0, "", 21_700.0), (5, "Ann", 30_000.0)):
+        one = Inspections.of(route.plant[k : k + 1], np.zeros(1, np.int8), np.datetime64(on(0)),
+                             second=np.array([second]))  # fmt: skip
+        season.record(one, f"file {k}", who)
+    alone, beside = (season.plan(on(0), keep=False, who=who) for who in (None, Besides(("ann",))))
+    assert (alone.scene.at, beside.scene.at) == (route.plant[5], route.plant[0])
+    assert beside.route.notes.start.time() == time(6, 1, 40)
+    assert route.plant[5] not in beside.route.plant
+
+
 def test_a_kept_plan_is_held_to_what_was_inspected(season):
     assert season.planned_and_done(on(0)) is None
     first = season.plan(on(0))
@@ -138,7 +169,7 @@ def test_a_kept_plan_is_held_to_what_was_inspected(season):
 
 def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
     plot = a_plot()
-    today = local_clock.local_clock(plot.field).today()
+    today = local_clock(plot.field).today()
     settings = MonitoringSettings(today, robot=ROBOT)
     season = Season.create(tmp_path / "out.gpkg", plot, some_records(plot), settings)
     own = season.plan(today).route

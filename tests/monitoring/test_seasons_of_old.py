@@ -152,3 +152,15 @@ def _only_the_map_differs(season, day):
     (said,) = season.verify()
     assert said.startswith(f"The chance map of {day} comes out differently")
     assert "it was made by another version of fieldmon" in said
+
+
+def test_a_change_of_today_alters_no_day_from_before_the_log(season):
+    days = [*dict.fromkeys(season.history.inspections.date.tolist())]
+    before, seen = [season.settings_on(day).robot for day in days], season.settings
+    season.change(replace(seen, robot=seen.robot.with_hours(9.0)), seen)
+    assert [season.settings_on(day).robot for day in days] == before
+    assert all(robot.hours < 9.0 for robot in before)
+    changed = season.log()[-1]
+    assert (changed.kind, changed.what["names"]) == ("changed", "robot")
+    assert changed.what["said"].startswith("robot hours")
+    assert ";" not in changed.what["said"]

@@ -65,4 +65,25 @@ def test_what_counted_at_a_moment_is_told(db):
     settings_log.write(db, OTHER)
     assert settings_log.at(db, between) == FIRST
     assert settings_log.at(db, utc_text()) == OTHER
-    assert settings_log.at(db, "2000-01-01T00:00:00.000000Z") == {}
+    assert settings_log.at(db, "2000-01-01T00:00:00.000000Z") == FIRST
+
+
+def test_a_clock_that_is_set_back_leaves_no_half_of_the_settings(db):
+    settings_log.write(db, FIRST)
+    settings_log.write(db, LONGER)
+    db.execute("UPDATE settings SET changed = '2026-04-06T06:00:00.000000Z' WHERE fid <= 6")
+    db.execute("UPDATE settings SET changed = '2026-04-06T05:57:00.000000Z' WHERE fid > 6")
+    assert len(settings_log.all_moments(db)) == 2
+    for minute in (56, 58, 59):
+        at = settings_log.at(db, f"2026-04-06T05:{minute}:00.000000Z")
+        assert at == (FIRST if minute == 56 else LONGER)
+
+
+def test_settings_are_found_again_by_when_each_part_was_chosen(db):
+    settings_log.write(db, FIRST)
+    first, moment = settings_log.marks(db), utc_text()
+    settings_log.write(db, OTHER)
+    assert settings_log.of(db, first) == FIRST
+    assert settings_log.of(db, settings_log.marks(db)) == OTHER
+    assert settings_log.marks(db, moment) == first
+    assert settings_log.of(db, first | {"robot": "2000-01-01T00:00:00.000000Z"}) == {}

@@ -13,7 +13,7 @@ from fieldmon.monitoring.settings import as_json
 from fieldmon.monitoring.told_detection import ToldDetection
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot, scout
-from tests.monitoring.seasons import BEGINS, ROBOT, a_season, on, some_results
+from tests.monitoring.seasons import BEGINS, ROBOT, a_season, clock_on, on, some_results
 
 SHARP, DULL = ROBOT.detects, 0.5
 LOOKS_LESS = replace(ROBOT, look_s=20.0)
@@ -76,7 +76,8 @@ def test_a_day_that_nobody_planned_is_read_by_what_counted_when_it_was_first_rec
     assert told(season) == [SHARP] * 8
 
 
-def test_the_rest_of_a_day_that_is_planned_anew_is_read_by_who_does_it(season):
+def test_the_rest_of_a_day_that_is_planned_anew_is_read_by_who_does_it(season, monkeypatch):
+    clock_on(monkeypatch, 0)
     season.plan(BEGINS)
     season.record(seen(0, second=6.4 * 3600.0))
     change(season, robot=LOOKS_LESS)
@@ -92,6 +93,15 @@ def test_a_day_that_is_planned_again_after_it_was_worked_is_read_as_before(seaso
     change(season, robot=LOOKS_LESS)
     season.plan(BEGINS)
     assert told(season) == [SHARP] * 4
+
+
+def test_a_late_find_of_a_day_that_is_planned_again_is_read_by_who_worked_then(season):
+    season.plan(BEGINS)
+    season.record(seen(0))
+    change(season, robot=LOOKS_LESS)
+    season.plan(BEGINS)  # as it was: the day is past
+    season.record(seen(4))
+    assert told(season) == [SHARP] * 8
 
 
 def test_each_of_a_team_of_then_is_read_by_its_own(season):

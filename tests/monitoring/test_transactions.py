@@ -24,7 +24,7 @@ from tests.monitoring.seasons import BEGINS, state, three_results
 from tests.monitoring.working import day_by_day, one_by_one
 
 SEASONS_OF_OLD = Path(__file__).with_name("seasons_of_old")
-KILLS = int(os.environ.get("FIELDMON_KILLS", "20"))
+KILLS = int(os.environ.get("FIELDMON_KILLS", "12"))
 
 
 def working(task, *words):
@@ -71,7 +71,7 @@ def test_what_is_no_season_is_not_called_a_damaged_one(content, tmp_path):
 
 
 def test_two_processes_recording_at_once_lose_nothing(path):
-    before, rounds = state(path), 100
+    before, rounds = state(path), 50
     both = [working(one_by_one, path, who, rounds) for who in (0, 1)]
     for process in both:
         process.join(240)

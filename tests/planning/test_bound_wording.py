@@ -23,11 +23,19 @@ def test_where_the_bound_is_met_nothing_more_is_said():
 
 def test_below_ten_there_is_a_tenth():
     said = bound_sentence(9.42, 10.31)
-    assert said.startswith("9.4 finds expected; no route of these hours can expect more than 11 ")
+    assert said.startswith("9.4 finds expected; no route of these hours can expect more than 10.4 ")
+
+
+def test_the_figures_do_not_belie_their_share():
+    few = bound_sentence(11.0, 11.02)
+    assert few == "11 finds expected; no route of these hours can expect over 0.2 % more."
+    assert "12.4 finds expected; no route of these hours can expect more than 12.6 (1.7 %)" in (
+        bound_sentence(12.4, 12.6)
+    )
 
 
 def test_few_finds_have_two_digits():
-    assert bound_sentence(0.0123, 0.0131).startswith("0.012 finds expected; ")
+    assert bound_sentence(0.0123, 0.0145).startswith("0.012 finds expected; ")
 
 
 def test_where_nothing_can_be_found_that_is_the_bound():
@@ -48,6 +56,10 @@ def test_finds_are_said_as_every_estimate_is(held):
 @given(st.floats(1e-4, 1e5), st.floats(1e-5, 1.0))
 def test_the_bound_and_the_share_are_rounded_up(held, gap):
     bound = held * (1.0 + gap)
-    numbers = re.search(r"more than ([\d.,]+) \(([\d.]+) %\)", bound_sentence(held, bound))
-    assert float(numbers[1].replace(",", "")) >= bound * (1 - 1e-8)
-    assert float(numbers[2]) >= 100 * gap * (1 - 1e-6)
+    said = bound_sentence(held, bound)
+    share = float(re.search(r"([\d.]+) %", said)[1])
+    assert share >= 100 * gap * (1 - 1e-6)
+    if gap >= 0.0101:
+        told = [float(n.replace(",", "")) for n in re.findall(r"[\d.,]*\d", said)]
+        assert told[1] >= bound * (1 - 1e-8)
+        assert told[1] <= told[0] * (1 + 2.001 * gap)

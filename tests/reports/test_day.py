@@ -229,6 +229,27 @@ def test_a_team_s_day_names_who_worked_and_how_and_says_no_times_that_nobody_dro
     assert "Working hours" not in rows
 
 
+def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_once(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    plants = season.plan(BEGINS).route.plant[:6]
+    for k, (who, own) in enumerate((("Ann", plants[:4]), ("ann", plants[4:]), ("Dan", plants[3:]))):
+        clean, names = np.zeros(len(own), np.int8), np.full(len(own), who, object)
+        at = np.full(len(own), 3600.0 * (7 + k))
+        done = Inspections.of(own, clean, np.datetime64(BEGINS), who=names, second=at)
+        season.record(done, f"{k}", who)
+        if k == 1:
+            alone = DayFacts.of_season(season, BEGINS, BEGINS + timedelta(days=1))
+            assert alone.team == ()
+    facts = DayFacts.of_season(season, BEGINS, BEGINS + timedelta(days=1))
+    report = day_report(facts, Units())
+    said = figures(report)
+    assert said["Team"].value == "2"
+    assert not {"Hours", "Drive"} & {*said}
+    assert said["Plants inspected"].value == "6"
+    assert "6 plants inspected" in paragraphs(report)[0]
+    assert facts.held.done == 6
+
+
 def test_the_day_ahead_of_a_team_says_whose_route_it_is(of_a_team):
     report = day_report(DayFacts.of_season(of_a_team, BEGINS + timedelta(days=1)), Units())
     leads = [block.text for block in report.sheets[0].blocks if isinstance(block, Paragraph)]

@@ -63,7 +63,7 @@ def test_inspections_and_log_are_there_line_by_line(season):
     label = season.label
     found = int(done.plant[done.result == FOUND][0])
     (here,) = (line for line in lines if line["result"] == "found")
-    assert (int(here["row"]), int(here["plant"])) == (label.line[found], label.number[found])
+    assert (int(here["row"]), int(here["number"])) == (label.line[found], label.number[found])
     place = [float(here["lon"]), float(here["lat"])]
     assert place == pytest.approx(season.plot.grid.lonlat(np.array([found]))[0], abs=1e-7)
     log = read(log_table(season))

@@ -13,7 +13,7 @@ from fieldmon.simulation.study_plot import StudyPlot
 
 FRAME = Frame(5.0, 45.0)
 DAY = np.datetime64("2026-11-02")
-SMALL = Design(hours=(1.0, 3.0), n_days=4, n_seeds=60, infested=(0.05,))
+SMALL = Design(hours=(1.0, 3.0), n_days=4, n_seeds=24, infested=(0.05,))
 
 
 def area(size_m):

@@ -105,7 +105,7 @@ def test_a_killed_client_costs_only_unfinished_chunks(two_workers, tmp_path):
     write_geojson(tmp_path / "plot.geojson", [area(60.0)])
     command = f"from fieldmon.simulation import design; design._CHUNK_S = {CHUNK_S}; "
     command += "from fieldmon.cli.main import main; main()"
-    words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "40"]
+    words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "24"]
     words += ["--days", "10", "--workers", "2", "--date", "2026-11-02"]
     command = subprocess.Popen([*words, "-o", "killed"], cwd=tmp_path, stderr=subprocess.DEVNULL)
     until = time.monotonic() + 200
@@ -118,7 +118,7 @@ def test_a_killed_client_costs_only_unfinished_chunks(two_workers, tmp_path):
     assert not alive, "workers outlive the client that started them"
     half = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/*.parquet")}
     plots = study_run.StudyOptions(tmp_path / "plot.geojson", on="2026-11-02").plots()
-    asked = Design(n_days=10, n_seeds=40)
+    asked = Design(n_days=10, n_seeds=24)
     simulated(tmp_path / "killed", plots, asked, two_workers)
     simulated(tmp_path / "whole", plots, asked, executor.here())
     assert 0 < len(half) < len(list(study_of(plots, asked).chunks()))

@@ -90,6 +90,7 @@ class Vda5050Robot:
         self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
         self._gone_s, self._begun = gone_s, time.monotonic()
         self._own_clock, self._heard_at = False, time.monotonic()
+        self._clock_behind_s = 0.0
         if self._traffic is not None:
             self._crossing = Crossing(self._traffic, self._name, aisles, at_m)
 
@@ -278,9 +279,15 @@ class Vda5050Robot:
                     f"is {str(told_s)[:20]}. Where it is not, our own clock counts."
                 )
             return self._now_s()
-        if self._own_clock or at_s >= self._gone_s:
-            self._own_clock = True
-            self._gone_s, self._begun = max(at_s, self._gone_s), time.monotonic()
+        if not self._own_clock and at_s < self._gone_s:  # as of one that was started anew
+            self._clock_behind_s = self._now_s() - at_s
+            self._say(
+                "The robot's clock (day_s) is behind the last result of the day: it is counted on "
+                "from there."
+            )
+        self._own_clock = True
+        at_s += self._clock_behind_s
+        self._gone_s, self._begun = max(at_s, self._gone_s), time.monotonic()
         return self._gone_s
 
     def _now_s(self) -> float:

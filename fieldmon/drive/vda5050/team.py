@@ -75,4 +75,9 @@ def drive_team(
 
     with ThreadPoolExecutor(len(day.robots), "robot") as threads:
         running = {member.name: threads.submit(one, member) for member in day.robots}
-        return {name: each.result() for name, each in running.items()}
+        try:
+            return {name: each.result() for name, each in running.items()}
+        except KeyboardInterrupt:
+            day.stopped = True
+            say("Stopping: each robot ends the plant in hand and drives home.")
+            return {name: each.result() for name, each in running.items()}

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _GEOD = pyproj.Geod(ellps="WGS84")
 #: a plot smaller or larger than this is questioned
 SMALLEST_M2, LARGEST_M2 = 10.0, 100_000_000.0
+#: nobody reads a smaller area as a number
+_NO_AREA_M2 = 0.01
 #: a part smaller or narrower than this carries no plant
 _SLIVER_M2, _SLIVER_WIDTH_M = 1.0, 0.1
 _REASONS = {
@@ -233,6 +235,8 @@ def _questions(area: float, name: str) -> list[ImportMessage]:
 
 
 def _amount(area: float) -> str:
+    if area < _NO_AREA_M2:
+        return f"less than {_NO_AREA_M2:g} m2"
     return f"{area:.4g} m2" if area < 1000 else f"{area / 10_000:.5g} ha"
 
 

@@ -112,13 +112,39 @@ def _named(crs: str, stated: str) -> str:
     )
 
 
+def few_unplaceable(
+    xy: NDArray[np.float64], stated: str | None, options: ReadOptions
+) -> NDArray[np.bool_]:
+    """Return which coordinates ``(n, 2)`` lie nowhere on the earth, as mistyped ones.
+
+    None where most do: then it is the coordinate system or the order, and `place` asks.
+    """
+    wanted = options.crs or stated
+    if wanted is None or not np.isfinite(xy).all():
+        return np.zeros(len(xy), dtype=bool)
+    if options.swap_axes:
+        xy = xy[:, ::-1]
+    crs = system(wanted)
+    if _in_degrees(crs):
+        lands = (np.abs(xy) <= (360, 90)).all(axis=1)
+    else:
+        lonlat = transformation_from(crs, _middle(xy)).lonlat(xy)
+        lands = np.isfinite(lonlat).all(axis=1) & (np.abs(lonlat[:, 1]) <= 90)
+    wrong: NDArray[np.bool_] = np.asarray(~lands, dtype=bool)
+    return wrong if 2 * np.count_nonzero(wrong) < len(xy) else np.zeros(len(xy), dtype=bool)
+
+
 def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:
     return float(np.median(xy[:, 0])), float(np.median(xy[:, 1]))
 
 
+def _in_degrees(crs: pyproj.CRS) -> bool:
+    return bool(crs.is_geographic and crs.axis_info[0].unit_name == "degree")
+
+
 def _check_range(xy: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions) -> None:
     """Ask where degrees are none, or are in the wrong order."""
-    if not crs.is_geographic or crs.axis_info[0].unit_name != "degree":
+    if not _in_degrees(crs):
         return
     first, second = np.abs(xy[:, 0]), np.abs(xy[:, 1])
     if (first <= 360).all() and (second <= 90).all():

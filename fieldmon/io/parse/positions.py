@@ -12,6 +12,7 @@ import pyproj
 import shapely
 from pyproj.exceptions import CRSError
 
+from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
@@ -26,7 +27,7 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import geometry_kinds
-from fieldmon.io.parse.georeference import place
+from fieldmon.io.parse.georeference import few_unplaceable, place
 from fieldmon.io.parse.named_positions import placed_by_name
 from fieldmon.io.parse.values import (
     all_degrees,
@@ -115,8 +116,16 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
             )
         )
     single, index = shapely.get_parts(geometry[points], return_index=True)
-    kept = layer.take(np.flatnonzero(points)[index])
-    placed = place(shapely.get_coordinates(single), layer.crs, options)
+    xy, of = shapely.get_coordinates(single), np.flatnonzero(points)[index]
+    wrong = few_unplaceable(xy, layer.crs, options)
+    if wrong.any():
+        at = np.flatnonzero(wrong)
+        some = tuple(
+            _example((f"{x:g}", f"{y:g}"), i) for i, (x, y) in zip(of[at], xy[at], strict=True)
+        )
+        messages += _Unread(len(at), 0, 0, some[:_SHOWN]).messages()
+    kept = layer.take(of[~wrong])
+    placed = place(xy[~wrong], layer.crs, options)
     accuracy, coarse = _rounding(placed.step_m, len(kept))
     return LocatedFeatures(kept, placed.lonlat, accuracy, (*messages, *placed.messages, *coarse))
 
@@ -160,6 +169,7 @@ def _by_coordinates(
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
     there = _finite(xy)
+    there[there] = ~few_unplaceable(xy[there], stated or crs, options)
     unread = _Unread.of(layer, names, there)
     if unread.n_dotted * 2 > len(layer) - unread.n_empty:
         raise unread.ask()
@@ -247,7 +257,7 @@ class _Unread(NamedTuple):
                 continue
             n_dotted += any(is_dotted(c) for cell in cells for c in (cell, *(halves(cell) or ())))
             if len(examples) < _SHOWN:
-                examples.append(f"{' / '.join(cells)!r} in record {i + 1}")
+                examples.append(_example(cells, i))
         return cls(len(records), n_empty, n_dotted, tuple(examples))
 
     def shown(self) -> str:
@@ -287,6 +297,10 @@ class _Unread(NamedTuple):
 
 
 _SHOWN = 3
+
+
+def _example(cells: tuple[str, ...], record: int) -> str:
+    return f"{' / '.join(cells)!r} in record {record + 1}"
 
 
 def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[ImportMessage]]:
@@ -358,9 +372,9 @@ def _rounding(step_m: float, n: int) -> tuple[NDArray[np.float64], list[ImportMe
     return np.full(n, step_m / np.sqrt(6)), [  # both axes, each even over the step
         doubtful(
             worded(
-                "Coordinates are rounded to about {step_m:.3g} m: too coarse to name a plant. "
+                "Coordinates are rounded to about {step}: too coarse to name a plant. "
                 "They are used with that accuracy.",
-                step_m=step_m,
+                step=distance_figure(step_m),
             )
         )
     ]

@@ -124,17 +124,17 @@ def about_minus(cells: Iterable[str], words: ResultWords) -> list[ImportMessage]
     return [doubtful(said, remedy=Remedy("clean", "-", worded("Take a minus as clean")))]
 
 
-def about_mark(unsure: str | None, column: str) -> list[ImportMessage]:
+def about_mark(unsure: str | None, column: str, mark: str) -> list[ImportMessage]:
     """Return what was guessed of a count whose comma or point could be either; None: of none."""
     if unsure is None:
         return []
-    if "," in unsure:
-        said = worded("Counts such as {unsure} were read as thousands.", unsure=unsure)
-        remedy = Remedy("decimal", ",", worded("Read the comma as decimal"))
-    else:
+    if mark in unsure:
         said = worded("Counts such as {unsure} were read as decimals.", unsure=unsure)
-        remedy = Remedy("decimal", ",", worded("Read them as thousands"))
-    return [guessed(said, column, remedy)]
+        label = worded("Read them as thousands")
+    else:
+        said = worded("Counts such as {unsure} were read as thousands.", unsure=unsure)
+        label = worded("Read them as decimals")
+    return [guessed(said, column, Remedy("decimal", "," if mark == "." else ".", label))]
 
 
 def _own(words: str | None) -> list[str]:

@@ -33,9 +33,10 @@ def is_missing(value: object) -> bool:
     return text(value).casefold() in MISSING
 
 
-_GROUPED = re.compile(r"[-+]?\d{1,3}([.,]\d{3})+")
-_COMMA = re.compile(r"[-+]?(\d{1,3}(\.\d{3})+|\d+),\d+")
-_POINT = re.compile(r"[-+]?(\d{1,3}(,\d{3})+|\d+)\.\d+")
+#: no thousands begin with a zero: 0,500 is a half
+_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}([.,]\d{3})+")
+_COMMA = re.compile(r"[-+]?([1-9]\d{0,2}(\.\d{3})+|\d+),\d+")
+_POINT = re.compile(r"[-+]?([1-9]\d{0,2}(,\d{3})+|\d+)\.\d+")
 
 
 def could_be_thousands(cell: str) -> bool:
@@ -55,14 +56,19 @@ def decimal_mark(cells: Iterable[str]) -> str | None:
 def mark_of_counts(cells: Iterable[str], others: Iterable[str]) -> tuple[str, str | None]:
     """Return the decimal mark of counts, and a cell for which it was guessed; None: for none.
 
-    1,234 and 1.234 alone are told by the `others` of their table.
+    1,234 and 1.234 alone are told by the `others` of their table. They are a guess where nothing
+    tells, where they are then thousands, and where a column has both.
     """
     each = list(cells)
+    either = [cell for cell in each if could_be_thousands(cell)]
     own = decimal_mark(cell for cell in each if not could_be_thousands(cell))
-    mark = own or decimal_mark(others)
-    if mark is not None:
-        return mark, None
-    return ".", next((cell for cell in each if could_be_thousands(cell)), None)
+    told = own or decimal_mark(others)
+    mark = told or "."
+    thousands = [cell for cell in either if mark not in cell]
+    if told is None:
+        return mark, next(iter(either), None)
+    sure = own is not None and len(thousands) in {0, len(either)}
+    return mark, None if sure else next(iter(thousands), None)
 
 
 def number(cell: str, decimal: str = ".") -> float:
@@ -71,7 +77,7 @@ def number(cell: str, decimal: str = ".") -> float:
     other = "," if decimal == "." else "."
     if other in bare:
         whole = bare.split(decimal, maxsplit=1)[0]
-        if not re.fullmatch(rf"[-+]?\d{{1,3}}(\{other}\d{{3}})+", whole):
+        if not re.fullmatch(rf"[-+]?[1-9]\d{{0,2}}(\{other}\d{{3}})+", whole):
             return np.nan
         bare = bare.replace(other, "")
     try:

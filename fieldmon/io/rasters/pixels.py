@@ -182,7 +182,7 @@ def _undeclared(raw: NDArray[Any], missing: NDArray[np.bool_]) -> list[ImportMes
     if not odd.any():
         return []
     missing |= odd
-    what = ", ".join([*(f"{n:g}" for n in sentinels), *(["beyond 1e30"] if huge.any() else [])])
+    what = ", ".join([*(f"{n:g}" for n in sentinels), *(["more than 1e30"] if huge.any() else [])])
     return [
         guessed(
             worded(

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.io.formats.layer import text
+from fieldmon.io.import_report import Imported, ImportMessage
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
+from fieldmon.io.readers.known_rows import left_aside
 
 if TYPE_CHECKING:
     from fieldmon.io.formats.layer import Layer
@@ -40,8 +42,9 @@ class Crew(NamedTuple):
     look_s: float | None = None
 
 
-def crews_of(layer: Layer, names: list[str]) -> dict[str, Crew]:
+def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
     """Return who works on each of a layer's plots; `names` are those of its features."""
+    wrong: list[ImportMessage] = []
     called = {plain(column): column for column in layer.columns}
     columns: dict[str, list[str | float | None]] = {"who": [None] * len(names)}
     who = next((called[name] for name in _WHO if name in called), None)
@@ -50,6 +53,9 @@ def crews_of(layer: Layer, names: list[str]) -> dict[str, Crew]:
     for setting, synonyms in _NUMBERS.items():
         column = next((called[plain(s)] for s in synonyms if plain(s) in called), None)
         stated = np.full(len(names), np.nan) if column is None else numbers(layer.column(column))
+        if column is not None:
+            wrong += left_aside(column, layer.column(column), ~np.isnan(stated), names)
         columns[setting] = [None if np.isnan(value) else float(value) for value in stated]
     rows = zip(*columns.values(), strict=True)
-    return {name: Crew(*row) for name, row in zip(names, rows, strict=True)}
+    crews = {name: Crew(*row) for name, row in zip(names, rows, strict=True)}
+    return Imported(crews, tuple(wrong))

@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, seen
+from fieldmon.compute.wording import first_few, worded
+from fieldmon.io.formats.layer import text
+from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, doubtful, seen
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.values import numbers
+from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.plot.planting import PLANTED
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.io.formats.layer import Layer
 
 
@@ -24,6 +27,7 @@ class KnownRows(NamedTuple):
     plant_spacing_m: float | None = None
 
 
+_NAMED = 5
 _COLUMNS = {
     "row_bearing_deg": ("row_bearing_deg", "row_bearing", "bearing", "row_azimuth", "azimuth"),
     "row_spacing_m": (
@@ -57,6 +61,7 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
         # 0 and less stand for what nobody knows
         usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
         values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
+        wrong += left_aside(column, layer.column(column), usable | (stated == 0), names)
         wrong += _out_of_range(setting, column, values[-1], names)
     if not used:
         return {}, []
@@ -68,6 +73,26 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
         )
     )
     return dict(zip(names, rows, strict=True)), [said, *wrong]
+
+
+def left_aside(
+    column: str, cells: NDArray[np.object_], usable: NDArray[np.bool_], names: list[str]
+) -> list[ImportMessage]:
+    """Return a doubt that names the plots of which a column says what cannot be used."""
+    wrong = [k for k in np.flatnonzero(~usable).tolist() if not is_missing(cells[k])]
+    if not wrong:
+        return []
+    return [
+        doubtful(
+            worded(
+                "Column {column!r} says what cannot be used, and was left aside, of "
+                "{n} {n:plot|plots}: {some}.",
+                column=column,
+                n=len(wrong),
+                some=first_few([f"{names[k]} ({text(cells[k])!r})" for k in wrong], _NAMED),
+            )
+        )
+    ]
 
 
 def _out_of_range(

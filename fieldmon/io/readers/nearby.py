@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyproj
 import shapely
+from scipy.spatial import cKDTree
 
+from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import NEARBY_M
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
 _GEOD = pyproj.Geod(ellps="WGS84")
 _FAR_M, _DEGREE_M = 100_000.0, 111_000.0
 _MOST_NAMED = 5
+#: a tenth of a millimetre: one position, read twice
+_SAME_DEG = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +60,11 @@ class RecordsNearPlot:
             dropped(
                 worded(
                     "{n} of {all} {all:record|records} {n:lies|lie} outside {plot} and "
-                    "{n:was|were} kept apart: {nearest} to "
-                    "{farthest} away.",
+                    "{n:was|were} kept apart: {away} away.",
                     n=n,
                     all=n + len(self.inside),
                     plot=plot,
-                    nearest=_far(self.outside_m.min()),
-                    farthest=_far(self.outside_m.max()),
+                    away=_between(self.outside_m),
                 )
             )
         ]
@@ -89,12 +91,14 @@ def records_on_plot(observations: Observations, field: Field) -> Observations:
 
 def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[ImportMessage]]:
     """Return the records of one plot; ask or refuse where not one is there."""
+    corner = _corners(observations.lonlat, field)
+    observations = observations.take(~corner)
     split = near_plot(observations, field)
     if len(split.inside):
         beyond = split.outside.lonlat
         doubts = doubt_of_order(split.outside_m, distance_m(beyond[:, ::-1], field))
-        return split.inside, split.messages(field.name) + doubts
-    nearest = _far(split.outside_m.min())
+        return split.inside, [*_said_of(corner), *split.messages(field.name), *doubts]
+    nearest = distance_figure(split.outside_m.min())
     swapped_m = distance_m(observations.lonlat[:, ::-1], field)
     if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
         raise ChoiceNeeded(
@@ -104,7 +108,7 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
                 "exchange them if that is right.",
                 name=field.name,
                 nearest=nearest,
-                far=_far(float(swapped_m.min())),
+                far=distance_figure(float(swapped_m.min())),
             ),
             "swap_axes",
             ("yes",),
@@ -119,6 +123,21 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
             nearest=nearest,
         )
     )
+
+
+def _corners(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.bool_]:
+    """Return which records are the plot's corners, in a file that holds both: all, or none."""
+    corners = np.unique(shapely.get_coordinates(field.boundary), axis=0)
+    away_deg, corner = cKDTree(corners).query(lonlat)
+    met = away_deg < _SAME_DEG
+    every = len(np.unique(corner[met])) == len(corners)
+    return met if every and 2 * np.count_nonzero(met) < len(met) else np.zeros_like(met)
+
+
+def _said_of(corner: NDArray[np.bool_]) -> list[ImportMessage]:
+    n = int(np.count_nonzero(corner))
+    said = worded("{n} records are the corners of the plot and were left out.", n=n)
+    return [dropped(said)] if n else []
 
 
 def on_other_plots(
@@ -165,13 +184,11 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
         messages.append(
             doubtful(
                 worded(
-                    "{n} {n:record lies|records lie} on no plant: {nearest} to {farthest} from "
-                    "the nearest. "
+                    "{n} {n:record lies|records lie} on no plant: {away} from the nearest. "
                     "{n:It counts|They count} for plants nearby, if there are any, but "
                     "{n:belongs|belong} to no single one.",
                     n=int(beside.sum()),
-                    nearest=_far(away[beside].min()),
-                    farthest=_far(away[beside].max()),
+                    away=_between(away[beside]),
                 )
             )
         )
@@ -184,7 +201,7 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
                     "apart: {n:it counts|they count} for the nearest plant and for those "
                     "around it.",
                     n=int(rough.sum()),
-                    far=_far(float(np.median(own_m[rough]))),
+                    far=distance_figure(float(np.median(own_m[rough]))),
                     plant_spacing_m=grid.plant_spacing_m,
                 )
             )
@@ -234,7 +251,9 @@ def doubt_of_order(
     ]
 
 
-def _far(metres: float) -> str:
-    if metres < 10:
-        return f"{metres:.2g} m"
-    return f"{metres:.0f} m" if metres < 1000 else f"{metres / 1000:.4g} km"
+def _between(away_m: NDArray[np.float64]) -> str:
+    """Return the least and the greatest of distances, once where they read alike."""
+    nearest, farthest = (distance_figure(float(end)) for end in (away_m.min(), away_m.max()))
+    if str(nearest) == str(farthest):
+        return nearest
+    return worded("{nearest} to {farthest}", nearest=nearest, farthest=farthest)

@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 from shapely import MultiLineString
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Imported, dropped, guessed, seen
+from fieldmon.io.import_report import Imported, ImportMessage, doubtful, dropped, guessed, seen
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import closed_lines, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
 from fieldmon.io.readers.plots import blocks_of
-from fieldmon.plot.row_detection import distinct
+from fieldmon.plot.row_detection import distinct, frame_around
 from fieldmon.plot.row_drawing import rows_from_posts
 
 if TYPE_CHECKING:
@@ -27,6 +28,14 @@ if TYPE_CHECKING:
 
     from fieldmon.io.options import PlotOptions, ReadOptions
     from fieldmon.plot.block import Block
+
+
+# so far from its third neighbour, and so many times as far as usual, a plant is no neighbour's;
+# fewer plants do not tell
+_STRAY_M, _STRAY_TIMES, _ENOUGH = 100.0, 20.0, 20
+# no plot is so wide
+_ELSEWHERE_DEG = 1.0
+_NAMED = 5
 
 
 class DrawnBlocks(NamedTuple):
@@ -55,21 +64,65 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         taken.add(named)
         messages.append(seen(worded("Column {named!r} names the {role}s.", named=named, role=role)))
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
-    kept = distinct(found.lonlat)
-    n_doubles = len(found.lonlat) - len(kept)
+    gone = _elsewhere(found.lonlat)
+    if gone.any():
+        some = [_at(found.lonlat[k], labels[-1][k]) for k in np.flatnonzero(gone).tolist()]
+        said = worded(
+            "{n} {n:plant lies|plants lie} in another part of the earth than the others and "
+            "{n:was|were} left out: {some}.",
+            n=len(some),
+            some=first_few(some, _NAMED),
+        )
+        messages.append(dropped(said))
+    here = np.flatnonzero(~gone)
+    kept = here[distinct(found.lonlat[here])]
+    n_doubles = len(here) - len(kept)
     if n_doubles and options.doubles is None:
-        raise _about_doubles(found.layer, kept)
+        raise _about_doubles(found.layer, np.union1d(kept, np.flatnonzero(gone)))
     if n_doubles:
         said = worded(
             "{n_doubles} of {n} plants stood within 5 cm of another one; left out.",
             n_doubles=n_doubles,
-            n=len(found.lonlat),
+            n=len(here),
         )
         messages.append(dropped(said))
     block, row, plant = (label[kept] for label in labels)
     named_blocks = block if (block != "").any() else None
     plants = Plants(found.lonlat[kept], row, plant, named_blocks)
+    messages += _strays(plants)
     return Imported(plants, (*layer.messages, *messages))
+
+
+def _elsewhere(lonlat: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which plants ``(n, 2)`` lie in another part of the earth than most, as at 0, 0."""
+    off_deg = lonlat - np.median(lonlat, axis=0)
+    off_deg[:, 0] = (off_deg[:, 0] + 180.0) % 360.0 - 180.0
+    gone = np.asarray((np.abs(off_deg) > _ELSEWHERE_DEG).any(axis=1), dtype=bool)
+    return gone if 2 * np.count_nonzero(gone) < len(gone) else np.zeros_like(gone)
+
+
+def _strays(plants: Plants) -> list[ImportMessage]:
+    """Return a doubt that names plants far from all others, alone or by twos and threes."""
+    if len(plants) < _ENOUGH:
+        return []
+    xy_m = frame_around(plants.lonlat).xy_m(plants.lonlat)
+    far_m = cKDTree(xy_m).query(xy_m, 4)[0][:, -1]
+    stray = np.flatnonzero(far_m > max(_STRAY_M, _STRAY_TIMES * float(np.median(far_m))))
+    if not len(stray):
+        return []
+    said = worded(
+        "{n} {n:plant stands|plants stand} {far:.0f} m and more from the others: {some}. Leave "
+        "{n:it|them} out of the file if {n:it is|they are} mistyped.",
+        n=len(stray),
+        far=float(far_m[stray].min()),
+        some=first_few([_at(plants.lonlat[k], plants.plant[k]) for k in stray], _NAMED),
+    )
+    return [doubtful(said)]
+
+
+def _at(place: NDArray[np.float64], name: str) -> str:
+    lon, lat = place.tolist()
+    return f"{name} ({lon:.5f} / {lat:.5f})" if name else f"{lon:.5f} / {lat:.5f}"
 
 
 def _about_doubles(layer: Layer, kept: NDArray[np.intp]) -> ChoiceNeeded:

@@ -378,7 +378,7 @@ def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportM
     others = (values for column, values in table.layer.columns.items() if column != name)
     looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
     mark, unsure = mark_of_counts(cells, looked_at)
-    return mark, about_mark(unsure, name)
+    return mark, about_mark(unsure, name, mark)
 
 
 def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:

@@ -46,13 +46,15 @@ def plots(folder: str, source: Source, options: PlotOptions) -> Imported[tuple[F
 
 def crews(
     folder: str, source: Source, options: PlotOptions
-) -> tuple[Imported[tuple[Field, ...]], dict[str, Crew]]:
+) -> Imported[tuple[tuple[Field, ...], dict[str, Crew]]]:
     """Return the plots of a source, and who works on each."""
     from fieldmon.io.readers.crews import crews_of  # noqa: PLC0415
     from fieldmon.io.readers.plots import named_areas, plots_of  # noqa: PLC0415
 
     layer = open_layer(source, options, Workroom(Path(folder)))
-    return plots_of(layer, options), crews_of(*named_areas(layer, options))
+    who = crews_of(*named_areas(layer, options))
+    plots = plots_of(layer, options)
+    return plots.having((plots.value, who.value), who.messages)
 
 
 def treated(folder: str, source: Source, options: PlotOptions) -> Imported[MultiPolygon]:

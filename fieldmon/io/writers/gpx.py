@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.io.writers.day_file import DECIMALS, pieces, plain_text
 from fieldmon.io.writers.geojson import summary
+from fieldmon.plot.projection import goes_round
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,6 +77,8 @@ def _metadata(metadata: ET.Element, plan: HandoffPlan) -> None:
 def _bounds(metadata: ET.Element, plan: HandoffPlan) -> None:
     stops = np.array([(stop.lon, stop.lat) for stop in plan.stops])
     everything: NDArray[np.float64] = np.concatenate([plan.line_lonlat, stops.reshape(-1, 2)])
+    if goes_round(np.where(everything[:, 0] >= 180, -180.0, everything[:, 0])):
+        return  # bounds from the least to the greatest would go round the earth
     low, high = _place(*everything.min(axis=0)), _place(*everything.max(axis=0))
     corners = {f"min{k}": v for k, v in low.items()} | {f"max{k}": v for k, v in high.items()}
     ET.SubElement(metadata, "bounds", corners)

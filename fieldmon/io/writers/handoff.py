@@ -129,6 +129,7 @@ def format_of(target: Path, name: str | None = None) -> HandoffFormat:
         return FORMATS[name.lower()]
     for chosen in FORMATS.values():
         if target.name.lower().endswith(chosen.endings):
+            _refuse_packed(target)
             return chosen
     endings = ", ".join(ending for chosen in FORMATS.values() for ending in chosen.endings)
     raise SettingError(
@@ -139,3 +140,17 @@ def format_of(target: Path, name: str | None = None) -> HandoffFormat:
             name=target.name,
         )
     )
+
+
+def _refuse_packed(target: Path) -> None:
+    """Raise `SettingError` where a name asks for another format than the shapefile in a zip."""
+    stem, dot, end = target.name.rpartition(".")
+    packed = [ending for one in FORMATS.values() for ending in one.endings]
+    if dot and end.lower() == "zip" and stem.lower().endswith(tuple(packed)):
+        raise SettingError(
+            worded(
+                "Only a shapefile is written as a zip, but the name is {name!r}. Leave out .zip, "
+                "or end it in .shp.zip.",
+                name=target.name,
+            )
+        )

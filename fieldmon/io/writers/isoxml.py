@@ -15,6 +15,7 @@ import shapely
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.writers.zone_cells import ZoneCells
 
 if TYPE_CHECKING:
@@ -81,8 +82,8 @@ def isoxml_taskdata(
     )
     ET.SubElement(root, "PDT", A="PDT1", B=_named(product or "product"))
     name = _named(title)
-    # the area is a whole number of square metres, which nobody needs: 0 is "not said"
-    partfield = ET.SubElement(root, "PFD", A="PFD1", C=name, D="0")
+    area = str(round(area_m2(boundary)))
+    partfield = ET.SubElement(root, "PFD", A="PFD1", C=name, D=area)
     _polygons(partfield, boundary, _PARTFIELD)
     task = ET.SubElement(root, "TSK", A="TSK1", B=name, E="PFD1", G="1", H="0", I="0", J="0")
     _rate(ET.SubElement(task, "TZN", A="0", B="not sprayed"), 0.0)

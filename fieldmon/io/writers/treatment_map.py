@@ -61,7 +61,7 @@ class TreatmentMap:
         if not self.zones:
             raise SettingError(
                 worded(
-                    "A treatment map needs a zone or more, but spraying pays nowhere. No file is "
+                    "A treatment map needs a zone or more, but spraying pays nowhere. No zones are "
                     "written."
                 )
             )

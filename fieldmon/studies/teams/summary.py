@@ -12,6 +12,8 @@ from fieldmon.simulation.team_worth import MarginalGain, marginal_gains, worth_s
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from fieldmon.simulation.statistics import SummaryStatistics
     from fieldmon.studies.teams.seasons import TeamOutcome
 
@@ -23,8 +25,12 @@ class TeamRow(NamedTuple):
     ----------
     scenario, who, robots
         Where, how, and how many.
-    loss, d80, worked_h
-        Infested plant-days, days to 80 %, and hours worked of a season.
+    loss, worked_h
+        Infested plant-days, and hours worked of a season.
+    d80
+        Days to 80 % of the seasons that reach it, ``(k,)``.
+    n_days
+        How many days a season has.
     hectares, spread
         How large the plot is, and the chance a night; NaN where a pest has nights of its own.
     gain
@@ -35,7 +41,8 @@ class TeamRow(NamedTuple):
     who: str
     robots: int
     loss: SummaryStatistics
-    d80: SummaryStatistics
+    d80: NDArray[np.float64]
+    n_days: int
     worked_h: SummaryStatistics
     hectares: float
     spread: float
@@ -50,9 +57,10 @@ class TeamRow(NamedTuple):
         return f"<TeamRow: {self.scenario}, {self.robots} robots>"
 
 
-def rows(outcomes: Sequence[TeamOutcome]) -> list[TeamRow]:
+def rows(outcomes: Sequence[TeamOutcome], n_days: int) -> list[TeamRow]:
     """Return a row for each scenario, way to work and number of robots, in their order.
 
+    Seasons are of `n_days` days.
     One robot alone is the first of every way to work: there is nobody to share with.
     """
     made = []
@@ -62,11 +70,13 @@ def rows(outcomes: Sequence[TeamOutcome]) -> list[TeamRow]:
         for way in ways:
             sampler = way.partition(",")[0]
             alone = [o for o in here if o.robots == 1 and (not way or o.who in (sampler, way))]
-            made += _of_way([*alone, *(o for o in here if o.who == way and o.robots > 1)], way)
+            made += _of_way(
+                [*alone, *(o for o in here if o.who == way and o.robots > 1)], way, n_days
+            )
     return made
 
 
-def _of_way(outcomes: Sequence[TeamOutcome], way: str) -> list[TeamRow]:
+def _of_way(outcomes: Sequence[TeamOutcome], way: str, n_days: int) -> list[TeamRow]:
     sizes = sorted({one.robots for one in outcomes})
     seeds = set.intersection(*({o.seed for o in outcomes if o.robots == k} for k in sizes))
     by = {
@@ -79,7 +89,8 @@ def _of_way(outcomes: Sequence[TeamOutcome], way: str) -> list[TeamRow]:
         TeamRow(
             by[k][0].scenario, way or by[k][0].who, k,
             summary_statistics(losses[k]),
-            summary_statistics(np.array([o.d80 for o in by[k]])),
+            np.array([o.d80 for o in by[k] if o.d80 <= n_days]),
+            n_days,
             summary_statistics(np.array([o.worked_h for o in by[k]])),
             by[k][0].hectares, by[k][0].spread,
             gains.get(k),
@@ -117,7 +128,7 @@ def cells(row: TeamRow) -> tuple[str, ...]:
         str(row.robots),
         _interval(row.loss),
         "" if row.gain is None else _interval(row.gain.saved),
-        f"{row.d80.mean:.1f}",
+        _days_to_80(row),
         f"{row.worked_h.mean:.0f}",
     )
 
@@ -126,6 +137,15 @@ def table(made: Sequence[TeamRow]) -> str:
     """Return the rows as a table in Markdown."""
     lines = [HEADS, ("---",) * len(HEADS), *map(cells, made)]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _days_to_80(row: TeamRow) -> str:
+    """Return when seasons reach 80 %, and how many do where not all do."""
+    reached, seasons = len(row.d80), row.loss.replicates
+    if not reached:
+        return f"not in {row.n_days}"
+    mean = f"{row.d80.mean():.1f}"
+    return mean if reached == seasons else f"{mean} in {reached} of {seasons} seasons"
 
 
 def _interval(of: SummaryStatistics) -> str:

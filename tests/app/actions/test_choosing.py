@@ -1,6 +1,10 @@
 """Where, when and who: what is chosen counts in every room."""
 
+from shapely import MultiPolygon, box
+
 from app.actions import choosing
+from app.words.units import UnitsInLanguage
+from fieldmon.plot.field import Field
 from tests.app.driving import go, headline, map_of, metric, plants, plot_name
 
 
@@ -12,6 +16,20 @@ def test_another_plot_is_another_map(app):
     assert plot_name(app) != "Gate"
     assert len(plants(app)) != n
     assert map_of(app)["place"] != before["place"], "the browser flies there"
+
+
+def test_plots_whose_names_are_cut_alike_are_called_by_number_and_area():
+    area = MultiPolygon([box(35.15, 30.36, 35.151, 30.361)])
+    long = [Field(f"lleida_apricot_orchards ({k})", area) for k in (1, 2)]
+    said = [label.split(" · ") for label in choosing._labels(tuple(long), UnitsInLanguage())]
+    assert [(number, name.strip("\u2068\u2069")) for number, _, name in said] == [
+        ("1", long[0].name), ("2", long[1].name)
+    ]  # fmt: skip
+    assert {size for _, size, _ in said} == {"1.07\u00a0ha"}
+    assert choosing._labels((Field("Gate", area), Field("Pond", area)), UnitsInLanguage()) == [
+        "Gate",
+        "Pond",
+    ]
 
 
 def test_shorter_hours_give_a_shorter_route_on_every_page(app):

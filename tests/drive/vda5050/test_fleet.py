@@ -186,3 +186,13 @@ def test_what_is_no_message_is_passed_by_and_said(broker, plot, robot, monitor, 
     driven, _, told = drive(broker, plot, robot, monitor, f"noise{len(said)}", noise)
     assert len(driven.stops) > 10
     assert any("must be" in sentence for sentence in told)
+
+
+def test_the_clock_of_a_robot_that_was_started_anew_is_counted_on_and_said(plot):
+    said = []
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "clock", said.append)
+    driver.begin(plot.aisles, np.zeros(2), 3600.0)
+    first = driver._at_s("40.0")
+    assert first >= 3600.0
+    assert [driver._at_s(told) - first for told in ("70.5", "95.0", None)][:2] == [30.5, 55.0]
+    assert ["behind the last result" in one for one in said] == [True]

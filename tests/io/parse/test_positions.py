@@ -74,6 +74,27 @@ def test_records_without_a_position_are_left_out_and_one_is_shown():
         located(table(lon=[None, "east"], lat=[None, None]), ANY)
 
 
+MISTYPED = np.array([*zip(LON, LAT, strict=True), (LON[0], 498.99)])
+FAR_UP = np.array([*zip(X, Y, strict=True), (X[0] * 1e4, Y[0])])
+
+
+@pytest.mark.parametrize(
+    ("layer", "said"),
+    [
+        (table(lon=MISTYPED[:, 0], lat=MISTYPED[:, 1]), "'35.150123 / 498.99' in record 3"),
+        (Layer("p", {}, column([Point(p) for p in MISTYPED]), "OGC:CRS84"), "498.99' in record 3"),
+        (Layer("p", {}, column([Point(p) for p in FAR_UP]), "EPSG:2039"), "in record 3"),
+    ],
+)
+def test_a_mistyped_coordinate_is_left_out_and_named(layer, said):
+    found = located(layer, ANY)
+    np.testing.assert_allclose(found.lonlat, np.stack([LON, LAT], axis=1), atol=2e-8)
+    (left_out,) = [m.sentence for m in found.messages if m.severity is Severity.DROPPED]
+    assert said in left_out
+    with pytest.raises((ChoiceNeeded, FileProblem)):  # where most are so, it is something else
+        located(layer.take(np.array([0, 2])), ANY)
+
+
 def test_two_systems_in_one_table_are_asked_apart():
     layer = table(x=list(X), y=list(Y), crs=["EPSG:2039", "EPSG:32636"])
     with pytest.raises(ChoiceNeeded) as asked:

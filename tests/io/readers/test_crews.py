@@ -8,7 +8,11 @@ from tests.io.tables_of_cells import table
 
 def test_each_plot_has_its_own_crew_and_what_is_not_said_is_none():
     layer = table(name=["a", "b"], crew=["Ann", ""], hours=["3,5", None], speed_km_h=[2.5, "x"])
-    assert crews_of(layer, ["a", "b"]) == {"a": Crew("Ann", 3.5, 2.5), "b": Crew()}
+    read = crews_of(layer, ["a", "b"])
+    assert read.value == {"a": Crew("Ann", 3.5, 2.5), "b": Crew()}
+    (doubt,) = read.messages
+    assert "'speed_km_h' says" in doubt.sentence
+    assert "1 plot: b ('x')" in doubt.sentence
 
 
 @pytest.mark.parametrize(
@@ -18,16 +22,16 @@ def test_each_plot_has_its_own_crew_and_what_is_not_said_is_none():
      ("look_s", "look_s"), ("Seconds per plant", "look_s")],
 )  # fmt: skip
 def test_columns_are_known_by_what_people_call_them(column, field):
-    (crew,) = crews_of(table(**{column: ["7"]}), ["a"]).values()
+    (crew,) = crews_of(table(**{column: ["7"]}), ["a"]).value.values()
     assert getattr(crew, field) == ("7" if field == "who" else 7.0)
     assert sum(value is not None for value in crew) == 1
 
 
 def test_of_two_columns_that_could_be_it_the_plainer_name_is_taken():
-    (crew,) = crews_of(table(working_hours=[9], hours=[4]), ["a"]).values()
+    (crew,) = crews_of(table(working_hours=[9], hours=[4]), ["a"]).value.values()
     assert crew.hours == 4.0
 
 
 def test_a_file_that_says_nothing_leaves_everything_open():
-    assert crews_of(table(crop=["vine", "vine"]), ["a", "b"]) == {"a": Crew(), "b": Crew()}
-    assert crews_of(table(crop=[]), []) == {}
+    assert crews_of(table(crop=["vine", "vine"]), ["a", "b"]).value == {"a": Crew(), "b": Crew()}
+    assert crews_of(table(crop=[]), []).value == {}

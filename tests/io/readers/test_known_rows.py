@@ -16,10 +16,14 @@ def test_each_plot_gets_what_its_own_line_says():
         assert repr(column) in said.sentence
 
 
-@pytest.mark.parametrize("value", [0, -3, "none", None])
-def test_a_spacing_that_is_none_is_not_taken(value):
-    known, _ = known_rows(table(row_spacing_m=[value, 4]), NAMES)
+@pytest.mark.parametrize(
+    ("value", "said"), [(0, 0), (None, 0), ("-999", 0), (-3, 1), ("none", 1), ("3 m", 1)]
+)
+def test_a_spacing_that_is_none_is_not_taken_and_said_if_it_was_meant(value, said):
+    known, (_, *doubts) = known_rows(table(row_spacing_m=[value, 4]), NAMES)
     assert known["a"].row_spacing_m is None
+    assert len(doubts) == said
+    assert all(f"a ({str(value)!r})" in one.sentence for one in doubts)
 
 
 def test_rows_may_run_north_and_west_of_it():

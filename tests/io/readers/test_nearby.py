@@ -7,7 +7,7 @@ from shapely import MultiPolygon, box
 
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.io.import_report import Remedy, Severity, guessed
-from fieldmon.io.readers.nearby import near_plot, on_plants, records_on_plot
+from fieldmon.io.readers.nearby import near_plot, of_plot, on_plants, records_on_plot
 from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
@@ -23,6 +23,18 @@ def records(offset_m, accuracy_m=np.nan):
     return Observations.of(lonlat, np.array([PRESENT]), accuracy_m=accuracy)
 
 
+def test_the_corners_of_the_plot_are_no_records_where_a_file_holds_both():
+    field = Field("a", GRID.frame.geometry_lonlat(MultiPolygon([box(-40, -40, 40, 40)])))
+    corners = np.array(field.boundary.geoms[0].exterior.coords[:4])
+    lonlat = np.concatenate([GRID.lonlat(np.arange(5)), corners])
+    found = Observations.of(lonlat, np.full(9, PRESENT))
+    kept, (said,) = of_plot(found, field)
+    np.testing.assert_array_equal(kept.lonlat, lonlat[:5])
+    assert (said.severity, said.sentence[:9]) == (Severity.DROPPED, "4 records")
+    for some in (found.take(np.arange(8)), found.take(np.arange(5, 9))):
+        assert len(of_plot(some, field)[0]) == len(some)
+
+
 def test_a_record_at_its_plant_needs_no_words():
     assert on_plants(records((0.4, 0.3)), GRID) == []
     assert on_plants(records((0.4, 0.3), 1.0), GRID) == []
@@ -32,7 +44,7 @@ def test_a_record_between_everything_lies_on_no_plant_unless_its_accuracy_reache
     beyond = (0.0, -(GRID.xy_m[7, 1] - GRID.xy_m[:, 1].min()) - 5.0)
     (said,) = on_plants(records(beyond), GRID)
     assert said.severity == Severity.DOUBTFUL
-    assert "1 record lies on no plant: 5 m to 5 m from the nearest" in said.sentence
+    assert "1 record lies on no plant: 5 m from the nearest" in said.sentence
     (said,) = on_plants(records(beyond, 4.0), GRID)
     assert said.severity == Severity.SEEN
     assert "placed to 4 m while plants stand 1.5 m apart" in said.sentence

@@ -86,6 +86,11 @@ def test_a_number_that_nobody_counts_is_left_open_and_shown():
 def test_a_comma_is_what_the_rest_of_the_table_says_it_is_and_else_a_guess():
     np.testing.assert_allclose(read(count=["1,5", "1,234"]).value.count, [1.5, 1.234])
     assert read(count=["1,234", "7"]).value.count.tolist() == [1234.0, 7.0]  # as in 35.150123
+    half = read(count=["0,500", "7"])
+    assert half.value.count.tolist() == [0.5, 7.0]  # no thousands begin so
+    both = read(count=["2,5", "1,234", "3.000"])
+    assert both.value.count.tolist() == [2.5, 1.234, 3000.0]
+    assert "Counts such as 3.000 were read as thousands" in said(both, Severity.GUESSED)
     layer, places = table(plant=["1", "2"], count=["1,234", "7"]), NamedPlaces(plants=vines(5.0))
     alone = records_of(layer, ANY, places)
     assert alone.value.count.tolist() == [1234.0, 7.0]

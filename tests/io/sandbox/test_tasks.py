@@ -64,8 +64,8 @@ def test_plots_are_those_of_their_reader(tmp_path):
 
 
 def test_who_works_on_a_plot_comes_with_it(tmp_path):
-    imported, crews = tasks.crews(str(tmp_path), PLOTS, PlotOptions())
-    assert [field.name for field in imported.value] == ["North"]
+    fields, crews = tasks.crews(str(tmp_path), PLOTS, PlotOptions()).value
+    assert [field.name for field in fields] == ["North"]
     assert (crews["North"].who, crews["North"].hours) == ("Ann", 3.0)
 
 

@@ -7,12 +7,16 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pyogrio
+import shapely
+from shapely import MultiPolygon
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
+from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.plot import Plot
 from tests.io.writers.handed import CM, START, apart_m, crooked, day, usual
 
 GPX = "{http://www.topografix.com/GPX/1/1}"
@@ -142,6 +146,12 @@ def test_the_bounds_hold_every_place_and_nothing_more(tmp_path, plan):
         )
         np.testing.assert_array_equal(low, lonlat.min(axis=0))
         np.testing.assert_array_equal(high, lonlat.max(axis=0))
+
+
+def test_a_day_across_longitude_180_has_no_bounds_as_they_would_go_round_the_earth(tmp_path):
+    area = MultiPolygon([shapely.box(179.9995, -16.801, 180.0005, -16.8)])
+    root = gpx_of(day(Plot.of(Field("Taveuni", area, row_bearing_deg=90.0)).grid), tmp_path)
+    assert root.find(f"{GPX}metadata/{GPX}bounds") is None
 
 
 def test_the_pieces_of_a_line_are_numbered_and_one_alone_has_the_name_of_the_day(tmp_path, plan):

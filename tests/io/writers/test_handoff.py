@@ -117,6 +117,9 @@ def test_the_ending_or_the_name_tells_the_format(tmp_path):
     (by_ending,) = write_handoff(plan, tmp_path / "a.CSV")
     (by_name,) = write_handoff(plan, tmp_path / "a.txt", "csv")
     assert by_ending.read_bytes() == by_name.read_bytes()
+    for name in ("a.gpkg.zip", "a.CSV.Zip"):
+        with pytest.raises(SettingError, match=r"Leave out \.zip, or end it in .shp.zip"):
+            write_handoff(plan, tmp_path / name)
     with pytest.raises(SettingError, match="must end in one of"):
         write_handoff(plan, tmp_path / "a.docx")
     with pytest.raises(SettingError, match=r"written as nav2-pauses, nav2, .* not as 'docx'"):

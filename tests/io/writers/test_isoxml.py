@@ -20,6 +20,7 @@ from lxml import etree
 from shapely import MultiPolygon, Point
 
 from fieldmon.errors import SettingError
+from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.writers.isoxml import isoxml_taskdata
 from fieldmon.io.writers.zone_cells import zone_cells
 
@@ -48,6 +49,7 @@ def test_another_reader_finds_the_zones_with_their_holes_and_the_rate(tmp_path, 
     assert read.symmetric_difference(shapely.union_all(ZONES)).area < 1e-5 * read.area
     (partfield,) = data.partfields
     assert partfield.designator == "כרם"
+    assert partfield.area == round(area_m2(PLOT)) > 40_000
     assert convert.to_shapely_polygon(partfield.polygons[0]).equals_exact(PLOT.geoms[0], 1e-8)
     assert data.products[0].designator == "soap"
 

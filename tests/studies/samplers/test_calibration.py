@@ -5,7 +5,13 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.samplers.sweeps import Naive
-from fieldmon.studies.samplers.calibration import BELIEFS, EDGES, calibration, report_html
+from fieldmon.studies.samplers.calibration import (
+    BELIEFS,
+    EDGES,
+    OnSomeDays,
+    calibration,
+    report_html,
+)
 from fieldmon.studies.samplers.scenarios import Scenario
 
 
@@ -59,6 +65,22 @@ def test_a_belief_that_never_learns_scores_as_the_share_it_says():
     told = calibration([scenario], Naive(), lambda _, chance: Stubborn(chance), seeds=1, n_days=1)
     assert np.isnan(told.covered)
     assert np.isnan(told.half_covered)
+
+
+def test_on_days_of_rest_nothing_is_inspected():
+    days = []
+
+    class Noting(Naive):
+        def walk(self, scene, would_find):
+            days.append(scene.day)
+            return super().walk(scene, would_find)
+
+    pairs = BELIEFS["pairs"]
+    resting = calibration([Scenario("A")], OnSomeDays(Noting(), 3), pairs, seeds=1, n_days=8)
+    assert days == [0, 3, 6]
+    daily = calibration([Scenario("A")], OnSomeDays(Naive(), 1), pairs, seeds=1, n_days=8)
+    same = calibration([Scenario("A")], Naive(), pairs, seeds=1, n_days=8)
+    assert resting.log_score > daily.log_score == same.log_score
 
 
 def test_the_report_shows_every_belief(made):

@@ -98,7 +98,7 @@ def _mark(
     others = (values for column, values in layer.columns.items() if column != name)
     looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
     mark, unsure = mark_of_counts(cells, looked_at)
-    return mark, about_mark(unsure, name)
+    return mark, about_mark(unsure, name, mark)
 
 
 def _put_together(

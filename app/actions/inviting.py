@@ -108,10 +108,12 @@ def _invite(choices: Choices) -> str:
 
 def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
     """Return what a new code means for others and for the earlier one; empty: nothing."""
-    named = (one for one in scouts_out(choices.season, choices.on)
-             if person(one.name) == person(name))  # fmt: skip
-    made, said = next(named), texts.isolated(name)
-    others = ", ".join(texts.isolated(one) for one in made.shares)
+    said = texts.isolated(name)
+    others = ", ".join(
+        texts.isolated(other)
+        for one in scouts_out(choices.season, choices.on) if person(one.name) == person(name)
+        for other in one.shares
+    )  # fmt: skip
     beside = choices.season.settings.team and choices.season.settings.named(name) is None
     sentences = [
         texts.INVITE_ENDED.format(name=said) if had_code else "",

@@ -209,6 +209,15 @@ DAY: dict[str, Any] = {
                 },
             },
         },
+        "closed": {
+            "type": "array",
+            "description": "Rows that nobody may enter after a treatment: first and last, and "
+            "until when, in the plot's local time.",
+            "items": {
+                "type": "object",
+                "properties": {"rows": _LIST, "until": {"type": "string"}},
+            },
+        },
     },
 }
 ERROR: dict[str, Any] = {

@@ -95,7 +95,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     return {
         "season": season.path.stem,
         "scout": scout.name,
-        "rows": scout.rows,
+        "rows": ahead.rows(part),
         "plot": plot_document(season)[0],
         "day": on.isoformat(),
         "live": on == _today(season),
@@ -120,6 +120,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "hot_spots": _hot_spots(season, known),
         "photos": [photo._asdict() for photo in photos_of(season)],
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
+        "closed": _closed(season, on),
     }
 
 
@@ -184,6 +185,17 @@ def _said(inspections: Inspections) -> list[dict[str, Any]]:
         }
         for plant, result, count, second, who in columns
     ]
+
+
+def _closed(season: Season, on: date) -> list[dict[str, Any]]:
+    """Return rows that nobody may enter after a treatment, and until when."""
+    closed = []
+    for plants, until in season.closed(on):
+        rows = np.unique(season.label.line[plants])
+        for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
+            span = {"rows": [int(run[0]), int(run[-1])]} if len(run) else None
+            closed += [span | {"until": f"{until:%Y-%m-%dT%H:%M}"}] if span else []
+    return closed
 
 
 def _hot_spots(season: Season, known: NDArray[np.int8]) -> list[Any]:

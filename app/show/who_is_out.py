@@ -67,7 +67,7 @@ def _line(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> OutLine:
         others = ", ".join(texts.isolated(name) for name in one.shares)
         parts.append(texts.OUT_SHARES.format(others=others))
     return OutLine(one.name, title, " · ".join(parts), _cautions(choices, one, asked),
-                   one.made is not None)  # fmt: skip
+                   one.holds)  # fmt: skip
 
 
 def _cautions(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> tuple[str, ...]:
@@ -78,6 +78,9 @@ def _cautions(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> tuple
         (is_other, "" if asked is None or asked.day is None else
          texts.OUT_OTHER_DAY.format(day=choices.units.said_day(asked.day, choices.on))),
         (_is_older(choices, one, asked), texts.OUT_OLDER),
+        (bool(one.newer and one.ahead), texts.OUT_NEWER.format(n=one.newer)),
+        (bool(one.overlaps), texts.OUT_OVERLAPS.format(
+            others=", ".join(texts.isolated(name) for name in one.overlaps))),
     )  # fmt: skip
     return tuple(sentence for holds, sentence in said if holds)
 

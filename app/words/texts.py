@@ -1021,6 +1021,8 @@ SCOUT_PAGE = {
     "kept": "Kept: {what}", "keeping": "Being kept: {what}",
     "away": "{m} m away", "chance": "Chance {n} %", "off_route": "Off the route",
     "who_says": "{who}: {result}",
+    "closed": "Sprayed: do not enter before {until}.",
+    "closed_rows": "Rows {low} to {high} are sprayed: do not enter before {until}.",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
     "count": "Pests", "leaves": "Leaves looked at", "stage": "Stage", "fewer": "{what}: one fewer",
     "more": "{what}: one more", "stage_egg": "Eggs", "stage_young": "Young",
@@ -1092,6 +1094,11 @@ OUT_CLOCK_DAYS = "The phone's clock is more than a day off: its times are put ri
 OUT_OLDER = "Works by an older plan of the day: load the day again on the phone."
 OUT_OTHER_DAY = "Has the plan of {day}: load the day again on the phone."
 OUT_SHARES = "shares these plants with {others}"
+OUT_OVERLAPS = "Rows overlap with those of {others}: make a code with other rows."
+OUT_NEWER = Plural(
+    "The route was planned before a newer find: plan the rest anew.",
+    "The route was planned before {n:,} newer finds: plan the rest anew.",
+)
 OUT_NO_ROUTE = "Not of the team and without rows, so without a route: make a code with rows."
 TAKEN_BACK = "{name} can no longer read or record anything of this season."
 ASK_PHOTOS = "Photos asked for: {n}"

@@ -24,7 +24,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
 
     Example: fieldmon merge season.gpkg "season (conflict).gpkg"
     """
-    from fieldmon.compute.wording import counted
+    from fieldmon.compute.wording import counted, joined
     from fieldmon.monitoring import Season, copy_season
 
     if other.exists() and other.samefile(season):
@@ -35,8 +35,11 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         copy_season(other, copy)  # an older one is brought up to date in the copy
         done = kept.merge(Season(copy))
     gone = f", {done.taken_back} were taken back there" if done.taken_back else ""
-    new = f"{counted(done.new, 'inspection')} {'was' if done.new == 1 else 'were'} new"
-    typer.echo(f"{other.name}: {new}{gone}")
+    parts = [counted(done.new, "inspection")]
+    parts += [counted(n, thing) for n, thing in ((done.treatments, "treatment"),
+                                                 (done.codes, "scout's code")) if n]  # fmt: skip
+    were = "was" if len(parts) == 1 and done.new == 1 else "were"
+    typer.echo(f"{other.name}: {joined(', ', parts)} {were} new{gone}")
     if done.moved:
         typer.echo(
             "  numbered anew: batches have other numbers now than the log said before; see "
@@ -44,4 +47,6 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         )
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")
+    for sentence in done.overlaps:
+        typer.echo(f"  codes: {sentence}")
     typer.echo("\n".join(lines(kept, kept.status(kept.last_date()))))

@@ -112,6 +112,17 @@ def waits(one: KeptTreatment, label: ProductLabel | None) -> WaitingPeriod:
     )
 
 
+def closed_until(
+    one: KeptTreatment, label: ProductLabel | None, starts: time, on: date
+) -> datetime | None:
+    """Return the local time until which nobody may enter a treated place on a day.
+
+    None: they may when work starts, or nobody said.
+    """
+    entry = waits(one, label).entry_from
+    return entry if entry is not None and entry > datetime.combine(on, starts) else None
+
+
 def harvest_from(
     treatments: Iterable[KeptTreatment], labels: Sequence[ProductLabel]
 ) -> tuple[date, KeptTreatment] | None:
@@ -137,7 +148,7 @@ def _of_waits(
     one: KeptTreatment, label: ProductLabel | None, rules: RulesToKeep, on: date
 ) -> Iterator[Caution]:
     period, named = waits(one, label), _named(one, rules.units)
-    first, entry = period.harvest_from, period.entry_from
+    first, entry = period.harvest_from, closed_until(one, label, rules.starts, on)
     if rules.harvest is not None and one.on <= rules.harvest:
         harvest = rules.units.day(rules.harvest)
         if first is None:
@@ -154,7 +165,7 @@ def _of_waits(
                 first=rules.units.day(first), **named,
             )  # fmt: skip
             yield Caution("harvest", said, one.batch)
-    if entry is not None and entry > datetime.combine(on, rules.starts):
+    if entry is not None:
         said = worded(
             "Do not enter before {time} on {date} where {product} was applied on {day}.",
             time=f"{entry:%H:%M}", date=rules.units.day(entry.date()), **named,

@@ -100,6 +100,10 @@ class DayAhead:
         """Return the one of the team whose part it is, or None."""
         return self.settings.named(part.name)
 
+    def rows(self, part: Part) -> tuple[int, int] | None:
+        """Return the rows of a part; None: the plot, or what the team's plan gives one of it."""
+        return None if self.member(part) is not None else part.rows
+
     def crew(self, part: Part) -> tuple[str, ...]:
         """Return who shares a part's plants: all who have a code for these rows, beside the team.
 
@@ -133,9 +137,14 @@ class DayAhead:
         return part.name if is_newer else ""
 
     def plan_of(self, part: Part) -> int | None:
-        """Return the number in the file of the route kept last of a part; None: none is kept."""
+        """Return the number of the route kept last of a part as a plan; None: none is kept."""
         kept = self.last.get(person(self.kept_as(part)))
-        return None if kept is None else kept.number
+        return None if kept is None else kept.plan
+
+    def mark(self, part: Part) -> str:
+        """Return the digest of the route kept last of a part; empty: none is kept."""
+        kept = self.last.get(person(self.kept_as(part)))
+        return "" if kept is None else kept.digest
 
     def route(self, part: Part) -> Plants:
         """Return the plants of the route kept of a part, wherever they lie."""
@@ -155,7 +164,7 @@ class DayAhead:
         """Return ``(n,)`` which plants are somebody's to inspect; none where no route can be."""
         if not self.has_route(part):
             return np.zeros(len(self.label.line), np.bool_)
-        return inside(self.label, part.rows)
+        return inside(self.label, self.rows(part))
 
     def is_others(self, part: Part, left: Plants) -> bool:
         """Return whether a route was made for other rows, or others who share them have of it."""
@@ -228,7 +237,7 @@ def planned_again(
         return days[crew.index(me)].route
     who = None if member is None else member.name
     now = None if seconds_left is None else _time(season, on, seconds_left, member)
-    return season.plan(on, now, keep=part.rows is None, wishes=wishes, who=who).route
+    return season.plan(on, now, keep=ahead.rows(part) is None, wishes=wishes, who=who).route
 
 
 def work_left_s(season: Season, on: date, part: Part) -> float:

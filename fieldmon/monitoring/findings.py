@@ -158,7 +158,8 @@ def take(
     shift = fast if abs(fast) > CLOCK_IS_WRONG else timedelta()
     with season.changing() as change:
         scout = scouts.who_in(change.db, season, key)
-        return _take(season, change, scout, _SentFindings([*findings], (received, sent), shift))
+        letter = _SentFindings([*findings], (received, sent), received, shift)
+        return _take(season, change, scout, letter)
 
 
 def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, ...]:
@@ -185,6 +186,7 @@ def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, 
     received = utc_now()
     taken: list[Taken] = []
     here = saved.of(season.path.stem)
+    arrived, shift = _as_if_sent(here, received)
     names = {one.who or who for one in (*here.findings, *here.photos)}
     if "" in names:
         raise SettingError(
@@ -198,7 +200,7 @@ def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, 
                 for one in here.findings
                 if as_written(known, one.who or who) == name
             ]
-            letter = _SentFindings(told, (received, received), timedelta())
+            letter = _SentFindings(told, (received, received + shift), arrived, shift)
             taken += _take(season, change, Scout(name, None, ""), letter)
         for one in here.photos:
             new, problem = False, ""
@@ -209,6 +211,18 @@ def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, 
                 problem = str(error)
             taken.append(Taken(one.fields["id"], new, problem))
     return tuple(taken)
+
+
+def _as_if_sent(saved: PhoneFile, received: datetime) -> tuple[datetime, timedelta]:
+    """Return when a file was saved, and by how much the phone's clock was ahead then.
+
+    Where it does not say, or cannot have been then, it is taken as sent now by a clock that is
+    right.
+    """
+    if saved.clocks is None or saved.clocks[1] > received + CLOCK_IS_WRONG:
+        return received, timedelta()
+    clock, time = saved.clocks
+    return min(time, received), clock - time if abs(clock - time) > CLOCK_IS_WRONG else timedelta()
 
 
 def of_others(season: Season, saved: PhoneFile) -> tuple[str, ...]:
@@ -256,10 +270,23 @@ def _take(
 
 @dataclass(frozen=True)
 class _SentFindings:
-    """What came at once, and by how much the phone's clock is ahead."""
+    """What came at once.
+
+    Parameters
+    ----------
+    findings
+        What is told.
+    clocks
+        Ours and the phone's as it came.
+    arrived
+        When it left the phone: none of it was told after that.
+    shift
+        By how much the phone's clock was ahead then.
+    """
 
     findings: list[Finding]
     clocks: tuple[datetime, datetime]
+    arrived: datetime
     shift: timedelta
 
 
@@ -365,7 +392,7 @@ def _when(clock: LocalClock, one: Finding, letter: _SentFindings) -> tuple[date,
 
     No time is believed after its arrival, or before the least that it can be.
     """
-    received, at = letter.clocks[0], one.at - letter.shift
+    received, at = letter.arrived, one.at - letter.shift
     local, named = clock.at(at), one.on
     least = one.after if one.after is None or one.after <= received + CLOCK_IS_WRONG else None
     is_believed = at <= received + CLOCK_IS_WRONG and (

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import phone_tables, replaced, schema, settings_log
+from fieldmon.monitoring import phone_tables, replaced, schema, season_log, settings_log
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.planning.members import person
@@ -64,12 +64,20 @@ class Merged:
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
         Whether batches have other numbers now than earlier entries of the log say.
+    treatments, codes
+        Treatments that count now and did not before, and keys of scouts that hold and were not
+        there.
+    overlaps
+        A sentence for each two codes whose rows overlap.
     """
 
     new: int
     contradictions: tuple[str, ...]
     taken_back: int = 0
     moved: bool = False
+    treatments: int = 0
+    codes: int = 0
+    overlaps: tuple[str, ...] = ()
 
 
 class MergedCopy(NamedTuple):
@@ -81,11 +89,15 @@ class MergedCopy(NamedTuple):
         As `Merged` has them.
     settings
         A sentence for each setting that differs.
+    treatments, codes
+        As `Merged` has them.
     """
 
     new: int
     taken_back: int
     settings: tuple[str, ...]
+    treatments: int = 0
+    codes: int = 0
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -94,6 +106,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     Raise `FileProblem` if it is no copy of the same season.
     """
     refuse_strangers(db, other)
+    before = _counting(db)
     less = [table for table in TAKEN if table is not schema.INSPECTIONS]
     copies = [{table.name: _rows(one, table) for table in less} for one in (db, other)]
     phones = [phone_tables.brought(one) for one in (db, other)]
@@ -110,13 +123,21 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set(), set()))
     _count(db, batches)
     _write(db, schema.BATCHES, list(batches.values()))
-    _write_routes(db, copies)
+    _write_routes(db, copies, _given_out(db, other))
     said = _differing(copies)
     _write(db, schema.SETTINGS, _once(copies, "settings", ("changed", "name", "value")))
     _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, ("at",)))
     _write(db, schema.LABELS, _once(copies, "labels", schema.LABELS.names, ("product",)))
     phone_tables.bring_together(db, phones)
-    return MergedCopy(new, taken_back, said)
+    treatments, codes = (len(now - was) for now, was in zip(_counting(db), before, strict=True))
+    return MergedCopy(new, taken_back, said, treatments, codes)
+
+
+def _counting(db: sqlite3.Connection) -> tuple[set[str], set[str]]:
+    """Return the treatments that count, and the keys of scouts that hold, by their digests."""
+    treated = db.execute("SELECT digest FROM treatments WHERE undone = 0")
+    keys = db.execute("SELECT key_digest FROM scouts WHERE ended IS NULL")
+    return {mark for (mark,) in treated}, {mark for (mark,) in keys}
 
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
@@ -333,8 +354,19 @@ def _count(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
                 by_number[number]["undone"] = int(undone)
 
 
-def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) -> None:
-    """Keep the routes of both with their stops, those of a person and day by their revisions.
+def _given_out(*both: sqlite3.Connection) -> dict[Hashable, list[str]]:
+    """Return when each route was kept, by day, person and digest, as the logs of both say."""
+    told: dict[Hashable, set[str]] = {}
+    for db in both:
+        for one in season_log.given_out(db):
+            told.setdefault((one.date, person(one.who), one.digest), set()).add(one.at)
+    return {key: sorted(at) for key, at in told.items()}
+
+
+def _write_routes(
+    db: sqlite3.Connection, copies: list[dict[str, list[Row]]], given_out: dict[Hashable, list[str]]
+) -> None:
+    """Keep the routes of both with their stops in the order in which they were given out.
 
     One that was given out again after another counts as often as it was.
     """
@@ -349,13 +381,20 @@ def _write_routes(db: sqlite3.Connection, copies: list[dict[str, list[Row]]]) ->
             route["person"] = person(route["who"])
             given[_key(route, known_by[:-1])] += 1
             route["again"] = given[_key(route, known_by[:-1])]
+        before = ""
+        for route in copied["routes"]:
+            at = given_out.get(_key(route, ("date", "person", "digest")), [])
+            later = given[_key(route, known_by[:-1])] - route["again"]
+            # a clock may be set back: what stands below is later
+            before = route["at"] = max(before, at[-1 - later] if later < len(at) else "")
             own = stops.get(route["fid"], [])
             kept, _ = found.setdefault(_key(route, known_by), (route, own))
             kept["revision"] = min(kept["revision"], route["revision"])
+            kept["at"] = max(kept["at"], route["at"])
     begin = _alike_at_first(copies, "routes", known_by)
+    order = ("at", "day", "person", "revision", "digest", "again")
     rest = sorted(
-        (key for key in found if key not in begin),
-        key=lambda key: _key(found[key][0], ("day", "person", "revision", "digest", "again")),
+        (key for key in found if key not in begin), key=lambda key: _key(found[key][0], order)
     )
     ordered = [found[key] for key in (*begin, *rest)]
     revisions: Counter[Hashable] = Counter()
@@ -434,10 +473,16 @@ def _apart(ours: str, theirs: str) -> tuple[str, str]:
         return ours, theirs
     names = [name for name in {**one, **other} if one.get(name) != other.get(name)]
     here, there = (
-        ", ".join(f"{name} {json.dumps(told.get(name), ensure_ascii=False)}" for name in names)
-        for told in (one, other)
+        ", ".join(_with_unit(name, told.get(name)) for name in names) for told in (one, other)
     )
     return here, there
+
+
+def _with_unit(name: str, value: object) -> str:
+    """Return what a part of a setting says; other names end in their unit."""
+    if name == "hours" and isinstance(value, int | float):
+        return f"{value:g} h"
+    return f"{name} {json.dumps(value, ensure_ascii=False)}"
 
 
 def _key(row: Row, names: Iterable[str]) -> tuple[Any, ...]:

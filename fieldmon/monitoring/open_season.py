@@ -66,16 +66,25 @@ class FileRevision(NamedTuple):
         How often the file was changed by us.
     inspections
         How often a row of the inspections was changed, by whomever.
+    written
+        A random name of our last change: a copy that was brought back, and changed as often since,
+        has another one. Empty: an earlier version made it.
     """
 
     changes: int
     inspections: int
+    written: str = ""
 
     @classmethod
     def of(cls, db: sqlite3.Connection) -> FileRevision:
         """Return what the file says of itself."""
-        kept = (get_meta(db, name) for name in ("revision", schema.INSPECTIONS_CHANGED))
-        return cls(*(int(value or 0) for value in kept))
+        names = ("revision", schema.INSPECTIONS_CHANGED)
+        changes, inspections = (int(get_meta(db, name) or 0) for name in names)
+        return cls(changes, inspections, get_meta(db, schema.WRITTEN) or "")
+
+    def once_kept(self, db: sqlite3.Connection) -> FileRevision:
+        """Return what the file will say once the transaction that writes it is kept."""
+        return FileRevision(self.changes + 1, self.inspections, get_meta(db, schema.COMES) or "")
 
 
 @dataclass(frozen=True, eq=False)
@@ -397,8 +406,7 @@ class OpenSeason:
         self._keep_mornings(db, now.mornings, newest)
         qgis_project.keep(db, self.path.name)
         self._last = None  # the transaction may yet fail
-        kept = now.revision._replace(changes=now.revision.changes + 1)
-        self._written = replace(now, revision=kept)
+        self._written = replace(now, revision=now.revision.once_kept(db))
 
     def _keep_mornings(self, db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
         keep_mornings(db, mornings, newest)

@@ -6,7 +6,6 @@ clauses 7.2 to 7.4 and 8.1), so that other programs show them with the plant.
 
 from __future__ import annotations
 
-from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.monitoring import replaced
@@ -15,9 +14,6 @@ from fieldmon.planning.members import person
 
 if TYPE_CHECKING:
     import sqlite3
-    from datetime import date
-
-    from fieldmon.plot.local_clock import LocalClock
 
 SCOUTS = GeoPackageTable(
     "scouts",
@@ -133,22 +129,6 @@ CREATE TABLE IF NOT EXISTS gpkg_extensions (
   scope TEXT NOT NULL, CONSTRAINT ge_tce UNIQUE (table_name, column_name, extension_name))
 """
 _STANDARD = "http://docs.opengeospatial.org/is/18-000/18-000.html"
-
-
-def codes_on(
-    db: sqlite3.Connection, clock: LocalClock, on: date
-) -> dict[str, tuple[int, int] | None]:
-    """Return who has a code that holds, or was taken back after a day, and of which rows.
-
-    They are named as by `person`; None: the whole plot. What was planned of a day stays after it.
-    """
-    codes: dict[str, tuple[int, int] | None] = {}
-    for name, ended, first, last in db.execute(
-        "SELECT name, ended, first_row, last_row FROM scouts ORDER BY fid"
-    ):
-        if not ended or clock.at(datetime.fromisoformat(ended)).date() > on:
-            codes[person(name)] = None if first is None else (first, last)
-    return codes
 
 
 def n_sent(db: sqlite3.Connection, table: GeoPackageTable, who: str, since: str) -> int:

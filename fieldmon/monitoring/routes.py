@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import RowLabel
 
+# hexadecimal digits that a phone, too, counts exactly
+_PLAN_DIGITS = 12
+
 
 def begins(settings: MonitoringSettings, today: DayPlan, begun_s: float) -> datetime:
     """Return the local time at which a route begins: `begun_s`, when work did, or half-way."""
@@ -112,6 +115,11 @@ class KeptRoute(NamedTuple):
     number: int
     revision: int
     digest: str
+
+    @property
+    def plan(self) -> int:
+        """Return a number that other plans have not, and this one has in every copy of the file."""
+        return int(self.digest[:_PLAN_DIGITS], 16) if self.digest else self.number
 
 
 def kept_last(db: sqlite3.Connection, day: int) -> dict[str, KeptRoute]:

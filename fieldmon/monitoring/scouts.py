@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import secrets
 from dataclasses import dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import AccessError, SettingError
-from fieldmon.monitoring import phone_tables
+from fieldmon.monitoring import phone_tables, season_log
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written, names_written
@@ -22,8 +23,12 @@ from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Iterable
+    from datetime import date
 
-    from fieldmon.monitoring.season_file import Season
+    from fieldmon.monitoring.open_season import OpenSeason
+    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.plot.local_clock import LocalClock
 
 _KEY_BYTES = 18
 _LONGEST_NAME = 60
@@ -49,13 +54,13 @@ class Scout:
     ended: str = ""
 
 
-def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> str:
+def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -> str:
     """Make a key for somebody and return it; an earlier key of that person ends at once.
 
     Whoever the season knows already is named as it is written there.
 
     Raise `SettingError` if there is no name, if the rows are not on the plot, if they are others'
-    in part, or if somebody beside the season's team has none.
+    in part, if somebody beside the season's team has none, or somebody of it has some.
 
     Examples
     --------
@@ -92,6 +97,14 @@ def let_in(season: Season, name: str, rows: tuple[int, int] | None = None) -> st
         name = as_written(names_written(db), name)
         if settings_of(db).named(name) is None:
             _must_be_own(db, name, rows, lines)
+        elif rows is not None:
+            raise SettingError(
+                worded(
+                    "Rows must be of somebody beside the team, but {name} is of it: the team's "
+                    "plan says where they go. Leave the rows out.",
+                    name=name,
+                )
+            )
         _end(db, name)
         row = (name, _key_digest(season, key), utc_text(), None, first, last)
         insert(db, phone_tables.SCOUTS, [row])
@@ -112,23 +125,48 @@ def _must_be_own(
                 name=name, names=", ".join(one.name for one in settings.team),
             )
         )  # fmt: skip
+    new = Scout(name, rows, "")
+    for other in overlapping(new, scouts_in(db), settings, n_lines):
+        (low, high), (first, last) = (one.rows or (1, n_lines) for one in (new, other))
+        raise SettingError(
+            worded(
+                "Rows must be one's own, or the same as another's to share them, but rows "
+                "{low} to {high} overlap with {first} to {last}, which are {name}'s. Give "
+                "other rows, or take that code back.",
+                low=low, high=high, first=first, last=last, name=other.name,
+            )
+        )  # fmt: skip
+
+
+def overlapping(
+    scout: Scout, scouts: Iterable[Scout], settings: MonitoringSettings, n_lines: int
+) -> list[Scout]:
+    """Return others beside the team whose rows are in part somebody's, and in part not."""
     lines = 1, n_lines
-    low, high = rows or lines
-    for other in scouts_in(db):
-        first, last = other.rows or lines
-        is_beside = person(other.name) == person(name) or settings.named(other.name) is not None
-        if not is_beside and (first, last) != (low, high) and first <= high and low <= last:
-            raise SettingError(
-                worded(
-                    "Rows must be one's own, or the same as another's to share them, but rows "
-                    "{low} to {high} overlap with {first} to {last}, which are {name}'s. Give "
-                    "other rows, or take that code back.",
-                    low=low, high=high, first=first, last=last, name=other.name,
-                )
-            )  # fmt: skip
+    low, high = rows = scout.rows or lines
+    if settings.named(scout.name) is not None:
+        return []
+    return [
+        other
+        for other in scouts
+        if person(other.name) != person(scout.name) and settings.named(other.name) is None
+        and (span := other.rows or lines) != rows and span[0] <= high and low <= span[1]
+    ]  # fmt: skip
 
 
-def take_back(season: Season, name: str) -> None:
+def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
+    """Return a sentence for each two codes whose rows overlap, as they may in merged copies."""
+    settings, known = settings_of(db), scouts_in(db)
+    return tuple(
+        f"{one.name} has rows {low} to {high}, and {other.name} rows {first} to {last}: both go to "
+        "plants that are in both. Make one of them a code with other rows."
+        for k, one in enumerate(known)
+        for other in overlapping(one, known[k + 1 :], settings, n_lines)
+        for (low, high), (first, last) in [(one.rows or (1, n_lines), other.rows or (1, n_lines))]
+    )  # fmt: skip
+
+
+def take_back(season: OpenSeason, name: str) -> None:
     """End the key of somebody, at once; raise `SettingError` if nobody of that name has one."""
     with season.store.writing() as db:
         if not _end(db, name):
@@ -137,25 +175,60 @@ def take_back(season: Season, name: str) -> None:
             )
 
 
-def scouts_of(season: Season) -> tuple[Scout, ...]:
+def scouts_of(season: OpenSeason) -> tuple[Scout, ...]:
     """Return who has a key that holds, in the order in which the keys were made."""
     with season.store.reading() as db:
         return scouts_in(db)
 
 
 def scouts_in(db: sqlite3.Connection) -> tuple[Scout, ...]:
-    """Return who has a key that holds, as `scouts_of` does, within a transaction."""
-    rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY fid")  # noqa: S608 - ours
-    return tuple(_scout(row) for row in rows)
+    """Return who has a key that holds, as `scouts_of` does, within a transaction.
+
+    Of merged copies somebody may have several keys: what was said with the last one counts.
+    """
+    rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY made, fid")  # noqa: S608 - ours
+    return _last(map(_scout, rows))
 
 
-def who(season: Season, key: str) -> Scout:
+def scouts_on(
+    db: sqlite3.Connection, clock: LocalClock, on: date, *, is_over: bool = True
+) -> tuple[Scout, ...]:
+    """Return who has a key on a day: what was planned of it stays whatever keys are made after it.
+
+    One that was taken back counts if the day was over by then. Of a day that `is_over` one that was
+    made later counts only where a route of the day was given to that person after it.
+    """
+    rows = db.execute(f"SELECT {_COLUMNS} FROM scouts ORDER BY made, fid")  # noqa: S608 - ours
+    had = [one for one in map(_scout, rows) if not one.ended or _date(clock, one.ended) > on]
+    if is_over and any(_date(clock, one.made) > on for one in had):
+        given = {(person(one.who), one.at) for one in season_log.given_out(db)
+                 if one.date == str(on)}  # fmt: skip
+        had = [
+            one
+            for one in had
+            if _date(clock, one.made) <= on
+            or any(who == person(one.name) and at >= one.made for who, at in given)
+        ]
+    return _last(had)
+
+
+def _date(clock: LocalClock, moment: str) -> date:
+    return clock.at(datetime.fromisoformat(moment)).date()
+
+
+def _last(scouts: Iterable[Scout]) -> tuple[Scout, ...]:
+    """Return the last of each person, given them in order."""
+    last = {person(one.name): one for one in scouts}
+    return tuple(sorted(last.values(), key=lambda one: one.made))
+
+
+def who(season: OpenSeason, key: str) -> Scout:
     """Return whose key it is; raise `AccessError` unless it holds on this season."""
     with season.store.reading() as db:
         return who_in(db, season, key)
 
 
-def who_in(db: sqlite3.Connection, season: Season, key: str) -> Scout:
+def who_in(db: sqlite3.Connection, season: OpenSeason, key: str) -> Scout:
     """Return whose key it is, within a transaction: who is taken back writes nothing more."""
     row = db.execute(
         f"SELECT {_COLUMNS} FROM scouts WHERE key_digest = ? AND ended IS NULL",  # noqa: S608 - ours
@@ -168,7 +241,8 @@ def who_in(db: sqlite3.Connection, season: Season, key: str) -> Scout:
                 "leads the season for a new one."
             )
         )
-    return _scout(row)
+    named = person(row[0])
+    return next(one for one in scouts_in(db) if person(one.name) == named)
 
 
 _COLUMNS = "name, first_row, last_row, made, ended"
@@ -187,5 +261,5 @@ def _end(db: sqlite3.Connection, name: str) -> int:
     return db.executemany(ended, names).rowcount if names else 0
 
 
-def _key_digest(season: Season, key: str) -> str:
+def _key_digest(season: OpenSeason, key: str) -> str:
     return digest(season.path.name, key)

@@ -421,6 +421,24 @@ def taken_in(ours: sqlite3.Connection, theirs: sqlite3.Connection) -> list[dict[
     return [{"digest": mark, "entry": content} for mark, content in unknown.items()]
 
 
+class GivenOut(NamedTuple):
+    """What a log says of a route that was kept: when (UTC), for whom, of which day (ISO)."""
+
+    at: str
+    who: str
+    date: str
+    digest: str
+
+
+def given_out(db: sqlite3.Connection) -> Iterator[GivenOut]:
+    """Yield what is told of routes that were kept, here or in a copy that was taken in."""
+    for _, content in _with_those_taken_in(db):
+        if '"kind":"planned"' in content:
+            said = json.loads(content)
+            what = said["what"]
+            yield GivenOut(said["at"], said["who"], what["date"], what["digest"])
+
+
 def _with_those_taken_in(db: sqlite3.Connection) -> Iterator[tuple[str, str]]:
     for content, mark in db.execute("SELECT entry, digest FROM log ORDER BY fid"):
         for inner in json.loads(content)["what"].get("theirs", ()):

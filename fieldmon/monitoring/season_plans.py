@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import phone_tables, routes, season_log
+from fieldmon.monitoring import routes, scouts, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import Besides, made_by
 from fieldmon.monitoring.mornings import is_behind
@@ -162,9 +162,13 @@ class SeasonPlans(OpenSeason):
             return routes.plants(db, last.get(person(who if named is None else named.name)))
 
     def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
-        """Return who has a code on the day `on`, and of which rows, see `phone_tables.codes_on`."""
+        """Return who has a code for work on the day `on` now, by `person`, and of which rows."""
+        return self._codes(on, is_over=False)
+
+    def _codes(self, on: date, *, is_over: bool) -> dict[str, tuple[int, int] | None]:
         with self.store.reading() as db:
-            return phone_tables.codes_on(db, local_clock(self.plot.field), on)
+            known = scouts.scouts_on(db, local_clock(self.plot.field), on, is_over=is_over)
+        return {person(one.name): one.rows for one in known}
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
@@ -176,7 +180,7 @@ class SeasonPlans(OpenSeason):
             contents = self._read(db)
             day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
             kept = routes.of_day(db, day)
-            codes = self.codes_on(on)
+            codes = self._codes(on, is_over=self._is_earlier(contents, on))
             last = routes.kept_last(db, day)
         if who is None:
             out = _out(last, codes, self._planned_by(contents, on))

@@ -18,6 +18,7 @@ from fieldmon.monitoring import (
     inspection_table,
     merging,
     outside_changes,
+    scouts,
     season_log,
     tables,
 )
@@ -359,8 +360,11 @@ class SeasonRecords(OpenSeason):
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
                     moved=moved,
                 )  # fmt: skip
+            overlaps = scouts.overlaps(db, int(self.label.line.max()))
         said = *contradict.sentences(self.label), *taken.settings
-        return Merged(taken.new, said, taken.taken_back, moved)
+        return Merged(
+            taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
+        )
 
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 import sqlite3
 import tempfile
 import threading
@@ -20,10 +21,12 @@ from fieldmon.monitoring.file_problems import damaged, no_file, sentences
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.migrations import MIGRATIONS
 from fieldmon.monitoring.schema import (
+    COMES,
     LOGS_SINCE,
     NEEDS,
     OPEN,
     VERSION,
+    WRITTEN,
     lay_out,
     watch,
 )
@@ -190,11 +193,13 @@ class Store:
             _into_one_file(db)
             db.execute("BEGIN IMMEDIATE")
             set_meta(db, OPEN, "1")  # what is changed from here on is changed by us
+            set_meta(db, COMES, secrets.token_hex(8))
             if _version(db) == VERSION:
                 self._checked = season_log.refuse_changed(db, self._checked)
             yield db
             set_meta(db, OPEN, "0")
             db.execute("UPDATE fieldmon SET value = value + 1 WHERE key = 'revision'")
+            set_meta(db, WRITTEN, get_meta(db, COMES) or "")
             db.execute("COMMIT")
 
     def check(self) -> None:

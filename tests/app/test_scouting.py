@@ -11,6 +11,7 @@ from datetime import date, timedelta
 
 import pytest
 
+from app.api import documents
 from app.state.scout_page import invitation
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND
@@ -273,7 +274,7 @@ def test_a_tap_is_of_the_plant_in_large_print_whoever_records_it_meanwhile(seaso
     assert [one["plant"] for one in kept(page).records] == [plant]
 
 
-def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone):
+def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone, monkeypatch):
     invited(phone, line, season, "Dan")
     page = phone.page
     page.locator(SENT).wait_for()
@@ -282,6 +283,8 @@ def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone
     theirs = [a_finding(one, CLEAN, on=BEGINS, at=utc_now()) for one in ahead[:9]]
     take(season, scouts.let_in(season, "Ann"), theirs, utc_now())
     plan = planned_again(season, BEGINS, Part(name="Dan"))
+    closed = [{"rows": [1, int(season.label.line.max())], "until": "2999-04-06T07:00"}]
+    monkeypatch.setattr(documents, "_closed", lambda *_: closed)
     page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
     page.evaluate("() => { dispatchEvent(new Event('online')); }")
     page.locator("#newer").wait_for()
@@ -289,6 +292,9 @@ def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone
     page.locator("#newer").click()
     page.locator("#newer").wait_for(state="hidden")
     page.locator(f"#place[data-plant='{plan.plant[0]}']").wait_for()
+    page.locator("#closed", has_text="Sprayed: do not enter before").wait_for()
+    page.locator("#open_menu").click()
+    page.locator("#menu .bad", has_text="Rows 1 to ").wait_for()
 
 
 def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):

@@ -2,7 +2,7 @@
 
 import shutil
 
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, scouts
 from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in
 
 
@@ -26,6 +26,19 @@ def test_two_copies_are_merged_and_what_they_tell_differently_is_listed(run, sea
     assert {batch.who for batch in Season(season).batches()} == {"Ann", "Ben"}
     code, out, _, _ = run("merge", season, other)
     assert "0 inspections were new" in out
+
+
+def test_treatments_and_codes_that_came_in_are_counted_and_hours_have_a_unit(run, season, tmp_path):
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    run("change", season, "--hours", "1.5")
+    run("change", other, "--hours", "2")
+    theirs = Season(other)
+    theirs.treat(theirs.last_date(), 0.5)
+    scouts.let_in(theirs, "Ann", (1, 2))
+    code, out, err, _ = run("merge", season, other)
+    assert code == 0, err
+    assert "0 inspections, 1 treatment, 1 scout's code were new" in out
+    assert "robot differs: 1.5 h here, 2 h there" in out
 
 
 def test_a_season_is_not_merged_with_itself_and_a_like_copy_changes_nothing(run, season, tmp_path):

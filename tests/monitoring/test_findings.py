@@ -303,11 +303,11 @@ def test_nobody_takes_back_what_another_told_and_that_is_said(season, key):
     assert 37 in season.history.inspections.plant
 
 
-def _saved(findings, season="season", who="Ann", photos=()):
+def _saved(findings, season="season", who="Ann", photos=(), clocks=None):
     def each(some):
         return tuple(SavedRecord(season, who, vars(one)) for one in some)
 
-    return PhoneFile(each(findings), each(photos))
+    return PhoneFile(each(findings), each(photos), clocks)
 
 
 def test_what_a_phone_saved_is_recorded_once_whether_it_is_sent_or_not(season, key):
@@ -340,3 +340,35 @@ def test_what_a_phone_saved_of_another_season_or_of_nobody_is_not_recorded(seaso
     one, photo = take_saved(season, told, "Dan")
     assert (one.new, photo.new) == (True, False)
     assert "JPEG" in photo.problem
+
+
+@pytest.mark.parametrize(
+    ("fast", "said", "time"),
+    [
+        (timedelta(days=1), True, "09:00"),
+        (timedelta(days=-40), True, "09:00"),
+        (timedelta(), True, "09:00"),
+        (timedelta(days=1), False, "09:00 a day later"),
+    ],
+)
+def test_what_a_phone_saved_counts_as_if_it_had_been_sent_then(
+    season, monkeypatch, fast, said, time
+):
+    monkeypatch.setattr(findings, "utc_now", lambda: NOW + timedelta(days=3))
+    saved = NOW + timedelta(minutes=30)
+    clocks = (saved + fast, saved) if said else None
+    take_saved(season, _saved([a_finding(37, at=NOW + fast)], clocks=clocks))
+    done = season.history.inspections
+    (mine,) = np.flatnonzero(done.plant == 37)
+    day, second = int((done.date[mine] - np.datetime64(BEGINS)).astype(int)), done.second[mine]
+    assert (day, second) == (1 if time.endswith("later") else 0, 9 * 3600)
+
+
+def test_nothing_that_a_phone_saved_was_told_after_that(season, monkeypatch):
+    monkeypatch.setattr(findings, "utc_now", lambda: NOW + timedelta(days=3))
+    late = a_finding(37, at=NOW + timedelta(days=1), after=NOW)
+    assert take_saved(season, _saved([late], clocks=(NOW, NOW)))[0].problem == ""
+    done = season.history.inspections
+    (mine,) = np.flatnonzero(done.plant == 37)
+    assert done.date[mine] == np.datetime64(BEGINS)
+    assert np.isnan(done.second[mine])

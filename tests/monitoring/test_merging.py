@@ -14,6 +14,7 @@ import pytest
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season, batches, inspection_table, merging, phone_tables, schema
+from fieldmon.monitoring.day_ahead import WHOLE, DayAhead
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.plot.grid import row_label
 from tests.monitoring.seasons import BEGINS, a_plot, a_season, state
@@ -89,7 +90,7 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
     for seed in range(first, min(first + 20, PAIRS)):
         one, other = apart(seed)
         ours, theirs = copied(one), copied(other)
-        new, gone, _ = merging.merge(ours, other)
+        new, gone, *_ = merging.merge(ours, other)
         assert new == len(that_count(ours) - that_count(one))
         assert gone == len(that_count(one) - that_count(ours))
         merging.merge(theirs, one)
@@ -329,22 +330,23 @@ def test_a_note_written_in_either_copy_is_kept(path, other, way):
 
 
 def test_routes_planned_in_both_copies_keep_their_order_and_the_last_one_counts(path, other):
-    for file, plants in ((path, [40, 41]), (other, [50])):
+    for file, plant in ((path, 40), (path, 41), (other, 50)):
         season = Season(file)
-        season.record(
-            Inspections.of(np.array(plants), np.zeros(len(plants), int), np.datetime64(BEGINS)),
-            "taps",
-        )
+        season.record(Inspections.of(np.array([plant]), np.array([CLEAN]), np.datetime64(BEGINS)))
         season.plan(BEGINS)
+    last = season.kept_route(BEGINS)
+    plan = DayAhead.of(season, BEGINS).plan_of(WHOLE)
     merged, again = Season(path), Season(other)
     merged.merge(Season(other))
     again.merge(Season(path))
     with merged.store.reading() as db:
         routes = db.execute("SELECT day, revision, fid, stops FROM routes ORDER BY fid").fetchall()
         stops = dict(db.execute("SELECT route, count(*) FROM stops GROUP BY route").fetchall())
-    assert [row[1] for row in routes] == [1, 2, 3]  # one of before, one of each copy
+    assert [row[1] for row in routes] == [1, 2, 3, 4]  # of before, and of each copy
     assert all(stops[fid] == n for _, _, fid, n in routes)
-    np.testing.assert_array_equal(merged.kept_route(BEGINS), again.kept_route(BEGINS))
+    for one in (merged, again):
+        np.testing.assert_array_equal(one.kept_route(BEGINS), last)
+        assert DayAhead.of(one, BEGINS).plan_of(WHOLE) == plan  # a phone goes on by it
 
 
 def test_a_copy_that_brings_nothing_leaves_the_routes_of_a_day_as_they_are(path, tmp_path):

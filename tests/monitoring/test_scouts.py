@@ -55,6 +55,22 @@ def test_a_key_taken_back_ends_and_a_new_one_of_that_name_ends_the_old(season):
         scouts.take_back(season, "Ann")
 
 
+def test_who_got_a_key_in_each_of_two_copies_is_one_person_and_both_keys_hold(season, tmp_path):
+    (tmp_path / "other").mkdir()
+    other = Season(shutil.copy(season.path, tmp_path / "other"))
+    first = scouts.let_in(season, "Ann", (1, 9))
+    last = scouts.let_in(other, "ann", (5, 12))
+    done = season.merge(other)
+    assert (done.codes, done.overlaps) == (1, ())
+    (one,) = scouts.scouts_of(season)
+    assert one.rows == (5, 12)
+    assert [scouts.who(season, key) for key in (first, last)] == [one, one]
+    scouts.take_back(season, "Ann")
+    for key in (first, last):
+        with pytest.raises(AccessError):
+            scouts.who(season, key)
+
+
 @pytest.mark.parametrize("name", ["", "  ", "n" * 61])
 def test_a_scout_has_a_name(season, name):
     with pytest.raises(SettingError, match="1 to 60 letters"):
@@ -103,3 +119,5 @@ def test_a_name_of_the_team_is_written_as_there_and_any_other_needs_rows(season)
         scouts.who(season, first)
     scouts.let_in(season, "Anna", (1, 2))
     assert [one.name for one in scouts.scouts_of(season)] == ["robot-1", "Anna"]
+    with pytest.raises(SettingError, match="robot-2 is of it: the team's plan"):
+        scouts.let_in(season, "robot-2", (3, 4))

@@ -7,11 +7,17 @@ export class Clock {
   /** `now` is the phone's clock, `tick` counts milliseconds since the page was opened. */
   constructor(now = () => new Date(), tick = () => performance.now()) { Object.assign(this, { now, tick, heard: null, heardAt: null, fast: 0 }); }
 
-  /** What was known when the page was closed. */
-  knew(heard) {
+  /** What is known, for when the page is opened again. */
+  known() { return { heard: this.least(), fast: this.fast }; }
+
+  /** What was known when the page was closed; pages of before did not keep how far the clock was off. */
+  knew(heard, fast = this.fast) {
     if (!heard || heard <= (this.least() ?? 0)) return;
-    Object.assign(this, { heard, heardAt: this.tick() });
+    Object.assign(this, { heard, heardAt: this.tick(), fast });
   }
+
+  /** What the phone's clock says, and what time it is as far as that is known, for a file. */
+  said() { return { clock: this.now().toISOString(), time: new Date(this.best()).toISOString() }; }
 
   /** Ask, and hear what time it is on the other side. */
   listening(ask) {

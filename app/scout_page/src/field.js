@@ -1,7 +1,7 @@
 // What a scout does in the field. A step is seen at once; it is said to be kept when it is on the phone's disk.
 
 import { Clock } from "./clock.js";
-import { laidOut, metres, offered, rings } from "./geo.js";
+import { laidOut, metres, offered, rings, rowOf } from "./geo.js";
 import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
 import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
@@ -13,9 +13,11 @@ const WRITING = "writing";
 // where one was longer ago is not where one is
 const FRESH_MS = 60000;
 
+const AS_TIME = { dateStyle: "short", timeStyle: "short" };
+
 /** The date in a time zone, or in the phone's own where there is none or it is too new for the phone. */
-function dateIn(zone, ms) {
-  try { return new Intl.DateTimeFormat("sv-SE", zone ? { timeZone: zone } : {}).format(ms); } catch { return dateIn("", ms); }
+function dateIn(zone, ms, how = {}) {
+  try { return new Intl.DateTimeFormat("sv-SE", zone ? { ...how, timeZone: zone } : how).format(ms); } catch { return dateIn("", ms, how); }
 }
 
 /** Whether something of a plant is in hand that is not told yet. */
@@ -80,12 +82,12 @@ export class Field {
     do {
       steps = this.#steps;
       await this.settled();
-      kept = await this.store.several([...KEPT, "people", "heard"]);
+      kept = await this.store.several([...KEPT, "people", "heard", "fast"]);
       known = kept.season ? await this.store.access(kept.season) : null;
     } while (this.#steps !== steps);
-    const { people = {}, heard, ...here } = kept;
+    const { people = {}, heard, fast, ...here } = kept;
     Object.assign(this, here, { people, access: known });
-    this.time.knew(heard);
+    this.time.knew(heard, fast);
     if (access) await this.#comes(access);
     await this.#begin();
   }
@@ -243,7 +245,7 @@ export class Field {
 
   #keep(...names) {
     const values = Object.fromEntries(names.map((name) => [name, this[name] ?? null]));
-    return this.#step({}, () => this.store.put({ ...values, heard: this.time.least() }));
+    return this.#step({}, () => this.store.put({ ...values, ...this.time.known() }));
   }
 
   // -- photos asked for
@@ -361,7 +363,7 @@ export class Field {
       ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.time.best()));
     }
     const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
-    return this.#step(follows, () => this.store.record(record, { ...follows, heard: this.time.least() }), record);
+    return this.#step(follows, () => this.store.record(record, { ...follows, ...this.time.known() }), record);
   }
 
   /** The last record that can be taken back, or undefined. */
@@ -433,6 +435,18 @@ export class Field {
   }
 
   #today() { return dateIn(this.plot.zone, this.time.best()); }
+
+  /** Rows that nobody may enter yet, with the local time until which that is so. */
+  closed() {
+    const now = dateIn(this.plot.zone, this.time.best(), AS_TIME).replace(" ", "T");
+    return (this.day?.closed ?? []).filter((one) => one.until > now);
+  }
+
+  /** The local time until which nobody may enter a plant's row, or null. */
+  closedUntil(plant) {
+    const row = rowOf(this.plot, plant);
+    return this.closed().filter(({ rows: [low, high] }) => row >= low && row <= high).map((one) => one.until).sort().at(-1) ?? null;
+  }
 
   /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
   meant() {

@@ -244,6 +244,8 @@ export class Page {
         !field.done.has(plant) && h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
         field.offRoute && h("span", { class: "tag" }, say("off_route"))),
     );
+    const closed = field.closedUntil(plant);
+    if (closed) place.append(h("p", { class: "bad", id: "closed" }, say("closed", { until: this.#time(closed) })));
     for (const one of field.asked(plant)) {
       const taken = field.draft.photos > 0;
       place.append(h("p", { class: "asked", "data-taken": String(taken) }, `${taken ? "✓" : "▣"} ${one.note ? say("photo_asked_of", { note: one.note }) : say("photo_asked")}`));
@@ -252,6 +254,12 @@ export class Page {
     if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
     const known = (field.day.today ?? []).filter((one) => one.plant === plant && !contradicting.length);
     if (known.length) place.append(h("p", {}, known.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
+  }
+
+  /** A local time as it is said: with its day where that is not the day of the route. */
+  #time(local) {
+    const [day, time] = local.split("T");
+    return day === this.field.day.day ? time : `${day} ${time}`;
   }
 
   #buttons() {
@@ -383,6 +391,7 @@ export class Page {
     const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),
+      ...(field.day ? field.closed() : []).map(({ rows: [low, high], until }) => h("p", { class: "bad" }, say("closed_rows", { low, high, until: this.#time(until) }))),
       // it has not everything where it did not take something
       !((refused.length || this.stranded.size) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
       ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),
@@ -438,7 +447,7 @@ export class Page {
   }
 
   async #saveFile() {
-    const text = JSON.stringify(await this.store.unsent());
+    const text = JSON.stringify(await this.store.unsent(this.field.time.said()));
     const link = h("a", { href: URL.createObjectURL(new Blob([text], { type: "application/json" })), download: `fieldmon-${this.field.season}-${Date.now()}.json` });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 60000);

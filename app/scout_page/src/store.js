@@ -134,13 +134,14 @@ export class Store {
   access(season) { return this.db.get("access", season); }
   async allow(access) { await this.db.put("access", access); }
 
-  /** Everything that the server does not have, for a file: without the keys. */
-  async unsent() {
+  /** Everything that the server does not have, for a file: without the keys. `saved` is what the clock says, `Clock.said`. */
+  async unsent(saved) {
     const all = await Promise.all(["records", "photos"].map((kind) => this.db.getAll(kind)));
     const [records, photos] = all.map((some) => some.filter((one) => one.state !== KEPT).sort((a, b) => a.order - b.order));
     const people = (await this.get("people")) ?? {}, of = (one) => ({ season: one.season, who: people[one.key] ?? "" });
     return {
       kind: "fieldmon findings",
+      saved,
       findings: records.map((one) => ({ ...asSent(one), ...of(one) })),
       photos: photos.map(({ key, bytes, state, order, problem, ...one }) => ({ ...one, ...of({ key, ...one }), base64: base64(bytes) })),
     };

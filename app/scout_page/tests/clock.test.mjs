@@ -56,6 +56,19 @@ test("what was heard is known after the battery was empty", async () => {
   assert.deepEqual([next.clock.least(), next.clock.isWrong()], [said + HOUR, true]);
 });
 
+test("how far ahead it was is known, too, once the page is opened again, and said in a file", async () => {
+  const { phone, clock, hear, said } = aPhone();
+  phone.now = said + 24 * HOUR;
+  await hear(said);
+  const next = aPhone(), { heard, fast } = clock.known();
+  next.clock.knew(heard, fast);
+  next.phone.now = phone.now + HOUR;
+  assert.deepEqual([next.clock.best(), next.clock.isWrong()], [said + HOUR, true]);
+  assert.deepEqual(next.clock.said(), { clock: "2026-11-23T09:00:00.000Z", time: "2026-11-22T09:00:00.000Z" });
+  next.phone.now = said + HOUR; // set right meanwhile
+  assert.equal(next.clock.isWrong(), false);
+});
+
 test("what is no answer of the season says no time", async () => {
   const { clock, said } = aPhone();
   await clock.listening(async () => new Response("", { status: 502, headers: { date: new Date(said).toUTCString() } }))();

@@ -189,7 +189,8 @@ test("a file of what is not sent says whose it is and of which season, and holds
   const { store, field } = await aField();
   await field.addPhoto(field.photoOf(), PICTURE());
   await field.tell("found");
-  const file = await store.unsent(), [one] = file.findings, [photo] = file.photos;
+  const file = await store.unsent(field.time.said()), [one] = file.findings, [photo] = file.photos;
+  assert.deepEqual(file.saved, { clock: "2026-11-22T08:00:00.000Z", time: "2026-11-22T08:00:00.000Z" });
   assert.deepEqual([file.kind, one.season, one.who, one.id], ["fieldmon findings", "Gate", "Ann", photo.finding]);
   assert.deepEqual([photo.season, photo.who, Buffer.from(photo.base64, "base64").length], ["Gate", "Ann", 5000]);
   assert.ok(!("key" in one) && !("key" in photo));
@@ -349,6 +350,13 @@ test("the full planner plans the rest when the network is there", async () => {
   const { field } = await aField();
   await field.planRest();
   assert.deepEqual([field.ahead, field.plant], [[14, 13], 14]);
+});
+
+test("rows that were sprayed are closed until their time on the plot", async () => {
+  const season = new ASeason(aDay(undefined, { closed: [{ rows: [1, 2], until: "2026-11-22T10:01" }, { rows: [2, 3], until: "2026-11-22T10:00" }] }));
+  const { field } = await aField(season);
+  assert.deepEqual([0, 5, 10].map((plant) => field.closedUntil(plant)), ["2026-11-22T10:01", "2026-11-22T10:01", null]);
+  assert.equal(field.closed().length, 1);
 });
 
 test("a time zone that is too new for the phone stops nothing: its own is taken", async () => {

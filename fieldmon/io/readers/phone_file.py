@@ -61,10 +61,20 @@ class SavedRecord:
 
 @dataclass(frozen=True)
 class PhoneFile:
-    """What a phone saved: findings in the order in which they were told, and photos."""
+    """What a phone saved.
+
+    Parameters
+    ----------
+    findings, photos
+        In the order in which they were told.
+    clocks
+        What the phone's clock said then, and the time as far as the phone knew it; None: the file
+        does not say.
+    """
 
     findings: tuple[SavedRecord, ...]
     photos: tuple[SavedRecord, ...]
+    clocks: tuple[datetime, datetime] | None = None
 
     def of(self, season: str) -> PhoneFile:
         """Return what is of a season of this name, or of a season that is not named."""
@@ -72,14 +82,14 @@ class PhoneFile:
             tuple(one for one in some if one.season in {"", season})
             for some in (self.findings, self.photos)
         )
-        return PhoneFile(findings, photos)
+        return replace(self, findings=findings, photos=photos)
 
     def by(self, who: str) -> PhoneFile:
         """Return the same as that of somebody, whoever it says."""
         findings, photos = (
             tuple(replace(one, who=who) for one in some) for some in (self.findings, self.photos)
         )
-        return PhoneFile(findings, photos)
+        return replace(self, findings=findings, photos=photos)
 
 
 def is_phone_file(source: Source) -> bool:
@@ -103,7 +113,9 @@ def phone_file_of(source: Source, workroom: Workroom) -> Imported[PhoneFile]:
         (member,) = members(source, workroom)
         told = json.loads(workroom.stage(member).read_bytes())
         lists = [[*told[name]] for name in ("findings", "photos")]
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        saved = told.get("saved")
+        clocks = None if saved is None else (moment(saved["clock"]), moment(saved["time"]))
+    except (ValueError, KeyError, TypeError, RecursionError, ObservationError) as error:
         raise FileProblem(
             worded(
                 "{name} must be what a phone saved, but it is not whole. Save it again on the "
@@ -114,7 +126,7 @@ def phone_file_of(source: Source, workroom: Workroom) -> Imported[PhoneFile]:
     messages: list[ImportMessage] = []
     findings = _each(lists[0], fields_of, messages, worded("finding"))
     photos = _each(lists[1], _photo, messages, worded("photo"))
-    return Imported(PhoneFile(findings, photos), tuple(messages))
+    return Imported(PhoneFile(findings, photos, clocks), tuple(messages))
 
 
 def fields_of(said: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,7 +1,8 @@
 """A phone is told of the plot and the day what the season says."""
 
 import json
-from datetime import timedelta
+from dataclasses import replace
+from datetime import time, timedelta
 from types import SimpleNamespace
 
 import jsonschema
@@ -14,8 +15,11 @@ from app.show import who_is_out
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.monitoring import scouts
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.findings import take
+from fieldmon.monitoring.scouts_out import scouts_out
+from fieldmon.planning.members import team_of
 from fieldmon.plot.local_clock import local_clock
 from tests.monitoring.phone import NOW, a_finding
 from tests.monitoring.seasons import BEGINS, a_season
@@ -121,3 +125,28 @@ def test_the_board_warns_until_a_phone_has_the_plan_given_last(tmp_path):
     assert warned() == ["Dan"], "the rest of both was planned anew"
     loaded(dan)
     assert warned() == []
+
+
+def test_rows_that_nobody_may_enter_are_told_with_the_time_until_which(served, scout):
+    season, line = served.season, served.season.label.line
+    waits = Application("Acarol", reentry_hours=48.0, ended=time(9, 30))
+    season.treat(BEGINS, 0.5, plants=np.isin(line, [3, 4, 7]), application=waits)
+    day = json.loads(day_document(season, scout, BEGINS + timedelta(days=1)))
+    jsonschema.validate(day, description.DAY)
+    until = "2026-04-08T09:30"
+    assert day["closed"] == [{"rows": [3, 4], "until": until}, {"rows": [7, 7], "until": until}]
+    assert json.loads(day_document(season, scout, BEGINS + timedelta(days=3)))["closed"] == []
+
+
+def test_who_is_of_the_team_has_its_route_though_an_older_file_has_rows_for_the_code(tmp_path):
+    season = a_season(tmp_path / "team.gpkg")
+    ann = scouts.who(season, scouts.let_in(season, "robot-1", (1, 4)))
+    before = season.settings
+    season.change(replace(before, team=team_of(2, before.robot)), before)
+    day = json.loads(day_document(season, ann, BEGINS))
+    assert day["rows"] is None
+    assert day["route"]["plants"] == season.kept_route(BEGINS, "robot-1").tolist()
+    rest = json.loads(rest_document(season, ann, BEGINS, 1200.0))
+    assert rest["route"]["plants"] == season.kept_route(BEGINS, "robot-1").tolist()
+    (line, _) = scouts_out(season, BEGINS)
+    assert (line.rows, line.ahead, line.plan) == (None, len(rest["route"]["plants"]), rest["plan"])

@@ -1,5 +1,6 @@
 """A line for each who is out: what is known, and what to look after."""
 
+from dataclasses import replace
 from datetime import datetime, timedelta
 from types import SimpleNamespace
 
@@ -12,6 +13,7 @@ from app.words.units import UnitsInLanguage
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.day_ahead import DayAhead, Part, route_ahead
 from fieldmon.monitoring.findings import take
+from fieldmon.monitoring.scouts_out import ScoutOut
 from fieldmon.plot.local_clock import local_clock, utc_now
 from tests.monitoring.phone import a_finding
 from tests.monitoring.seasons import BEGINS, a_season
@@ -64,3 +66,16 @@ def test_a_time_of_another_day_names_it(choices):
 )  # fmt: skip
 def test_how_far_a_clock_is_off_is_said_as_one_would_count_it(off, said):
     assert said in who_is_out._clock_off(off)
+
+
+def test_late_finds_and_rows_that_overlap_are_said(choices, monkeypatch):
+    one = ScoutOut(
+        "Ann", (1, 8), None, None, timedelta(), 0, 5, 1, (), True, True, ("Ben", "Cem"), 3
+    )
+    monkeypatch.setattr(who_is_out, "scouts_out", lambda *_: (one, replace(one, ahead=0)))
+    late = texts.OUT_NEWER.format(n=3)
+    ann, done = who_is_out.lines(choices)
+    assert "3 newer finds" in late
+    assert late in ann.cautions
+    assert late not in done.cautions
+    assert texts.OUT_OVERLAPS.format(others="\u2068Ben\u2069, \u2068Cem\u2069") in ann.cautions

@@ -41,6 +41,15 @@ def test_findings_and_photos_come_out_as_they_were_told(tmp_path):
     assert (photo.fields["finding"], photo.fields["data"]) == (ID, b"\xff\xd8\xffx")
 
 
+def test_a_file_says_what_the_clock_said_and_one_from_before_does_not():
+    clocks = {"clock": "2026-04-07T06:00:00.000Z", "time": "2026-04-06T06:00:00.000Z"}
+    read = read_phone_file(saved([GOOD], saved=clocks)).value.of("gate").by("Ann")
+    assert [at.day for at in read.clocks] == [7, 6]
+    assert read_phone_file(saved([GOOD])).value.clocks is None
+    with pytest.raises(FileProblem, match="not whole"):
+        read_phone_file(saved([GOOD], saved=clocks | {"time": "noon"}))
+
+
 def test_a_file_from_before_says_neither_season_nor_person():
     bare = {name: value for name, value in GOOD.items() if name not in {"season", "who"}}
     source = Upload("old.json", json.dumps({"findings": [bare], "photos": []}).encode())

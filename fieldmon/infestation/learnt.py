@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import estimate, figure, worded
-from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.origins import (
     ANYWHERE,
     ARRIVE,
@@ -20,6 +19,7 @@ from fieldmon.infestation.origins import (
     SIGMAS,
     Estimate,
 )
+from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
 
@@ -153,13 +153,12 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
         at_start = estimate(AT_START, suspected) + estimate(AT_START_ELSEWHERE, elsewhere)
     else:
         # nothing was inspected yet: in as much doubt as what is there now
-        low, high = level_range(belief.chance, belief.doubt, named=belief.pest is not None).of(
-            belief.chance
-        )
-        told = (suspected + elsewhere) / belief.chance.sum()
-        at_start = Estimate(
-            suspected + elsewhere, float(low.sum() * told), float(high.sum() * told)
-        )
+        now = estimate_plot(
+            belief.grid, belief.chance, belief.pair_chance, doubt=belief.doubt,
+            named=belief.pest is not None,
+        )  # fmt: skip
+        told = (suspected + elsewhere) / now.expected
+        at_start = Estimate(suspected + elsewhere, now.low * told, now.high * told)
     return (
         at_start,
         estimate(ANYWHERE, n * ARRIVE) + estimate(BY_EDGE, n * ARRIVE_BY_EDGE),

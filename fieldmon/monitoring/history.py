@@ -401,6 +401,8 @@ class History:
         And of inspections that are told to have a `detection`; None: of those made until then.
         """
         told = self.told(day) if detection is None else detection
+        if np.all(self.until(day).result == SKIPPED):  # nights alone teach nothing
+            return learnt_from(self.first_morning, told)
         return learnt_from(self.in_hindsight(morning, day), told)
 
     def first_find(self, on: date) -> date | None:

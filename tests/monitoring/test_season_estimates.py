@@ -62,6 +62,17 @@ def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):
     assert np.all(wide[1:] >= 0.99 * wide[0])
 
 
+def test_until_something_is_inspected_no_day_tells_more_of_the_start(season):
+    def start(day):
+        return {one.name: one for one in season.learnt(on(day))}["infested at the start"]
+
+    first, now = start(0), season.status(on(0)).estimate
+    assert (first.value, first.low, first.high) == (now.expected, now.low, now.high)
+    assert [start(day) for day in (3, 12)] == [first, first]
+    season.record(some_results(season, n=20, day=12, found=[3]), "x")
+    assert start(12) != first
+
+
 def test_finds_that_are_only_flagged_stay_infested(tmp_path):
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
     results = some_results(season, found=[0])

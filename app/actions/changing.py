@@ -106,8 +106,9 @@ def _with_sampler(settings: MonitoringSettings, key: str) -> MonitoringSettings:
     sampler = st.selectbox(
         texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **named()
     )
-    st.caption(sampler_does(sampler))
-    return settings if sampler == settings.sampler else settings.with_sampler(sampler)
+    wanted = settings if sampler == settings.sampler else settings.with_sampler(sampler)
+    st.caption(sampler_does(sampler, wanted.sampler_settings.get("every")))
+    return wanted
 
 
 def _wanted(

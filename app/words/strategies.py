@@ -12,9 +12,12 @@ def sampler_name(sampler: str) -> str:
     return _parts(sampler)[0]
 
 
-def sampler_does(sampler: str) -> str:
-    """Return what a sampler does, without its name."""
-    return _parts(sampler)[1]
+def sampler_does(sampler: str, every: float | None = None) -> str:
+    """Return what a sampler does, without its name; with another N (`every`) than usual."""
+    does, usual = _parts(sampler)[1], kind_of(sampler).every
+    if every is None or every == usual:
+        return does
+    return texts.SAMPLER_EVERY.format(does=does, every=every, usual=usual)
 
 
 def _parts(sampler: str) -> tuple[str, str]:

@@ -95,6 +95,7 @@ ROBOT_TIMES_NAMES = {
 }
 SAMPLER = "Who chooses the plants"
 SAMPLERS = {name: f"{kind.title}: {kind.does}" for name, kind in of_equal_times().items()}
+SAMPLER_EVERY = "{does}; but here N is {every:g}, not {usual:g}"
 DATE = "Day"
 DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
 ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"

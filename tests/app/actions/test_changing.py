@@ -184,3 +184,11 @@ def test_of_a_team_the_one_chosen_is_said_and_what_the_app_cannot_change_is_not_
     next(one for one in season_app.selectbox if one.label == texts.SAMPLER).set_value("naive").run()
     press(season_app, "Use from now on")
     assert (season().settings.sampler, season().settings.team) == ("naive", team)
+
+
+def test_another_n_than_usual_is_said_beside_what_the_sampler_does(season_app, season):
+    kept = season()
+    every = replace(kept.settings, sampler="bouncy", sampler_settings={"every": 5})
+    kept.change(every, kept.settings)
+    go(season_app, "season")
+    assert "every second plant; but here N is 5, not 2" in texts_of(season_app)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.errors import FieldmonError
+from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.import_report import ImportMessage, Severity
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.monitoring.settings import MOST_DAYS
@@ -25,7 +25,6 @@ from ..state import (
     chosen_units,
     held,
     kept_files,
-    notices,
     plot_files,
     plot_source,
     sample_estate,
@@ -102,21 +101,21 @@ def _chosen(head: DeltaGenerator, work: Work, wait: Wait, options: list[str]) ->
             if source in (plot_source.SAMPLE, plot_source.FILES):
                 return Chosen(_from_files(source, wait, work))
             wait(None)
+            if source not in seasons_folder.names():  # it may be back at the next run
+                raise FileProblem(texts.SEASON_GONE.format(name=texts.isolated(source)))
             return Chosen(_from_season(source, work))
         except FieldmonError as error:
             return Chosen(problem=error)
 
 
 def _options() -> list[str]:
-    """Return where a plot may come from; say so if the season that is asked for is gone."""
+    """Return where a plot may come from; the season that is asked for, also while it is gone."""
     options = [plot_source.SAMPLE, plot_source.FILES, *seasons_folder.names()]
     plot_source.begin_from_address()
     named = widget_memory.value(plot_source.KEY)
-    if named not in options:
-        if named:
-            notices.keep("error", texts.SEASON_GONE.format(name=texts.isolated(named)))
+    if not named:
         st.session_state[plot_source.KEY] = plot_source.SAMPLE
-    return options
+    return options if not named or named in options else [*options, named]
 
 
 def _source(options: list[str]) -> str:

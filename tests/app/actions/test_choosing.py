@@ -3,6 +3,7 @@
 from shapely import MultiPolygon, box
 
 from app.actions import choosing
+from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.plot.field import Field
 from tests.app.driving import go, headline, map_of, metric, plants, plot_name
@@ -68,14 +69,20 @@ def test_lengths_and_dates_are_written_as_the_person_wants(app):
     assert metric(app, "Rows / plants apart") == "13.1 ft / 9.8 ft"
 
 
-def test_a_season_that_is_gone_leaves_the_sample(season_app, season):
-    season().path.unlink()
+def test_a_season_that_is_gone_is_waited_for_and_nothing_stands_in_its_place(season_app, season):
+    path = season().path
+    away = path.rename(path.with_suffix(".away"))
+    for _ in range(2):
+        season_app.run()
+        assert not season_app.exception
+        assert season_app.selectbox(key="season").value == "Gate 2026"
+        (said,) = season_app.error
+        assert said.value == texts.SEASON_GONE.format(name="\u2068Gate 2026\u2069")
+        assert not season_app.metric
+    away.rename(path)
     season_app.run()
-    assert not season_app.exception
-    assert season_app.selectbox(key="season").value == "Sample estate"
-    (said,) = season_app.error
-    assert "There is no season \u2068Gate 2026\u2069 here" in said.value
-    assert not season_app.run().error, "said once"
+    assert not season_app.error
+    assert season_app.metric
 
 
 def test_who_waits_with_a_phone_is_told_so_outside_of_the_box_that_folds(season_app, monkeypatch):

@@ -7,8 +7,10 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.pests.weather import weather_of
 from tests.monitoring.seasons import (
     BEGINS,
     a_season,
@@ -60,6 +62,15 @@ def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):
     wide = ahead.high / np.maximum(ahead.low, 1.0)
     assert np.all(np.diff(ahead.expected) > 0.0)
     assert np.all(wide[1:] >= 0.99 * wide[0])
+
+
+def test_a_forecast_of_a_past_day_says_which_weather_was_measured(tmp_path):
+    days = np.arange(12) * 86_400 + np.datetime64(BEGINS, "s")
+    warm, later = np.full(12, 20.0), np.arange(12) >= 9
+    weather = weather_of(days, 86_400, temperature_c=warm, forecast=later)
+    season = a_season(tmp_path / "s.gpkg", pest=shipped_pest("spider-mite"), weather=weather)
+    said = "by the weather measured for 8 nights and forecast for 3 nights, then the usual"
+    assert season.forecast(on(1)).basis() == said
 
 
 def test_finds_that_are_only_flagged_stay_infested(tmp_path):

@@ -35,8 +35,12 @@ def _basis(ahead: Forecast) -> str:
     """Return what weather it is made from."""
     if ahead.weather is None:
         return texts.AHEAD_BASIS["none"]
-    if ahead.weather >= ahead.nights:
-        return texts.AHEAD_BASIS["forecast"]
     if ahead.weather == 0:
         return texts.AHEAD_BASIS["usual"]
-    return texts.AHEAD_BASIS["partly"].format(n=number(ahead.weather, "d"))
+    by_forecast = ahead.weather - ahead.measured
+    if ahead.nights in (ahead.measured, by_forecast):
+        return texts.AHEAD_BASIS["forecast" if by_forecast else "measured"]
+    how = "partly" if not ahead.measured else "both" if by_forecast else "partly_measured"
+    said = texts.AHEAD_BASIS[how if ahead.weather < ahead.nights else "both_all"]
+    n, measured = (number(each, "d") for each in (by_forecast, ahead.measured))
+    return said.format(n=n, measured=measured)

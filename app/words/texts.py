@@ -854,7 +854,16 @@ AHEAD = (
 AHEAD_BASIS = {
     "none": "No weather is known: every night is taken as the season's settings say.",
     "forecast": "By the weather forecast.",
+    "measured": "By the weather measured.",
     "partly": "By the weather forecast for {n} of the nights, and the usual of the date after it.",
+    "partly_measured": (
+        "By the weather measured for {measured} of the nights, and the usual of the date after it."
+    ),
+    "both": (
+        "By the weather measured for {measured} of the nights and forecast for {n}, and the usual "
+        "of the date after it."
+    ),
+    "both_all": "By the weather measured for {measured} of the nights, and forecast for {n}.",
     "usual": "By the usual weather of the date: there is no forecast.",
 }
 NOT_LEARNT = "This season traces finds to the plants next to them only, as it did when it began."

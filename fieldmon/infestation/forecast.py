@@ -54,12 +54,15 @@ class Forecast:
     weather
         How many of the nights had weather that was measured or forecast; of the others the usual
         was taken. None: no weather is known.
+    measured
+        How many of these nights had weather that was measured.
     """
 
     expected: Floats
     low: Floats
     high: Floats
     weather: int | None = None
+    measured: int = 0
 
     def __repr__(self) -> str:
         return f"<Forecast: {self.sentence()}>"
@@ -82,11 +85,15 @@ class Forecast:
         """Return in words what weather it is made from."""
         if self.weather is None:
             return "no weather is known"
-        if self.weather >= self.nights:
-            return "by the weather forecast"
         if self.weather == 0:
             return "by the usual weather of the date"
-        return f"by the weather forecast for {counted(self.weather, 'night')}, then the usual"
+        ahead = self.weather - self.measured
+        each = {"measured": self.measured, "forecast": ahead}
+        if self.nights in each.values():
+            return f"by the weather {'forecast' if ahead else 'measured'}"
+        parts = [f"{how} for {counted(n, 'night')}" for how, n in each.items() if n]
+        then = ", then the usual" if self.weather < self.nights else ""
+        return f"by the weather {' and '.join(parts)}{then}"
 
 
 def forecast(

@@ -155,6 +155,10 @@ class PestInWeather:
         """Tell whether the weather of a day was measured or forecast."""
         return self.begins + timedelta(days=number) in self._known
 
+    def measured(self, number: int) -> bool:
+        """Tell whether the weather of a day was measured, all that is known of it."""
+        return self.known(number) and self.begins + timedelta(days=number) not in self._forecast
+
     def usual(self, on: date) -> DayWeather:
         """Return the mean of the days that stand for a day without weather, see `UsualDays`."""
         days, usual = self._usual
@@ -215,6 +219,13 @@ class PestInWeather:
     def _known(self) -> dict[date, DayWeather]:
         """Every local day of the weather, in order."""
         return {} if self.weather is None else _days(self.weather)
+
+    @cached_property
+    def _forecast(self) -> set[date]:
+        """Local days of which some weather was forecast."""
+        if self.weather is None:
+            return set()
+        return set(self.weather.local_days()[self.weather.forecast].astype(object).tolist())
 
     @cached_property
     def _usual(self) -> tuple[list[DayWeather], UsualDays]:

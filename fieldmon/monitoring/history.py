@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import timedelta
 from functools import cached_property
 from numbers import Real
@@ -292,16 +292,18 @@ class History:
     def forecast(self, morning: Belief, day: int, nights: int = NIGHTS) -> Forecast:
         """Return how many plants are infested on the next mornings, nobody inspecting any more.
 
-        By the weather forecast, where there is one, and by the usual of the date after it.
+        By the weather measured or forecast, where there is any, and by the usual of the date after
+        it.
         """
-        ahead = range(day, day + nights)
-        known = None
-        if self.pest_in_weather is not None and self.pest_in_weather.weather is not None:
-            known = sum(self.pest_in_weather.known(number) for number in ahead)
+        ahead, known, measured = range(day, day + nights), None, 0
+        if (pest := self.pest_in_weather) is not None and pest.weather is not None:
+            known = sum(pest.known(number) for number in ahead)
+            measured = sum(pest.measured(number) for number in ahead)
         evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
         # what is flagged and not treated is still out there tomorrow, but not left to be found
         now = self.estimate(morning, day) if self.belief.treated else None
-        return forecast(evening, self.grid, spreads, known, now)
+        made = forecast(evening, self.grid, spreads, known, now)
+        return replace(made, measured=measured)
 
     def evening(self, morning: Belief, day: int) -> Belief:
         """Return what is believed after what was found and treated on a day."""

@@ -45,7 +45,7 @@ class Weather:
     Parameters
     ----------
     at
-        ``(n,)`` datetime64[s], UTC: when each hour or local day begins.
+        ``(n,)`` datetime64[s], UTC: when each local hour or day begins.
     step_s
         3 600 or 86 400.
     temperature_c

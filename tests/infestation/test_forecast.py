@@ -115,22 +115,26 @@ def test_the_interval_widens_as_nights_go_by():
 
 
 @pytest.mark.parametrize(
-    ("weather", "basis"),
+    ("weather", "measured", "basis"),
     [
-        (None, "no weather is known"),
-        (14, "by the weather forecast"),
-        (0, "by the usual weather of the date"),
-        (3, "by the weather forecast for 3 nights, then the usual"),
+        (None, 0, "no weather is known"),
+        (14, 0, "by the weather forecast"),
+        (14, 14, "by the weather measured"),
+        (0, 0, "by the usual weather of the date"),
+        (3, 0, "by the weather forecast for 3 nights, then the usual"),
+        (8, 8, "by the weather measured for 8 nights, then the usual"),
+        (8, 7, "by the weather measured for 7 nights and forecast for 1 night, then the usual"),
+        (14, 9, "by the weather measured for 9 nights and forecast for 5 nights"),
     ],
 )
-def test_it_says_what_weather_it_is_made_from(weather, basis):
+def test_it_says_what_weather_it_is_made_from(weather, measured, basis):
     made = np.linspace(10.0, 40.0, 15)
-    ahead = Forecast(made, made / 2, made * 2, weather)
+    ahead = Forecast(made, made / 2, made * 2, weather, measured)
     assert ahead.sentence() == (
         "40 plants infested after 14 nights without inspections (20 to 80 with a chance of 90 %), "
         f"now 10; {basis}"
     )
-    many = Forecast(100 * made, 50 * made, 200 * made, weather).sentence()
+    many = Forecast(100 * made, 50 * made, 200 * made, weather, measured).sentence()
     assert many.startswith("4,000 plants infested")
     assert "(2,000 to 8,000 with a chance of 90 %), now 1,000;" in many
 

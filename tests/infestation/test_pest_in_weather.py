@@ -102,7 +102,9 @@ def test_days_beyond_the_file_are_the_usual_of_their_date():
     lastly = PestInWeather(MITE, daily(days=3, temperature_c=[20.0, 22.0, 24.0]), BEGINS)
     assert lastly.day(9).temperature_c == pytest.approx(np.full(24, 22.0))
     assert lastly.known(2)
+    assert lastly.measured(2)
     assert not lastly.known(3)
+    assert not lastly.measured(3)
     years = daily("2025-06-01", 400, temperature_c=np.arange(400.0) / 20)
     usual = PestInWeather(MITE, years, date(2026, 8, 1)).day(0).temperature_c
     # the first of August of the year before is day 61, and those about it even out
@@ -221,6 +223,13 @@ def test_a_night_is_what_its_hours_bring_one_by_one(seed, by_hour, wind):
     spread = in_weather.spread(1, FRAME)
     told = spread.sends, spread.wind_m_s, spread.warmth, spread.days, spread.arrivals_per_day
     assert told == (night.sends, night.wind_m_s, night.warmth, 1.0, 1e-4)
+
+
+def test_a_day_of_which_some_hours_were_forecast_was_not_measured():
+    weather = hourly(days=2, temperature_c=[20.0], forecast=np.arange(48) > 40)
+    in_weather = PestInWeather(MITE, weather, BEGINS)
+    assert [in_weather.known(k) for k in range(3)] == [True, True, False]
+    assert [in_weather.measured(k) for k in range(3)] == [True, False, False]
 
 
 @pytest.mark.parametrize("day", [-3, 5, 30])

@@ -7,8 +7,10 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.pests.weather import weather_of
 from tests.monitoring.seasons import (
     BEGINS,
     a_season,
@@ -71,6 +73,15 @@ def test_until_something_is_inspected_no_day_tells_more_of_the_start(season):
     assert [start(day) for day in (3, 12)] == [first, first]
     season.record(some_results(season, n=20, day=12, found=[3]), "x")
     assert start(12) != first
+
+
+def test_a_forecast_of_a_past_day_says_which_weather_was_measured(tmp_path):
+    days = np.arange(12) * 86_400 + np.datetime64(BEGINS, "s")
+    warm, later = np.full(12, 20.0), np.arange(12) >= 9
+    weather = weather_of(days, 86_400, temperature_c=warm, forecast=later)
+    season = a_season(tmp_path / "s.gpkg", pest=shipped_pest("spider-mite"), weather=weather)
+    said = "by the weather measured for 8 nights and forecast for 3 nights, then the usual"
+    assert season.forecast(on(1)).basis() == said
 
 
 def test_finds_that_are_only_flagged_stay_infested(tmp_path):

@@ -35,6 +35,7 @@ from fieldmon.io.parse.weather_columns import (
 from fieldmon.io.readers.weather_json import is_weather_json, rows_of_json
 from fieldmon.io.readers.weather_rows import WeatherRows
 from fieldmon.io.readers.weather_services import columns_of_service, service_of
+from fieldmon.io.readers.weather_stations import must_be_one_station
 from fieldmon.io.readers.weather_times import is_time_name, time_columns, times_of
 from fieldmon.io.sandbox.unpack import members
 from fieldmon.pests.weather import MEASURED
@@ -106,6 +107,8 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     names_read = ", ".join(one.name for one in columns) or "none"
     messages += [seen(worded("Columns of weather: {names}.", names=names_read)), *said]
     timed = times_of(layer, when, options, service)
+    taken = {*when.names, *(one.name for one in columns), *filter(_is_forecast, layer.columns)}
+    must_be_one_station(layer, timed.at, taken)
     messages += timed.messages
     measured, step_s = {}, _step_s(timed.at)
     for column in columns:
@@ -266,9 +269,14 @@ def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) ->
     return values
 
 
+def _is_forecast(name: str) -> bool:
+    """Return whether a column of this name says what was forecast."""
+    return _FORECAST_COLUMN.search(plain(name)) is not None
+
+
 def _forecast(layer: Layer) -> NDArray[np.bool_]:
     """Return which rows a column calls forecast."""
-    column = next((n for n in layer.columns if _FORECAST_COLUMN.search(plain(n))), None)
+    column = next((n for n in layer.columns if _is_forecast(n)), None)
     if column is None:
         return np.zeros(len(layer), bool)
     return np.array(

@@ -104,8 +104,8 @@ class WeatherRows:
         return rows, messages
 
     def binned(self, *, by_day: bool, now: datetime | None) -> Weather:
-        """Return these rows, in order of time, gathered into hours or local days."""
-        begins = self._local_midnights() if by_day else self.at.astype("datetime64[h]")
+        """Return these rows, in order of time, gathered into local hours or days."""
+        begins = self._local_midnights() if by_day else self._local_hours()
         at, first = np.unique(begins.astype("datetime64[s]"), return_index=True)
         ends = np.append(first[1:], len(begins))
         bins = [slice(int(a), int(b)) for a, b in zip(first, ends, strict=True)]
@@ -159,6 +159,13 @@ class WeatherRows:
         # a hair west of north is north, not 360
         turned = round(float(np.degrees(np.arctan2(x, y))), 3) % 360.0
         return turned if np.hypot(x, y) > 1e-9 else float("nan")
+
+    def _local_hours(self) -> Times:
+        """Return when the local hour of each row begins, UTC; in India at half past."""
+        seconds = self.at.astype(np.int64)
+        clocks = [datetime.fromtimestamp(one, self.zone) for one in seconds.tolist()]
+        since_s = np.array([60 * clock.minute + clock.second for clock in clocks], np.int64)
+        return (seconds - since_s).astype("datetime64[s]")
 
     def _local_midnights(self) -> Times:
         """Return when the local day of each row begins, UTC."""

@@ -10,7 +10,6 @@ Decisions
 from __future__ import annotations
 
 import re
-from collections import Counter
 from datetime import UTC, date, datetime, timedelta, timezone
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -51,10 +50,6 @@ _DAYS = frozenset(
     {"datetime", "timestamp", "date", "datumzeit"}
     | {"messdatum", "valid", "zeitstempel", "fechahora", "dateheure", "datahora"}
     | {"dataora", "תאריךושעה", "تاريخ", "التاريخ", "observationtime", "localtime", "yyyymmdd"}
-)
-_STATIONS = frozenset(
-    {"stn", "station", "stationid", "stationsid", "stationname", "stationcode", "stationno"}
-    | {"site", "siteid", "locationid", "estacion", "stazione", "תחנה", "محطة"}
 )
 # 2026111813, 20261118:1300, 202611181300
 _PACKED = re.compile(r"^(\d{4})(\d\d)(\d\d)[ T:_]?(\d\d)(?::?(\d\d)(?::?\d\d)?)?(Z?)$")
@@ -160,7 +155,7 @@ def times_of(
     Raises
     ------
     ChoiceNeeded
-        If dates could be day or month first, or the table holds several stations.
+        If dates could be day or month first.
     """
     zone = zone_of(options.zone) if options.zone else UTC
     cells = _cells(layer, columns)
@@ -209,7 +204,6 @@ def times_of(
         messages.append(
             dropped(worded("{n} {n:time is|times are} none ({shown}).", n=n_broken, shown=shown))
         )
-    _must_be_one_station(layer, at)
     return TimesRead(at, zone, messages)
 
 
@@ -349,23 +343,3 @@ def _skipped(local: Times, zone: tzinfo) -> datetime | None:
         if moment.astimezone(UTC).astimezone(zone).replace(tzinfo=None) != naive:
             return naive
     return None
-
-
-def _must_be_one_station(layer: Layer, at: Times) -> None:
-    """Ask for one of several stations whose times stand side by side."""
-    timed = at[~np.isnat(at)]
-    column = next((name for name in layer.columns if plain(name) in _STATIONS), None)
-    if column is None or len(np.unique(timed)) == len(timed):
-        return
-    named = Counter(text(v) for v in layer.columns[column])
-    if len(named) > 1:
-        raise ChoiceNeeded(
-            worded(
-                "{name} holds {n} stations ({shown}). Which is it?",
-                name=layer.name,
-                n=len(named),
-                shown=", ".join(list(named)[:5]),
-            ),
-            "where",
-            tuple(f"{column}={one}" for one, _ in named.most_common(50)),
-        )

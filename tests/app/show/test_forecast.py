@@ -18,8 +18,8 @@ DAYS = np.linspace(10.0, 40.0, 15)
 def shown(monkeypatch):
     """Return what is shown of a forecast."""
 
-    def show(weather):
-        lines, made = [], Forecast(DAYS, DAYS // 2, DAYS * 3, weather)
+    def show(weather, measured=0):
+        lines, made = [], Forecast(DAYS, DAYS // 2, DAYS * 3, weather, measured)
         monkeypatch.setattr(st, "markdown", lines.append)
         monkeypatch.setattr(st, "caption", lines.append)
         monkeypatch.setattr(st, "altair_chart", lambda chart, **_: lines.append(chart.to_dict()))
@@ -41,13 +41,17 @@ def test_the_last_morning_is_said_with_its_interval_and_drawn_by_date(shown):
 
 
 @pytest.mark.parametrize(
-    ("weather", "said"),
+    ("weather", "measured", "said"),
     [
-        (None, texts.AHEAD_BASIS["none"]),
-        (14, texts.AHEAD_BASIS["forecast"]),
-        (0, texts.AHEAD_BASIS["usual"]),
-        (5, texts.AHEAD_BASIS["partly"].format(n="5")),
+        (None, 0, texts.AHEAD_BASIS["none"]),
+        (14, 0, texts.AHEAD_BASIS["forecast"]),
+        (14, 14, texts.AHEAD_BASIS["measured"]),
+        (0, 0, texts.AHEAD_BASIS["usual"]),
+        (5, 0, texts.AHEAD_BASIS["partly"].format(n="5")),
+        (5, 5, texts.AHEAD_BASIS["partly_measured"].format(measured="5")),
+        (5, 3, texts.AHEAD_BASIS["both"].format(measured="3", n="2")),
+        (14, 3, texts.AHEAD_BASIS["both_all"].format(measured="3", n="11")),
     ],
 )
-def test_the_weather_that_it_is_made_from_is_said(shown, weather, said):
-    assert shown(weather)[-1] == said
+def test_the_weather_that_it_is_made_from_is_said(shown, weather, measured, said):
+    assert shown(weather, measured)[-1] == said

@@ -1,20 +1,23 @@
 """Measurements at any times become hours or days."""
 
+from datetime import date, datetime
 from zoneinfo import ZoneInfo
 
 import numpy as np
 import pytest
 
+import fieldmon as fm
 from fieldmon.errors import FileProblem
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.io.readers.weather_rows import WeatherRows, utc_times
 
 BERLIN = ZoneInfo("Europe/Berlin")
 
 
-def rows(at, **measured):
+def rows(at, zone=BERLIN, **measured):
     at = np.array(at, "datetime64[s]")
     given = {name: np.array(values, float) for name, values in measured.items()}
-    return WeatherRows(at, given, np.zeros(len(at), bool), BERLIN, "Europe/Berlin")
+    return WeatherRows(at, given, np.zeros(len(at), bool), zone, zone.key)
 
 
 def test_six_hours_apart_are_gathered_into_days_with_their_extremes():
@@ -48,3 +51,20 @@ def test_local_times_become_utc_and_the_hour_that_comes_again_is_later():
     ]  # fmt: skip
     assert np.isnat(made[3])
     assert utc_times(local[2::-1], BERLIN).tolist() == made[2::-1].tolist()
+
+
+@pytest.mark.parametrize("minutes", [60, 15])
+@pytest.mark.parametrize(
+    "zone",
+    ["Asia/Kolkata", "Asia/Kathmandu", "Asia/Tehran", "America/St_Johns", "Australia/Adelaide"],
+)
+def test_hours_begin_by_the_clock_of_the_place_where_that_is_no_hour_of_utc(zone, minutes):
+    """Clocks of Adelaide are put back in these days, and an hour comes twice."""
+    first = datetime(2026, 4, 4, tzinfo=ZoneInfo(zone)).timestamp()
+    at = (int(first) + 60 * minutes * np.arange(72 * 60 // minutes)).astype("datetime64[s]")
+    clock = [datetime.fromtimestamp(s, ZoneInfo(zone)).hour for s in at.astype(int).tolist()]
+    weather, _ = rows(at, ZoneInfo(zone), temperature_c=clock).gathered("w", None)
+    assert weather.at.tolist() == at[:: 60 // minutes].tolist()
+    assert weather.local_days()[:25].astype(str).tolist() == 24 * ["2026-04-04"] + ["2026-04-05"]
+    known = PestInWeather(fm.read_pest("spider-mite"), weather, date(2026, 4, 4))
+    assert [known.day(k).temperature_c.tolist() for k in (0, 1)] == 2 * [list(range(24))]

@@ -7,8 +7,7 @@ import numpy as np
 import openpyxl
 import pytest
 
-from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.readers.weather_options import WeatherOptions
+from fieldmon.errors import FileProblem
 
 HOURS = [(18 + k // 24, k % 24) for k in range(48)]
 #: local midnight in Jerusalem's winter
@@ -137,15 +136,3 @@ def test_a_station_whose_clock_is_never_put_forward_is_in_standard_time(read_wea
 def test_days_and_months_in_both_orders_are_told(read_weather):
     days = "".join(f"{day},20\n" for day in ("13/11/2026", "12/11/2026", "11/14/2026"))
     assert "day first and month first in one column" in said(read_weather(f"date,temp (C)\n{days}"))
-
-
-def test_several_stations_in_a_file_are_asked_for(read_weather):
-    rows = "".join(
-        f"{s},2026-11-18 {h:02d}:00,{h + 10 * (s == 'B')}\n" for s in "AB" for h in range(24)
-    )
-    table = f"station,time,temp (C)\n{rows}"
-    with pytest.raises(ChoiceNeeded, match=r"2 stations \(A, B\)") as asked:
-        read_weather(table)
-    assert (asked.value.option, asked.value.choices) == ("where", ("station=A", "station=B"))
-    told = read_weather(table, WeatherOptions(zone="UTC", where="station=B")).value
-    assert told.temperature_c[0] == 10

@@ -79,7 +79,8 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
     laid, measured = _laid(request, hearing)
     if (file := sources.plot or sources.plants or sources.rows) is not None:
         role: Role = "plot" if sources.plot else "plants" if sources.plants else "rows"
-        hearing.say(role, file, said_of_place(laid.plot.field))
+        exchanged = getattr(sources, f"{role}_options").swap_axes
+        hearing.say(role, file, said_of_place(laid.plot.field, exchanged=exchanged))
     if sources.plants is not None:
         hearing.say("plants", sources.plants, laid.messages)
     elif sources.rows is not None:
@@ -174,7 +175,9 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
         raise SettingError(worded("Give a file of plots."))
 
     fields, crews = hearing.read("plot", file, partial(read_crews, file, sources.plot_options))
-    hearing.say("plot", file, gathered(one for each in fields for one in said_of_place(each)))
+    exchanged = sources.plot_options.swap_axes
+    places = (one for each in fields for one in said_of_place(each, exchanged=exchanged))
+    hearing.say("plot", file, gathered(places))
     fields = with_rows(fields, sources, request.planting, hearing)
     fields = _with_paths(fields, sources, hearing)
     if (asked := request.records) is not None:

@@ -105,15 +105,15 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     sources, measured = request.sources, None
     if sources.plot is None and sources.plants is None and sources.rows is not None:
         laid = _along_rows(request, hearing)
-        _refuse_far_gate(sources, laid.plot.field)
+        refuse_far_gate(sources.gate, laid.plot.field)
         return laid, None
     if sources.plot is None:
         measured = _measured(sources, hearing)
         laid = lay_around(sources, measured, request.planting)
-        _refuse_far_gate(sources, laid.plot.field)
+        refuse_far_gate(sources.gate, laid.plot.field)
         return laid, measured
     field = one_of(_fields(sources, hearing))
-    _refuse_far_gate(sources, field)
+    refuse_far_gate(sources.gate, field)
     if sources.plants is not None:
         measured = _measured(sources, hearing)
         field = with_plants(field, measured)
@@ -124,18 +124,18 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     return lay(replace(field, gate=gate), request.planting), measured
 
 
-def _refuse_far_gate(sources: PlotSources, field: Field) -> None:
-    """Raise `SettingError` where the gate told by hand lies where nobody drives from in a day."""
-    if sources.gate is None:
+def refuse_far_gate(gate: tuple[float, float] | None, field: Field) -> None:
+    """Raise `SettingError` where a gate told by hand lies where nobody drives from in a day."""
+    if gate is None:
         return
-    away_m = float(distance_m(np.array([sources.gate]), field)[0])
+    away_m = float(distance_m(np.array([gate]), field)[0])
     if away_m > _FARTHEST_GATE_M:
         raise SettingError(
             worded(
                 "The gate at {lon:g}, {lat:g} (longitude, latitude) lies {away} from {name}. "
                 "Correct it.",
-                lon=sources.gate[0],
-                lat=sources.gate[1],
+                lon=gate[0],
+                lat=gate[1],
                 away=distance_figure(away_m),
                 name=field.name,
             )

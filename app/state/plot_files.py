@@ -20,7 +20,7 @@ from fieldmon.io.prepared import Laid
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
 
 from . import brought_files, cached, cached_files, rasters, sample_estate
-from .brought_files import File, FileMessage, LeftOut, messages_of, settled
+from .brought_files import File, FileMessage, LeftOut, answers, messages_of, settled
 from .plot_edits import Edit, edited
 from .row_settings import block_settings, row_settings
 
@@ -183,7 +183,9 @@ def prepared(files: Files, outline: Outline) -> PlotFromFiles:
 def _said_of_place(files: Files, plot: Plot) -> tuple[FileMessage, ...]:
     """Return what is doubtful about where the plot lies, of the file that says where."""
     file = files.plot or files.plants or files.rows
-    return tuple(FileMessage(file.asked, message) for message in said_of_place(plot.field))
+    exchanged = dict(answers(file.asked)).get("swap_axes") == "yes"
+    said = said_of_place(plot.field, exchanged=exchanged)
+    return tuple(FileMessage(file.asked, message) for message in said)
 
 
 def _said_of_rows(files: Files, plot: Plot) -> tuple[FileMessage, ...]:

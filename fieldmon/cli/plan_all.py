@@ -114,7 +114,7 @@ def _tasks(plots: Estate, orders: Orders) -> dict[str, Task]:
         stated["speed_m_s"] = None if crew.speed_km_h is None else crew.speed_km_h / 3.6
         known = {name: value for name, value in stated.items() if value is not None}
         tasks[f"{number:0{digits}d}-{_plain(plot.name)}.geojson"] = Task(
-            plot, crew.who, known, orders
+            plot, crew.who, known, orders, crew.wrong or {}, crew.left_aside or ()
         )
     return tasks
 
@@ -242,7 +242,8 @@ def _work(name: str, task: Task) -> Row:
     route = today.route
     notes = RouteNotes(task.plot.name, task.orders.sampler, day.began)
     robot, grid = today.scene.robot, route.aisles.grid
-    assumed = assumed_by(laid.assumed, task.orders.prior, robot, grid)
+    assumed = assumed_by((*laid.assumed, *task.assumed(robot)), task.orders.prior, robot, grid)
+    assumed = tuple(dict.fromkeys(assumed))
     replace(route, notes=notes).to_file(day.folder / name, "geojson")
     return row | {
         "state": "planned",

@@ -12,7 +12,13 @@ from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_unusable
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.pest_options import prior_of
 from fieldmon.cli.preparing import prepared
-from fieldmon.cli.team_files import files_of_each, members_of, tell_member, write_member
+from fieldmon.cli.team_files import (
+    files_of_each,
+    members_of,
+    refuse_far_gates,
+    tell_member,
+    write_member,
+)
 from fieldmon.cli.times import WorkStart
 from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
@@ -41,6 +47,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     members, first = members_of(robots, options.starts().at, options.worker)
     starts, files = WorkStart(options.starts().on, first), files_of_each(options.output, members)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
+    refuse_far_gates(members, known.plot.field)
     plot, begins = known.plot, starts.on_plot(known.plot.field)
     prior = prior_of(options.pest_options.in_weather(plot.field, begins.date()), begins.date())
     members = tuple(replace(one, robot=options.pest_options.seen(one.robot)) for one in members)

@@ -214,6 +214,13 @@ def _read(where: str, row: Mapping[str, str]) -> Threshold:
         ) from error
 
 
+def _level(text: str, measure: str) -> float:
+    """Return a level; that of a share also as percents."""
+    is_share = text.endswith("%") and measure.startswith("share")
+    value = float((text[:-1] if is_share else text).replace(",", "."))
+    return value / 100 if is_share else value
+
+
 def _of_row(row: Mapping[str, str]) -> Threshold:
     words = {name: row.get(name) or "" for name in ("crop", "pest", "when")}
     predators = row.get("predators", "").casefold()
@@ -227,7 +234,7 @@ def _of_row(row: Mapping[str, str]) -> Threshold:
     return Threshold(
         row["name"],
         row["measure"],
-        float(row["level"].replace(",", ".")),
+        _level(row["level"], row["measure"]),
         row["source"] or _OWN,
         predators=_PREDATORS[predators],
         **words,

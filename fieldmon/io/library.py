@@ -76,9 +76,10 @@ def read_plot(
     **options
         What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``,
         ``columns={"lon": "Ost", "lat": "Nord"}``, ``near=(35.1, 30.3)``; and ``doubles="one"`` of
-        plants measured twice. ``rows``, ``blocks``, ``contours`` and ``paths`` are more files: rows
-        or their end posts, areas of blocks or lines that part them, a raster of heights, and lines
-        along which insects enter. ``guess_blocks=True`` parts the plot as its outline asks for.
+        plants measured twice, ``far="keep"`` of a few that stand kilometres away. ``rows``,
+        ``blocks``, ``contours`` and ``paths`` are more files: rows or their end posts, areas of
+        blocks or lines that part them, a raster of heights, and lines along which insects enter.
+        ``guess_blocks=True`` parts the plot as its outline asks for.
 
     Returns
     -------
@@ -113,11 +114,14 @@ def read_plot(
     must_be_of("A plot's planting", "PlantingChoices | None", planting)
     must_be_of("A plot's gate", "tuple[float, float] | None", gate)
     drawn: dict[str, Any] = {name: options.pop(name) for name in _DRAWN if name in options}
+    for name, file in drawn.items():
+        if file is not None:
+            _must_be_file(file, f"A file of {name}")
     drawn["guess_blocks"] = yes_or_no("guess_blocks", options.pop("guess_blocks", False))
     chosen = _chosen(PlotOptions(), options)
     if feature is not None:
         chosen = chosen.choose("feature", str(feature))
-    measured = ReadOptions(doubles=chosen.doubles)
+    measured = ReadOptions(doubles=chosen.doubles, far=chosen.far)
     sources = PlotSources(source, chosen, plants, measured, gate=gate, **drawn)
     ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
     _warn(said.message for said in ready.messages)

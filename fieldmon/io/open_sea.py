@@ -15,11 +15,12 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
 
 
-def said_of_place(field: Field) -> tuple[ImportMessage, ...]:
+def said_of_place(field: Field, *, exchanged: bool = False) -> tuple[ImportMessage, ...]:
     """Doubt a plot in the open sea; offer to exchange its axes where that brings it ashore.
 
     Coastal waters count as land: a plot may well lie on an island that no map of zones shows. The
     middle of a plot on both sides of longitude 180 lies nowhere near it: that is doubted instead.
+    Where they were `exchanged` already, it offers to leave them as they were.
     """
     west, south, east, north = field.boundary.bounds
     if goes_round([west, east]):
@@ -34,7 +35,11 @@ def said_of_place(field: Field) -> tuple[ImportMessage, ...]:
             lon=lon,
             lat=lat,
         )
-        remedy = Remedy("swap_axes", "yes", worded("Exchange longitude and latitude"))
+        remedy = Remedy(
+            "swap_axes",
+            "no" if exchanged else "yes",
+            worded("Exchange longitude and latitude"),
+        )
     else:
         remedy = None
         said = worded(

@@ -102,6 +102,8 @@ class ReadOptions:
         with decimals. None: nothing.
     doubles
         ``"one"``: of plants closer than 5 cm to each other, one is kept.
+    far
+        ``"keep"``: a few plants over a kilometre from all others stay.
     """
 
     member: str | None = None
@@ -118,6 +120,7 @@ class ReadOptions:
     header: str | None = None
     degrees: str | None = None
     doubles: str | None = None
+    far: str | None = None
 
     def __post_init__(self) -> None:
         for role, _ in self.columns:
@@ -163,6 +166,7 @@ class ReadOptions:
             ("Whether a line names the columns", self.header, ("yes", "no")),
             ("What 35.26.33 means", self.degrees, ("dms", "dm")),
             ("What is done with doubles", self.doubles, ("one",)),
+            ("What is done with plants far away", self.far, ("keep",)),
         ):
             if told is not None and told not in words:
                 may_be = " or ".join(words)

@@ -79,7 +79,8 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
     laid, measured = _laid(request, hearing)
     if (file := sources.plot or sources.plants or sources.rows) is not None:
         role: Role = "plot" if sources.plot else "plants" if sources.plants else "rows"
-        hearing.say(role, file, said_of_place(laid.plot.field))
+        exchanged = getattr(sources, f"{role}_options").swap_axes
+        hearing.say(role, file, said_of_place(laid.plot.field, exchanged=exchanged))
     if sources.plants is not None:
         hearing.say("plants", sources.plants, laid.messages)
     elif sources.rows is not None:
@@ -104,15 +105,15 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     sources, measured = request.sources, None
     if sources.plot is None and sources.plants is None and sources.rows is not None:
         laid = _along_rows(request, hearing)
-        _refuse_far_gate(sources, laid.plot.field)
+        refuse_far_gate(sources.gate, laid.plot.field)
         return laid, None
     if sources.plot is None:
         measured = _measured(sources, hearing)
         laid = lay_around(sources, measured, request.planting)
-        _refuse_far_gate(sources, laid.plot.field)
+        refuse_far_gate(sources.gate, laid.plot.field)
         return laid, measured
     field = one_of(_fields(sources, hearing))
-    _refuse_far_gate(sources, field)
+    refuse_far_gate(sources.gate, field)
     if sources.plants is not None:
         measured = _measured(sources, hearing)
         field = with_plants(field, measured)
@@ -123,18 +124,18 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     return lay(replace(field, gate=gate), request.planting), measured
 
 
-def _refuse_far_gate(sources: PlotSources, field: Field) -> None:
-    """Raise `SettingError` where the gate told by hand lies where nobody drives from in a day."""
-    if sources.gate is None:
+def refuse_far_gate(gate: tuple[float, float] | None, field: Field) -> None:
+    """Raise `SettingError` where a gate told by hand lies where nobody drives from in a day."""
+    if gate is None:
         return
-    away_m = float(distance_m(np.array([sources.gate]), field)[0])
+    away_m = float(distance_m(np.array([gate]), field)[0])
     if away_m > _FARTHEST_GATE_M:
         raise SettingError(
             worded(
                 "The gate at {lon:g}, {lat:g} (longitude, latitude) lies {away} from {name}. "
                 "Correct it.",
-                lon=sources.gate[0],
-                lat=sources.gate[1],
+                lon=gate[0],
+                lat=gate[1],
                 away=distance_figure(away_m),
                 name=field.name,
             )
@@ -174,7 +175,9 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
         raise SettingError(worded("Give a file of plots."))
 
     fields, crews = hearing.read("plot", file, partial(read_crews, file, sources.plot_options))
-    hearing.say("plot", file, gathered(one for each in fields for one in said_of_place(each)))
+    exchanged = sources.plot_options.swap_axes
+    places = (one for each in fields for one in said_of_place(each, exchanged=exchanged))
+    hearing.say("plot", file, gathered(places))
     fields = with_rows(fields, sources, request.planting, hearing)
     fields = _with_paths(fields, sources, hearing)
     if (asked := request.records) is not None:

@@ -83,12 +83,12 @@ class AdviceSettings:
         costs, usual, known = self.costs, TreatmentCosts(), units or Units()
         said = {
             "per_ha": worded(
-                "to treat {area} costs {cost:g}",
+                "to treat {area} costs {cost:,.10g}",
                 area=known.one_area, cost=known.by_area(costs.per_ha),
             ),
-            "per_zone": worded("a zone costs {cost:g}", cost=costs.per_zone),
+            "per_zone": worded("a zone costs {cost:,.10g}", cost=costs.per_zone),
             "infested_plant_day": worded(
-                "an infested plant loses {loss:g} a day", loss=costs.infested_plant_day
+                "an infested plant loses {loss:,.10g} a day", loss=costs.infested_plant_day
             ),
             "days": worded("it stays infested for {days:g} days", days=costs.days),
             "works": worded("treating cleans {works:.0%}", works=costs.works),

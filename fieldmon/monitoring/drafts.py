@@ -153,6 +153,7 @@ def _one_row(place: object, plant: object, result: int, count: object) -> dict[s
         "face": np.zeros(1, np.int8),
         "lonlat": np.array([lonlat], float),
         "accuracy_m": np.array([np.nan]),
+        "unread": np.array([""]),
         "result": np.array([result], np.int8),
         "count": np.array([np.nan if count is None else float(str(count))]),
         "doubt": np.array([""]),

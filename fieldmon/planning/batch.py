@@ -12,6 +12,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.robot import Robot, rover, scout
 from fieldmon.samplers import USUAL, kind_of, sampler
 
@@ -86,12 +87,26 @@ class Task:
         Settings of `Robot` as its file says.
     orders
         What holds for all plots.
+    wrong
+        Of what its file says, what no robot can be set to: a sentence by its setting.
+    left_aside
+        Settings of `Robot` of which its file says what is no number.
     """
 
     plot: Field
     who: str | None
     stated: dict[str, float]
     orders: Orders
+    wrong: dict[str, str] = field(default_factory=dict)
+    left_aside: tuple[str, ...] = ()
+
+    def assumed(self, robot: Robot) -> list[Assumed]:
+        """Return what was taken of the robot where the file says what is no number."""
+        return [
+            Assumed(name, getattr(robot, name))
+            for name in self.left_aside
+            if name not in self.orders.robot
+        ]
 
     def digest(self, observations: Observations) -> str:
         """Return what tells this task from any other, however alike."""
@@ -138,6 +153,9 @@ def _robot(task: Task) -> Robot:
     base = scout() if on_foot else rover() if orders.rover else Robot()
     if orders.robot_times is not None and not on_foot:
         base = base.with_times(orders.robot_times)
+    for name, said in task.wrong.items():
+        if name not in orders.robot:
+            raise SettingError(said)
     settings: dict[str, Any] = task.stated | orders.robot
     robot = replace(base, **settings)
     return robot if orders.pest is None else orders.pest.seen_by(robot)

@@ -10,6 +10,8 @@ _WORDS = {
     "rate_per_day": "chance a night to infest a neighbour",
     "detects": "chance to find what is there",
     "speed_m_s": "speed",
+    "hours": "working day",
+    "look_s": "time to look at a plant",
     "half_canopy_m": "reach of plants to each side",
     "row_change_s": "time added for a row change, as in simulated drives:",
     "stop_s": "time added for a stop, as in simulated drives:",
@@ -27,8 +29,8 @@ class Assumed:
         Its name where it can be said: ``"row_spacing_m"`` of `PlantingChoices`,
         ``"half_canopy_m"`` of `Planting`,
         ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``,
-        ``"row_change_s"``, ``"stop_s"`` and ``"detects"`` of `Robot`, ``"treated"`` of
-        `BeliefSettings`.
+        ``"row_change_s"``, ``"stop_s"``, ``"look_s"``, ``"hours"`` and ``"detects"`` of `Robot`,
+        ``"treated"`` of `BeliefSettings`.
     value
         What was taken: metres, metres a second, seconds, or a chance; 1: it is so.
     of
@@ -51,5 +53,7 @@ class Assumed:
             return f"guessed: {words} {100 * self.value:g} %"
         if self.setting == "speed_m_s":
             return f"guessed: {words} {3.6 * self.value:.3g} km/h"
+        if self.setting == "hours":
+            return f"guessed: {words} {self.value:g} h"
         unit = "s" if self.setting.endswith("_s") else "m"
         return f"guessed: {words} {self.value:g} {unit}"

@@ -75,6 +75,7 @@ def test_every_plot_is_planned_and_those_that_cannot_be_are_named(run, parcels, 
     assert "assumed: row spacing 4 m; plant spacing 3 m; " in err
     assert "speed 2.5 km/h (3 plots: Plot 1, Plot 2, Plot 5)" in err
     assert "row spacing 4 m; plant" in rows["Plot 1"]["assumed"]
+    assert "working day 4 h" in rows["Plot 3"]["assumed"]
     assert {rows[name]["file"] for name in refused} == {""}
     assert "4 of 6 plots planned" in out
     folder = parcels.parent / "routes"

@@ -57,6 +57,7 @@ def test_a_table_says_who_works_from_when_and_where(run, tmp_path):
         ("name,start\na,six\n", "start must be a time as HH:MM"),
         ("name\na b\na-b\na_b\n", "must have names that differ in file names"),
         ("name,hours\na,30\n", "line 2: hours must be 24 at most"),
+        ("name,lon,lat\na,35.5,30.35\n", "a: The gate at 35.5, 30.35 (longitude, latitude) lies 3"),
         ("name,speed_km_h\na,-1\n", "line 2: speed_km_h must be above 0, but it is -1"),
     ],
 )

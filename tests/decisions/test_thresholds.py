@@ -34,6 +34,15 @@ def test_what_is_no_threshold_is_refused(said):
         threshold_of(said)
 
 
+def test_the_level_of_a_share_may_be_percents(tmp_path):
+    path = tmp_path / "own.csv"
+    path.write_text("name;measure;level;source\nours;share of plants;3,6 %;me\n", encoding="utf-8")
+    assert read_thresholds(path)[0].level == pytest.approx(0.036)
+    path.write_text("name;measure;level;source\nours;mean per leaf;3,6 %;me\n", encoding="utf-8")
+    with pytest.raises(FileProblem, match="level must be a number"):
+        read_thresholds(path)
+
+
 def test_ones_own_are_read_from_a_file(tmp_path):
     path = tmp_path / "own.csv"
     path.write_text(

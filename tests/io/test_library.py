@@ -111,6 +111,12 @@ def test_inspections_take_their_day_and_who_from_arguments(gate):
     assert set(done.who.tolist()) == {"Ann"}
 
 
+@pytest.mark.parametrize(("name", "told"), [("paths", 3), ("rows", True), ("contours", 3)])
+def test_what_is_no_file_is_refused_by_its_name(name, told):
+    with pytest.raises(SettingError, match=f"A file of {name} must be given by its path"):
+        library.read_plot(ESTATE, feature="Gate", **{name: told})
+
+
 @pytest.mark.parametrize(
     ("call", "more"),
     [

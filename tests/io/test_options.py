@@ -43,6 +43,7 @@ TEXT_OF = {
     "header": ("no", "no"),
     "degrees": ("dms", "dms"),
     "doubles": ("one", "one"),
+    "far": ("keep", "keep"),
 }
 
 

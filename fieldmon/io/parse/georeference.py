@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
 from fieldmon.io.parse.crs import (
@@ -35,6 +35,7 @@ _FAR_KM, _ASKED_KM = 20.0, 1000.0
 #: outside of where its system is used; countries use one UTM zone far beyond its borders
 _FAR_FROM_USE_KM, _FAR_FROM_ZONE_KM = 50.0, 600.0
 _LOOKED_AT = 5_000
+_NAMED = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +135,12 @@ def few_unplaceable(
     return wrong if 2 * np.count_nonzero(wrong) < len(xy) else np.zeros(len(xy), dtype=bool)
 
 
+def written(xy: NDArray[np.float64]) -> str:
+    """Return one position as a file has it."""
+    first, second = xy.tolist()
+    return f"{first:.12g} / {second:.12g}"
+
+
 def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:
     return float(np.median(xy[:, 0])), float(np.median(xy[:, 1]))
 
@@ -147,8 +154,20 @@ def _check_range(xy: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions)
     if not _in_degrees(crs):
         return
     first, second = np.abs(xy[:, 0]), np.abs(xy[:, 1])
-    if (first <= 360).all() and (second <= 90).all():
+    wrong = (first > 360) | (second > 90)
+    if not wrong.any():
         return
+    if 2 * np.count_nonzero(wrong) <= len(xy):
+        as_written = xy[wrong, ::-1] if options.swap_axes else xy[wrong]
+        shown = first_few([written(one) for one in as_written[: _NAMED + 1]], _NAMED)
+        raise FileProblem(
+            worded(
+                "{n} of {all_n} positions lie nowhere on the earth: {shown}. Correct them.",
+                n=int(np.count_nonzero(wrong)),
+                all_n=len(xy),
+                shown=shown,
+            )
+        )
     if (second <= 360).all() and (first <= 90).all():
         raise ChoiceNeeded(
             worded(
@@ -285,7 +304,8 @@ def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportM
         return []
     swapped = _nearest_km(lonlat[:, ::-1], options.near)
     if swapped < away / 10:
-        remedy = Remedy("swap_axes", "yes", worded("Exchange longitude and latitude"))
+        other = "no" if options.swap_axes else "yes"
+        remedy = Remedy("swap_axes", other, worded("Exchange longitude and latitude"))
         return [
             doubtful(
                 worded(

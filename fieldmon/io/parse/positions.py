@@ -27,7 +27,7 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import geometry_kinds
-from fieldmon.io.parse.georeference import few_unplaceable, place
+from fieldmon.io.parse.georeference import few_unplaceable, place, written
 from fieldmon.io.parse.named_positions import placed_by_name
 from fieldmon.io.parse.values import (
     all_degrees,
@@ -68,6 +68,8 @@ class LocatedFeatures:
         What was found on the way.
     plot
         ``(n,)`` name of the plot that each is on by its own words; None where they name none.
+    unread
+        What was left out because nobody can read where it is.
     """
 
     layer: Layer
@@ -75,6 +77,7 @@ class LocatedFeatures:
     accuracy_m: NDArray[np.float64]
     messages: tuple[ImportMessage, ...]
     plot: NDArray[np.str_] | None = None
+    unread: Unread | None = None
 
 
 def located(
@@ -103,7 +106,7 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
                 lines=int(lines.sum()),
             )
         )
-    messages = []
+    messages, unread = [], None
     others = len(layer) - int(points.sum())
     if others:
         messages.append(
@@ -119,15 +122,14 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
     xy, of = shapely.get_coordinates(single), np.flatnonzero(points)[index]
     wrong = few_unplaceable(xy, layer.crs, options)
     if wrong.any():
-        at = np.flatnonzero(wrong)
-        some = tuple(
-            _example((f"{x:g}", f"{y:g}"), i) for i, (x, y) in zip(of[at], xy[at], strict=True)
-        )
-        messages += _Unread(len(at), 0, 0, some[:_SHOWN]).messages()
+        at = {int(of[k]): written(xy[k]) for k in np.flatnonzero(wrong)}
+        unread = Unread(len(at), 0, 0, at)
+        messages += unread.messages()
     kept = layer.take(of[~wrong])
     placed = place(xy[~wrong], layer.crs, options)
     accuracy, coarse = _rounding(placed.step_m, len(kept))
-    return LocatedFeatures(kept, placed.lonlat, accuracy, (*messages, *placed.messages, *coarse))
+    found = (*messages, *placed.messages, *coarse)
+    return LocatedFeatures(kept, placed.lonlat, accuracy, found, unread=unread)
 
 
 def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | None:
@@ -170,7 +172,7 @@ def _by_coordinates(
     stated, more = _stated_crs(layer, options)
     there = _finite(xy)
     there[there] = ~few_unplaceable(xy[there], stated or crs, options)
-    unread = _Unread.of(layer, names, there)
+    unread = Unread.of(layer, names, there)
     if unread.n_dotted * 2 > len(layer) - unread.n_empty:
         raise unread.ask()
     if not there.any():
@@ -192,6 +194,7 @@ def _by_coordinates(
         placed.lonlat,
         accuracy,
         (*found, *placed.messages, *coarse),
+        unread=unread,
     )
 
 
@@ -237,33 +240,36 @@ def _order_of(is_certain: bool, name: str) -> list[ImportMessage]:  # noqa: FBT0
     ]
 
 
-class _Unread(NamedTuple):
-    """Records whose position cannot be read: how many, those written as 35.26.33, and some."""
+class Unread(NamedTuple):
+    """Records whose position cannot be read: how many, those written as 35.26.33, and which."""
 
     n: int
     n_empty: int
     n_dotted: int
-    examples: tuple[str, ...]
+    written: dict[int, str]
 
     @classmethod
-    def of(cls, layer: Layer, names: tuple[str, ...], there: NDArray[np.bool_]) -> _Unread:
+    def of(cls, layer: Layer, names: tuple[str, ...], there: NDArray[np.bool_]) -> Unread:
+        """Return the records of a table that are not `there`, with what stands in its columns."""
         records = np.flatnonzero(~there)
         columns = [[text(v) for v in layer.column(name)[records]] for name in names]
         n_empty = n_dotted = 0
-        examples: list[str] = []
+        at: dict[int, str] = {}
         for i, cells in zip(records.tolist(), zip(*columns, strict=True), strict=True):
             if all(is_missing(cell) for cell in cells):
                 n_empty += 1
                 continue
             n_dotted += any(is_dotted(c) for cell in cells for c in (cell, *(halves(cell) or ())))
-            if len(examples) < _SHOWN:
-                examples.append(_example(cells, i))
-        return cls(len(records), n_empty, n_dotted, tuple(examples))
+            at[i] = " / ".join(cells)
+        return cls(len(records), n_empty, n_dotted, at)
 
     def shown(self) -> str:
-        return f", for instance {', '.join(self.examples)}" if self.examples else ""
+        """Return some of them, to end a sentence with."""
+        some = [f"{at!r} in record {record + 1}" for record, at in self.written.items()][:_SHOWN]
+        return f", for instance {', '.join(some)}" if some else ""
 
     def ask(self) -> ChoiceNeeded:
+        """Return the question what two points mean."""
         return ChoiceNeeded(
             worded(
                 "{n_dotted} {n_dotted:record gives|records give} degrees with two points{shown}. "
@@ -278,6 +284,7 @@ class _Unread(NamedTuple):
         )
 
     def messages(self) -> list[ImportMessage]:
+        """Return what to say of them; nothing where there are none."""
         if not self.n:
             return []
         said = worded(
@@ -297,10 +304,6 @@ class _Unread(NamedTuple):
 
 
 _SHOWN = 3
-
-
-def _example(cells: tuple[str, ...], record: int) -> str:
-    return f"{' / '.join(cells)!r} in record {record + 1}"
 
 
 def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[ImportMessage]]:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import Imported, ImportMessage
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.values import numbers
+from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.known_rows import left_aside
+from fieldmon.plot.robot import broken_rule
 
 if TYPE_CHECKING:
     from fieldmon.io.formats.layer import Layer
@@ -20,6 +22,14 @@ _NUMBERS = {
     "hours": ("hours", "hours_per_day", "working_hours", "work_hours", "day_hours", "hours_day"),
     "speed_km_h": ("speed_km_h", "speed_kmh", "speed", "speed_km_per_h"),
     "look_s": ("look_s", "look", "look_seconds", "seconds_per_plant"),
+}
+
+
+#: settings of `Robot`, how many of a column's units make one of theirs, and its unit
+_SETTINGS = {
+    "hours": ("hours", 1.0, "h"),
+    "speed_km_h": ("speed_m_s", 3.6, "km/h"),
+    "look_s": ("look_s", 1.0, "s"),
 }
 
 
@@ -34,19 +44,27 @@ class Crew(NamedTuple):
         Working hours a day.
     speed_km_h, look_s
         Driving speed, and seconds spent looking at a plant.
+    wrong
+        What no robot can be set to, a sentence by its setting of `Robot`; None where nothing is.
+    left_aside
+        Settings of `Robot` of which a column says what is no number; None where none does.
     """
 
     who: str | None = None
     hours: float | None = None
     speed_km_h: float | None = None
     look_s: float | None = None
+    wrong: dict[str, str] | None = None
+    left_aside: tuple[str, ...] | None = None
 
 
 def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
     """Return who works on each of a layer's plots; `names` are those of its features."""
     wrong: list[ImportMessage] = []
     called = {plain(column): column for column in layer.columns}
-    columns: dict[str, list[str | float | None]] = {"who": [None] * len(names)}
+    columns: dict[str, list[Any]] = {"who": [None] * len(names)}
+    broken: list[dict[str, str]] = [{} for _ in names]
+    aside: list[list[str]] = [[] for _ in names]
     who = next((called[name] for name in _WHO if name in called), None)
     if who is not None:
         columns["who"] = [text(value) or None for value in layer.column(who)]
@@ -55,7 +73,20 @@ def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
         stated = np.full(len(names), np.nan) if column is None else numbers(layer.column(column))
         if column is not None:
             wrong += left_aside(column, layer.column(column), ~np.isnan(stated), names)
+            of_robot, units, unit = _SETTINGS[setting]
+            for k, value in enumerate(stated.tolist()):
+                if np.isnan(value):
+                    aside[k] += [] if is_missing(layer.column(column)[k]) else [of_robot]
+                elif rule := broken_rule(of_robot, value, units, f" {unit}"):
+                    broken[k][of_robot] = worded(
+                        "Column {column!r} must be {rule}, but it is {value:g}.",
+                        column=column,
+                        rule=rule,
+                        value=value,
+                    )
         columns[setting] = [None if np.isnan(value) else float(value) for value in stated]
+    columns["wrong"] = [each or None for each in broken]
+    columns["left_aside"] = [tuple(each) or None for each in aside]
     rows = zip(*columns.values(), strict=True)
     crews = {name: Crew(*row) for name, row in zip(names, rows, strict=True)}
     return Imported(crews, tuple(wrong))

@@ -114,7 +114,7 @@ def look_up(
     problems |= snapped.problems
     doubts = doubts | from_zero(rows, labelled.plant) | snapped.doubts | _own_doubts(rows)
     for i in np.flatnonzero(plant < 0).tolist():
-        problems.setdefault(i, _nowhere(below_one=rows.line[i] < 0))
+        problems.setdefault(i, _nowhere(str(rows.unread[i]), below_one=rows.line[i] < 0))
     taken = plant >= 0
     if not options.take_doubtful:
         taken[list(doubts)] = False
@@ -148,10 +148,12 @@ def look_up(
     return once, tuple(said)
 
 
-def _nowhere(*, below_one: bool) -> str:
+def _nowhere(unread: str, *, below_one: bool) -> str:
     """Return why a record has no plant."""
     if below_one:
         return worded("rows and plants are counted from 1, but it says 0 or less")
+    if unread:
+        return worded("it names no plant, and {at} is no position", at=unread)
     return worded("it names no plant and has no position")
 
 

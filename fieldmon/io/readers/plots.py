@@ -25,7 +25,7 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.geometry import boundaries, boundary, closed_lines, filled, geometry_kinds
-from fieldmon.io.parse.georeference import place_geometry
+from fieldmon.io.parse.georeference import few_unplaceable, place_geometry, written
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.known_rows import KnownRows, known_rows
 from fieldmon.plot.block import Block
@@ -47,6 +47,9 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     names, name_messages = plot_names(areas, options.name_column)
     number = _number(names, options.feature)
     chosen = np.arange(len(names)) if number else _chosen(names, options.feature)
+    mistyped = _mistyped(_shapes(areas)[chosen], layer.crs, options)
+    name_messages += _left_out(mistyped, [names[i] for i in chosen])
+    chosen = np.delete(chosen, list(mistyped))
     placed, place_messages = place_geometry(_shapes(areas)[chosen], layer.crs, options)
     known, row_messages = known_rows(areas, names)
     fields, shape_messages = _fields(placed, [names[i] for i in chosen], known)
@@ -57,11 +60,58 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     return Imported(fields, gathered((*found, *row_messages)))
 
 
+def _mistyped(
+    shapes: NDArray[np.object_], crs: str | None, options: PlotOptions
+) -> dict[int, tuple[int, str]]:
+    """Return, by area, the number of its first corner that lies nowhere on the earth, and it."""
+    xy, of = shapely.get_coordinates(shapes, return_index=True)
+    corner = np.arange(len(xy)) - np.searchsorted(of, of)
+    # an outline ends where it begins: that corner counts once
+    open_end = np.flatnonzero(np.append(of[1:] == of[:-1], False))
+    wrong = open_end[few_unplaceable(xy[open_end], crs, options)]
+    return {int(of[k]): (int(corner[k]) + 1, written(xy[k])) for k in wrong[::-1].tolist()}
+
+
+def _left_out(mistyped: dict[int, tuple[int, str]], names: list[str]) -> list[ImportMessage]:
+    """Return a message for each plot with a mistyped corner; refuse where no other is left."""
+    if mistyped and len(mistyped) == len(names):
+        raise _wrong_corner(names[0], *mistyped[0])
+    many = "{n} plots have a corner that lies nowhere on the earth, and were left out"
+    return [
+        dropped(
+            worded(
+                "Corner {number}, {at}, lies nowhere on the earth: correct it. The plot was left "
+                "out.",
+                number=number,
+                at=at,
+            ),
+            names[k],
+            many=many,
+        )
+        for k, (number, at) in sorted(mistyped.items())
+    ]
+
+
+def _wrong_corner(name: str, number: int, at: str) -> FileProblem:
+    return FileProblem(
+        worded(
+            "Every corner of {name} must lie on the earth, but corner {number}, {at}, does not. "
+            "Correct it.",
+            name=name,
+            number=number,
+            at=at,
+        )
+    )
+
+
 def _with_blocks(
     areas: Layer, options: PlotOptions, messages: tuple[ImportMessage, ...]
 ) -> Imported[tuple[Field, ...]]:
     """Return plots of which each feature is a block: those of one name are a plot."""
     names, blocks = _block_names(areas, options)
+    # without one of its blocks it is another plot
+    for k, wrong in sorted(_mistyped(_shapes(areas), areas.crs, options).items()):
+        raise _wrong_corner(f"{names[k]} / {blocks[k]}", *wrong)
     placed, place_messages = place_geometry(_shapes(areas), areas.crs, options)
     apart = _told_apart([f"{name} / {block}" for name, block in zip(names, blocks, strict=True)])
     known, row_messages = known_rows(areas, apart)
@@ -396,6 +446,9 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
     points, messages = found.lonlat, found.messages
     if not 3 <= len(points) <= 1000:
         raise _which_are_corners(layer, len(points))
+    if found.unread is not None and found.unread.written:
+        record, at = next(iter(found.unread.written.items()))
+        raise _wrong_corner(layer.name, record + 1, at)
     ring = MultiPolygon([shapely.Polygon(points)])
     if not ring.is_valid and options.where is None:
         raise _which_are_corners(layer, len(points))

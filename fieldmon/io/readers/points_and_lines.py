@@ -10,10 +10,19 @@ import shapely
 from scipy.spatial import cKDTree
 from shapely import MultiLineString
 
+from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.import_report import Imported, ImportMessage, doubtful, dropped, guessed, seen
+from fieldmon.io.import_report import (
+    Imported,
+    ImportMessage,
+    Remedy,
+    doubtful,
+    dropped,
+    guessed,
+    seen,
+)
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import closed_lines, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
@@ -33,6 +42,8 @@ if TYPE_CHECKING:
 # so far from its third neighbour, and so many times as far as usual, a plant is no neighbour's;
 # fewer plants do not tell
 _STRAY_M, _STRAY_TIMES, _ENOUGH = 100.0, 20.0, 20
+# farther, one plant in more than so many is mistyped and no small plot of its own
+_FAR_M, _RARE = 1000.0, 10
 # no plot is so wide
 _ELSEWHERE_DEG = 1.0
 _NAMED = 5
@@ -86,10 +97,12 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
             n=len(here),
         )
         messages.append(dropped(said))
+    left_out, said_of_strays = _strays(found.lonlat[kept], labels[-1][kept], options)
+    kept = kept[~left_out]
     block, row, plant = (label[kept] for label in labels)
     named_blocks = block if (block != "").any() else None
     plants = Plants(found.lonlat[kept], row, plant, named_blocks)
-    messages += _strays(plants)
+    messages += said_of_strays
     return Imported(plants, (*layer.messages, *messages))
 
 
@@ -101,23 +114,42 @@ def _elsewhere(lonlat: NDArray[np.float64]) -> NDArray[np.bool_]:
     return gone if 2 * np.count_nonzero(gone) < len(gone) else np.zeros_like(gone)
 
 
-def _strays(plants: Plants) -> list[ImportMessage]:
-    """Return a doubt that names plants far from all others, alone or by twos and threes."""
-    if len(plants) < _ENOUGH:
-        return []
-    xy_m = frame_around(plants.lonlat).xy_m(plants.lonlat)
+def _strays(
+    lonlat: NDArray[np.float64], names: NDArray[np.str_], options: ReadOptions
+) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
+    """Return which plants ``(n,)`` are left out, and what to say of those far from all others.
+
+    Alone or by twos and threes they are doubted; a few over a kilometre away are left out.
+    """
+    out = np.zeros(len(lonlat), dtype=bool)
+    if len(lonlat) < _ENOUGH:
+        return out, []
+    xy_m = frame_around(lonlat).xy_m(lonlat)
     far_m = cKDTree(xy_m).query(xy_m, 4)[0][:, -1]
     stray = np.flatnonzero(far_m > max(_STRAY_M, _STRAY_TIMES * float(np.median(far_m))))
-    if not len(stray):
-        return []
-    said = worded(
-        "{n} {n:plant stands|plants stand} {far:.0f} m and more from the others: {some}. Leave "
-        "{n:it|them} out of the file if {n:it is|they are} mistyped.",
-        n=len(stray),
-        far=float(far_m[stray].min()),
-        some=first_few([_at(plants.lonlat[k], plants.plant[k]) for k in stray], _NAMED),
-    )
-    return [doubtful(said)]
+    messages = []
+    gone = stray[far_m[stray] > _FAR_M]
+    if len(gone) and options.far is None and len(gone) * _RARE < len(lonlat):
+        out[gone] = True
+        said = worded(
+            "{n} {n:plant stands|plants stand} {far} and more from the others and {n:was|were} "
+            "left out: {some}.",
+            n=len(gone),
+            far=distance_figure(float(far_m[gone].min())),
+            some=first_few([_at(lonlat[k], names[k]) for k in gone], _NAMED),
+        )
+        messages.append(dropped(said, remedy=Remedy("far", "keep", worded("Keep them"))))
+        stray = np.setdiff1d(stray, gone)
+    if len(stray):
+        said = worded(
+            "{n} {n:plant stands|plants stand} {far} and more from the others: {some}. Leave "
+            "{n:it|them} out of the file if {n:it is|they are} mistyped.",
+            n=len(stray),
+            far=distance_figure(float(far_m[stray].min())),
+            some=first_few([_at(lonlat[k], names[k]) for k in stray], _NAMED),
+        )
+        messages.append(doubtful(said))
+    return out, messages
 
 
 def _at(place: NDArray[np.float64], name: str) -> str:

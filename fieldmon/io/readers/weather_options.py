@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import TYPE_CHECKING, Self
 
 from fieldmon.compute.wording import worded
@@ -13,8 +14,6 @@ from fieldmon.io.parse.weather_columns import UNITS, WRITTEN, unit_named
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
-    from datetime import datetime
-
     from fieldmon.plot.field import Field
 
 
@@ -33,7 +32,8 @@ class WeatherOptions(RecordOptions):
     location
         Which place of a file that holds several, counted from 1.
     now
-        What begins later was forecast; None: nothing was, unless a column says so.
+        What begins later was forecast, also as ISO text; None: nothing was, unless a column says
+        so.
     """
 
     zone: str | None = None
@@ -45,6 +45,7 @@ class WeatherOptions(RecordOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._check_now()
         if self.zone is not None:
             zone_of(self.zone)
         for kind, told in (
@@ -61,6 +62,25 @@ class WeatherOptions(RecordOptions):
                         told=told,
                     )
                 )
+
+    def _check_now(self) -> None:
+        """Take text as a time; refuse what is none."""
+        told = self.now
+        if isinstance(told, str):
+            try:
+                told = datetime.fromisoformat(told)
+            except ValueError:
+                pass
+            else:
+                object.__setattr__(self, "now", told)
+        if told is not None and not isinstance(told, datetime):
+            raise SettingError(
+                worded(
+                    'The time now must be a date with its time, as "2026-11-18T06:00+02:00", but '
+                    "it is {told!r}.",
+                    told=told,
+                )
+            )
 
     def on(self, field: Field) -> Self:
         """Return these options with the time zone in which a plot lies, where none was told."""

@@ -117,7 +117,8 @@ class WeatherRows:
                 made[name] = self.measured.get(name, np.full(len(at), np.nan))
         made["forecast"] = np.array([bool(self.forecast[one].any()) for one in bins], float)
         if now is not None:
-            later = np.datetime64(int(now.timestamp()), "s")
+            moment = now if now.tzinfo else now.replace(tzinfo=self.zone)
+            later = np.datetime64(int(moment.timestamp()), "s")
             made["forecast"] = np.maximum(made["forecast"], (at > later).astype(float))
         return weather_of(at, DAY_S if by_day else HOUR_S, self.zone_name, **made)
 

@@ -57,6 +57,13 @@ def test_degrees_in_the_wrong_order_are_offered_to_be_exchanged():
     np.testing.assert_array_equal(exchanged.lonlat, lonlat)
 
 
+def test_some_that_lie_nowhere_are_named_and_no_order_is_advised():
+    half = np.array([[35.1, 30.3], [35.1, 303.2]])
+    for xy, options in ((half, NOTHING), (half[:, ::-1], ReadOptions(swap_axes=True))):
+        with pytest.raises(FileProblem, match=r"1 of 2 positions lie nowhere .*: .*303\.2"):
+            place(xy, "EPSG:4326", options)
+
+
 def test_metres_called_degrees_are_a_question_for_the_system():
     with pytest.raises(ChoiceNeeded, match="are no degrees") as asked:
         place(projected("EPSG:2039"), "EPSG:4326", ReadOptions(near=(35.1, 30.3)))

@@ -321,6 +321,15 @@ def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, tak
     assert all(finding.sentence.endswith((".", "?")) for finding in said)
 
 
+def test_a_mistyped_position_is_told_once():
+    lon, lat = GRID.frame.lonlat(GRID.xy_m[:3]).T
+    rows = [f"{x},{y},no" for x, y in zip(lon, [lat[0], 303.52, lat[2]], strict=True)]
+    imported = read("\n".join(["lon,lat,found", *rows]))
+    (left_out,) = imported.of(Severity.DROPPED)
+    assert left_out.feature == "record 2"
+    assert "/ 303.52 is no position" in left_out.sentence
+
+
 def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
     brought = dated(read("plant,result,date\n1,found,2026-04-06\n2,clean,\n3,clean,2026-04-07\n"))
     assert brought.value.plant.tolist() == [1, 3]

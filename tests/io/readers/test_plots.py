@@ -147,6 +147,32 @@ def test_a_table_of_two_plots_asks_which_are_the_corners():
     assert set(asked.value.choices) >= {"part=a", "part=b"}
 
 
+MISTYPED = [(5, 45), (5.001, 45), (5.001, 450.01), (5, 45.001)]
+
+
+def test_a_mistyped_corner_is_refused_and_named_as_without_it_the_plot_is_another():
+    said = r"corner 3, 5.001 / 450.01, does not"
+    for wrong in (corners(*MISTYPED), layer_of([Polygon(MISTYPED)], name=["X"])):
+        with pytest.raises(FileProblem, match=said):
+            plots_of(wrong, ANY)
+    with pytest.raises(FileProblem, match=r"corner 2, 5.001 / east, does not"):
+        plots_of(table(lon=[5, 5.001, 5.001, 5], lat=["45", "east", "45.001", "45.001"]), ANY)
+    blocks = layer_of([Polygon(MISTYPED), TWO], name=["X", "X"], part=["a", "b"])
+    with pytest.raises(FileProblem, match=f"corner of X / a must.*{said}"):
+        plots_of(blocks, ANY.naming(block="part"))
+
+
+def test_a_plot_with_a_mistyped_corner_is_left_out_and_the_others_stay():
+    # as the first corner, it ends the outline too
+    for turned in (MISTYPED, [*MISTYPED[2:], *MISTYPED[:2]]):
+        read = plots_of(layer_of([Polygon(turned), TWO], name=["X", "Y"]), ANY)
+        assert names_of(read) == ["Y"]
+        (left_out,) = read.of(Severity.DROPPED)
+        number = turned.index(MISTYPED[2]) + 1
+        assert (left_out.feature, left_out.remedy) == ("X", None)
+        assert left_out.sentence.startswith(f"Corner {number}, 5.001 / 450.01, lies nowhere")
+
+
 def test_corners_that_enclose_nothing_are_refused():
     with pytest.raises((ChoiceNeeded, FileProblem)):
         plots_of(corners((5, 45), (5.001, 45), (5.002, 45)), ANY)

@@ -54,15 +54,24 @@ def test_two_plants_at_one_place_are_asked_about_by_name_and_one_of_each_can_be_
 
 def test_plants_far_from_all_others_are_named_and_left_out_in_another_part_of_the_earth():
     rows = [(5.0 + 3e-5 * k, 45.0 + 4e-5 * row) for row in range(3) for k in range(10)]
-    strays = [*rows, (5.1, 45.0), (5.1, 45.00001), (0.0, 0.0)]
+    near = [(5.01, 45.0), (5.01, 45.00001)]
+    strays = [*rows, *near, (5.1, 45.0), (0.0, 0.0)]
     names = [f"v{k}" for k in range(len(strays))]
     imported = plants_of(layer_of([Point(p) for p in strays], vine=names), ANY)
-    assert imported.value.plant.tolist() == names[:-1]
-    gone, stray = (m for m in imported.messages if m.severity is not Severity.SEEN)
-    assert (gone.severity, "v32 (0.00000 / 0.00000)" in gone.sentence) == (Severity.DROPPED, True)
+    assert imported.value.plant.tolist() == names[:-2]
+    gone, away, stray = (m for m in imported.messages if m.severity is not Severity.SEEN)
+    assert (gone.severity, "v33 (0.00000 / 0.00000)" in gone.sentence) == (Severity.DROPPED, True)
+    assert away.severity is Severity.DROPPED
+    assert "1 plant stands 7.863 km" in away.sentence
+    assert "from the others and was left out: v32" in away.sentence
+    kept = plants_of(
+        layer_of([Point(p) for p in strays], vine=names),
+        ANY.choose(away.remedy.option, away.remedy.value),
+    )
+    assert kept.value.plant.tolist() == names[:-1]
     assert stray.severity is Severity.DOUBTFUL
     assert "2 plants stand 7" in stray.sentence
-    assert "v30 (5.10000 / 45.00000), v31" in stray.sentence
+    assert " m and more from the others: v30 (5.01000 / 45.00000), v31" in stray.sentence
     fine = plants_of(layer_of([Point(p) for p in rows], vine=names[:-3]), ANY)
     assert {m.severity for m in fine.messages} == {Severity.SEEN}
 

@@ -1,5 +1,7 @@
 """What is chosen about weather is checked when it is chosen."""
 
+from datetime import datetime
+
 import pytest
 from shapely import MultiPolygon, box
 
@@ -13,6 +15,9 @@ def test_units_and_zones_that_are_none_are_refused():
         WeatherOptions(wind_unit="C")
     with pytest.raises(SettingError, match="time zone must be named"):
         WeatherOptions(zone="Mars/Olympus")
+    with pytest.raises(SettingError, match=r"The time now must be .* but it is 'soon'"):
+        WeatherOptions(now="soon")
+    assert WeatherOptions(now="2026-11-18").now == datetime(2026, 11, 18)
     assert WeatherOptions().choose("rain_unit", "in").unit("rain") == "in"
 
 

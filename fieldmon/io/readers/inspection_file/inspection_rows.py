@@ -25,6 +25,8 @@ class InspectionRows:
         ``(m, 2)`` degrees; NaN without a position.
     accuracy_m
         Of the position; NaN where not stated.
+    unread
+        The position as the file has it, where nobody can read it; else empty.
     result
         int8 `PRESENT`, `ABSENT` or `UNKNOWN` (could not be inspected).
     count
@@ -49,6 +51,7 @@ class InspectionRows:
     face: NDArray[np.int8]
     lonlat: NDArray[np.float64]
     accuracy_m: NDArray[np.float64]
+    unread: NDArray[np.str_]
     result: NDArray[np.int8]
     count: NDArray[np.float64]
     doubt: NDArray[np.str_]

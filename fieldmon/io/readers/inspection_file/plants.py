@@ -73,9 +73,14 @@ def _whole(layer: Layer, name: str, otherwise: int) -> NDArray[np.int64]:
 
 def positions_in(
     layer: Layer, columns: InspectionColumns, options: InspectionOptions
-) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[ImportMessage, ...]]:
-    """Return positions ``(n, 2)`` and their accuracy ``(n,)``, NaN where there is none."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.str_], tuple[ImportMessage, ...]]:
+    """Return positions ``(n, 2)``, their accuracy ``(n,)`` and what cannot be read of them.
+
+    NaN where there is none; empty where it can be read, or there is none. Each record whose
+    position cannot be read is told by itself later.
+    """
     lonlat, accuracy_m = np.full((len(layer), 2), np.nan), np.full(len(layer), np.nan)
+    unread = np.full(len(layer), "", dtype=object)
     roles = {role for role in ("lon", "lat", "x", "y", "position") if _has(layer, role, options)}
     given = layer.geometry is not None or roles >= {"lon", "lat"} or "position" in roles
     is_named = columns.plant is not None or columns.number is not None
@@ -93,7 +98,7 @@ def positions_in(
                 tuple(f"plant={name}" for name in layer.columns)
                 + could_be_positions(layer, options),
             )
-        return lonlat, accuracy_m, ()
+        return lonlat, accuracy_m, unread, ()
     rows = np.empty(len(layer), dtype=object)
     rows[:] = range(len(layer))
     try:
@@ -101,13 +106,18 @@ def positions_in(
     except (ChoiceNeeded, FileProblem):
         if not is_named:
             raise
-        return lonlat, accuracy_m, ()
+        return lonlat, accuracy_m, unread, ()
     kept = found.layer.columns[_ROW].astype(np.int64)
     name = options.column("accuracy") or find("accuracy", layer.columns)
     stated = numbers(found.layer.column(name)) if name else np.full(len(kept), np.nan)
     lonlat[kept] = found.lonlat
     accuracy_m[kept] = np.fmax(np.where(stated > 0, stated, np.nan), found.accuracy_m)
-    return lonlat, accuracy_m, found.messages
+    messages = found.messages
+    if found.unread is not None and not found.unread.n_dotted:
+        unread[list(found.unread.written)] = list(found.unread.written.values())
+        told = found.unread.messages()
+        messages = tuple(one for one in messages if one not in told)
+    return lonlat, accuracy_m, unread.astype(np.str_), messages
 
 
 def _has(layer: Layer, role: str, options: InspectionOptions) -> bool:

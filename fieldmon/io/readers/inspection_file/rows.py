@@ -99,7 +99,7 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
                 )
             )
         )
-    lonlat, accuracy_m, more = positions_in(layer, columns, options)
+    lonlat, accuracy_m, unread, more = positions_in(layer, columns, options)
     plant, line, number, face = named_plants(layer, columns)
     times = times_in(layer, columns, options)
     whole = InspectionRows(
@@ -109,6 +109,7 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
         face=face,
         lonlat=lonlat,
         accuracy_m=accuracy_m,
+        unread=unread,
         result=results.result,
         count=results.how_many,
         doubt=results.doubt,

@@ -62,7 +62,7 @@ def test_the_name_of_a_waypoint_given_out_holds_its_plant():
 
 
 def test_a_file_that_names_plants_needs_no_positions():
-    lonlat, accuracy_m, messages = positions(table(plant=[7], found=["x"]))
+    lonlat, accuracy_m, _, messages = positions(table(plant=[7], found=["x"]))
     assert np.isnan(lonlat).all()
     assert np.isnan(accuracy_m).all()
     assert messages == ()

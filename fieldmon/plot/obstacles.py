@@ -85,12 +85,14 @@ class Obstacles:
             clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
         else:
             clearance_m = clearance.way_m
-        whole = shapely.union_all(
-            [Polygon(part.exterior) for part in shapely.get_parts(grid.drivable_m)]
-        )
-        holes_m = shapely.difference(whole, grid.drivable_m)
+        drivable_m = grid.drivable_m
+        if not shapely.is_valid(drivable_m):  # laid on a plane, parts by a hair may cross
+            drivable_m = shapely.make_valid(drivable_m, method="structure", keep_collapsed=False)
+        parts = shapely.get_parts(drivable_m)
+        whole = shapely.union_all([Polygon(part.exterior) for part in parts])
+        holes_m = shapely.difference(whole, drivable_m)
         areas = (
-            shapely.buffer(grid.drivable_m, _EDGE_M, join_style="mitre"),
+            shapely.buffer(drivable_m, _EDGE_M, join_style="mitre"),
             shapely.buffer(shapely.union(holes_m, no_go_m), -_EDGE_M, join_style="mitre"),
             shapely.buffer(no_go_m, -_EDGE_M, join_style="mitre"),
         )

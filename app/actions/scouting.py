@@ -15,7 +15,7 @@ from fieldmon.monitoring.settings import seconds
 from ..show import recorded_batches
 from ..state import chosen_day, notices
 from ..words import texts
-from ..words.language import in_words, number
+from ..words.language import number
 from . import handing_out, recording
 
 if TYPE_CHECKING:
@@ -67,12 +67,6 @@ def last_tap(choices: Choices) -> tuple[int, str] | None:
     if tapped is None or (tapped.n, tapped.first) != (1, str(choices.on)):
         return None
     return number, recorded_batches.last(choices, tapped)
-
-
-@notices.reporting
-def undo(choices: Choices, batch: int) -> str:
-    """Take the last tap back."""
-    return in_words(choices.season.undo(batch, who=choices.who or ""))
 
 
 def can_be_longer(choices: Choices) -> bool:

@@ -75,4 +75,4 @@ def _undo(choices: Choices) -> None:
         st.caption(said)
         with st.container(key="scout_back"):
             st.button(texts.UNDO_BUTTON, key="scout_undo", width="stretch", icon=":material/undo:",
-                      on_click=scouting.undo, args=(choices, batch))  # fmt: skip
+                      on_click=recording.undo, args=(choices, batch))  # fmt: skip

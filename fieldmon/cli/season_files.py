@@ -9,7 +9,7 @@ from contextlib import closing
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from fieldmon.errors import FieldmonError, SettingError
+from fieldmon.errors import FieldmonError, FileProblem, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -97,11 +97,19 @@ def _is_filled_in(file: Path) -> bool:
 
 
 def _results_in(file: Path, season: Season) -> Inspections:
-    """Return what a file says of this season's plants without a doubt; nothing of other files."""
+    """Return what a file says of this season's plants without a doubt; nothing of other files.
+
+    Raise `SettingError` if it was torn: what it says nobody could record.
+    """
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.readers.inspections import dated, read_inspections
 
     try:
         return dated(read_inspections(file, season.plot.grid)).value
+    except FileProblem as torn:
+        raise SettingError(
+            f"{file} would be written over, but it was filled in and cannot be read. {torn} Then "
+            "record it; or choose another name, or move it away."
+        ) from torn
     except FieldmonError:
         return Inspections.none()

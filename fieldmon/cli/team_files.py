@@ -45,6 +45,7 @@ def members_of(
         )
         for one, start in zip(stated, starts, strict=True)
     ]
+    _tell_team(members, [worker.scout or one.scout for one in stated])
     return tuple(members), first
 
 
@@ -57,6 +58,15 @@ def refuse_far_gates(team: tuple[TeamMember, ...], plot: Field) -> None:
             refuse_far_gate(member.gate, plot)
         except SettingError as error:
             raise SettingError(f"{member.name}: {error}") from None
+
+
+def _tell_team(members: list[TeamMember], on_foot: list[bool]) -> None:
+    """Say what a table was taken for: lines may leave out what the options say."""
+    said = "; ".join(
+        f"{one.name}, {'scout' if walks else 'robot'}, {one.robot.hours:g} h"
+        for one, walks in zip(members, on_foot, strict=True)
+    )
+    typer.echo(f"seen: The team is {said}.", err=True)
 
 
 def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -> list[list[Path]]:

@@ -131,6 +131,7 @@ class OpenSeason:
         self._written: SeasonContents | None = None
         self._prior: _Prior | None = None
         self._aisles: dict[tuple[float, float], Aisles] = {}
+        self._gone_then: dict[int, set[str]] = {}
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
@@ -404,9 +405,19 @@ class OpenSeason:
             since = now.mornings.last_until(newest_day(db))
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         self._keep_mornings(db, now.mornings, newest)
-        qgis_project.keep(db, self.path.name)
+        qgis_project.keep(db, self.path.name, lambda day: self._gone(db, now, day, since))
         self._last = None  # the transaction may yet fail
         self._written = replace(now, revision=now.revision.once_kept(db))
+
+    def _gone(
+        self,
+        db: sqlite3.Connection,  # noqa: ARG002 - as where there are plans
+        contents: SeasonContents,  # noqa: ARG002
+        day: int,  # noqa: ARG002
+        since: int,  # noqa: ARG002
+    ) -> set[str]:
+        """Return whose routes of a day nobody goes by any more; nothing before `since` changed."""
+        return set()
 
     def _keep_mornings(self, db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
         keep_mornings(db, mornings, newest)

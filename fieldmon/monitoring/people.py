@@ -10,12 +10,10 @@ from fieldmon.planning.members import person
 if TYPE_CHECKING:
     import sqlite3
 
-# the last code first; who recorded stands there with others of the same file
-_WRITTEN = (
-    "SELECT name FROM scouts ORDER BY fid DESC",
-    "SELECT who FROM routes ORDER BY fid",
-    "SELECT who FROM batches ORDER BY fid",
-)
+# the last code first
+_WRITTEN = ("SELECT name FROM scouts ORDER BY fid DESC", "SELECT who FROM routes ORDER BY fid")
+# who recorded stands there with others of the same file
+_RECORDED = "SELECT who FROM batches ORDER BY fid"
 
 
 def names_written(db: sqlite3.Connection) -> dict[str, str]:
@@ -24,9 +22,12 @@ def names_written(db: sqlite3.Connection) -> dict[str, str]:
     for one in settings_of(db).team:
         as_written(known, one.name)
     for wanted in _WRITTEN:
-        for (names,) in db.execute(wanted):
-            for name in str(names or "").split(", "):
-                as_written(known, name)
+        for (name,) in db.execute(wanted):
+            as_written(known, str(name or ""))
+    for (names,) in db.execute(_RECORDED):
+        together = str(names or "")
+        for name in (together, *together.split(", ")):
+            as_written(known, name)
     return known
 
 

@@ -19,7 +19,7 @@ from fieldmon.monitoring.qgis_styles import ASKED_STYLES, PHOTO_STYLES, STYLES
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
 PROJECT = "fieldmon"
 _TABLE = (
@@ -27,12 +27,7 @@ _TABLE = (
 )
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _MOST_DAYS = 14
-#: SQL of the last route of each who has one on a day; nobody's own is that of who works alone
-_LAST_ROUTES = (
-    '(SELECT max("fid") FROM "routes" WHERE "date" = {day} AND ("who" = \'\') = (SELECT "who" = '
-    '\'\' FROM "routes" WHERE "date" = {day} ORDER BY "fid" DESC LIMIT 1) GROUP BY "who")'
-)
-_TODAYS = _LAST_ROUTES.format(day='(SELECT max("date") FROM "routes")')
+_LAST_DAY = '(SELECT max("date") FROM "routes")'
 _SHAPES = {"POINT": "Point", "LINESTRING": "Line", "MULTIPOLYGON": "Polygon"}
 _RESULTS = (("found infested", "found"), ("looked clean", "clean"), ("could not look", "skipped"))
 _HIDDEN = ("fid", "plant", "line", "number", "day", "time", "batch", "digest", "undone")
@@ -74,12 +69,10 @@ class Shown(NamedTuple):
         return "fieldmon_" + re.sub(r"\W+", "_", f"{self.table} {self.title}".lower())
 
 
-_TODAY = (
+_FINDINGS = (
     Shown("inspections", "Findings", '"undone" = 0', edited=True),
     Shown("photo_places", "Photos"),
     Shown("photos_asked", "Photos asked for", '"ended" IS NULL'),
-    Shown("stops", "Stops today", f'"route" IN {_TODAYS}'),
-    Shown("routes", "Route today", f'"fid" IN {_TODAYS}'),
 )
 _PLOT = (
     Shown("hot_spots", "Hot spots"),
@@ -90,12 +83,27 @@ _PLOT = (
 )
 
 
-def keep(db: sqlite3.Connection, file: str) -> None:
-    """Keep the project of a file of this name, unless it is there as it should be."""
-    days = [on for (on,) in db.execute(
-        "SELECT DISTINCT date FROM routes ORDER BY date DESC LIMIT ?", (_MOST_DAYS + 1,)
-    )]  # fmt: skip
-    earlier = [Shown("routes", f"Route {on}", _last_of(on), on=False) for on in days[1:]]
+def keep(
+    db: sqlite3.Connection, file: str, gone: Callable[[int], Iterable[str]] = lambda _: ()
+) -> None:
+    """Keep the project of a file of this name, unless it is there as it should be.
+
+    `gone` says whose routes of a day nobody goes by any more.
+    """
+    days = db.execute(
+        "SELECT date, day FROM routes GROUP BY date ORDER BY date DESC LIMIT ?", (_MOST_DAYS + 1,)
+    ).fetchall()
+    last = [_last_routes(f"'{on}'" if k else _LAST_DAY, gone(day))
+            for k, (on, day) in enumerate(days)] or [_last_routes(_LAST_DAY, ())]  # fmt: skip
+    today = (
+        *_FINDINGS,
+        Shown("stops", "Stops today", f'"route" IN {last[0]}'),
+        Shown("routes", "Route today", f'"fid" IN {last[0]}'),
+    )
+    earlier = tuple(
+        Shown("routes", f"Route {on}", f'"fid" IN {of}', on=False)
+        for (on, _), of in zip(days[1:], last[1:], strict=False)
+    )
     box = db.execute(
         "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'plots'"
     ).fetchone()
@@ -103,7 +111,7 @@ def keep(db: sqlite3.Connection, file: str) -> None:
         # of a damaged file: there is no plot to look at
         return
     shapes = dict(db.execute("SELECT table_name, geometry_type_name FROM gpkg_geometry_columns"))
-    content = _packed(_project(file, earlier, shapes, box))
+    content = _packed(_project(file, (today, earlier), shapes, box))
     db.execute(_TABLE)
     held = db.execute("SELECT content FROM qgis_projects WHERE name = ?", (PROJECT,)).fetchone()
     if held is None or held[0] != content:
@@ -112,10 +120,11 @@ def keep(db: sqlite3.Connection, file: str) -> None:
                    (PROJECT, told, content))  # fmt: skip
 
 
-def _last_of(on: str) -> str:
-    """Return SQL of the last route of each who has one on a day."""
-    day = f"'{on}'"
-    return f'"fid" IN {_LAST_ROUTES.format(day=day)}'
+def _last_routes(day: str, gone: Iterable[str]) -> str:
+    """Return SQL of the last route of each who has one on a day, but of those gone."""
+    names = ", ".join("'" + who.replace("'", "''") + "'" for who in sorted(gone))
+    but = f' AND "who" NOT IN ({names})' if names else ""
+    return f'(SELECT max("fid") FROM "routes" WHERE "date" = {day}{but} GROUP BY "who")'  # noqa: S608 - quoted
 
 
 def _packed(project: str) -> str:
@@ -127,11 +136,12 @@ def _packed(project: str) -> str:
 
 
 def _project(
-    file: str, earlier: list[Shown], shapes: dict[str, str], box: tuple[float, ...]
+    file: str, days: tuple[tuple[Shown, ...], ...], shapes: dict[str, str], box: tuple[float, ...]
 ) -> str:
-    layers = [*_TODAY, *earlier, *_PLOT]
+    today, earlier = days
+    layers = [*today, *earlier, *_PLOT]
     tree = (
-        _group("Today", _TODAY)
+        _group("Today", today)
         + (_group("Earlier days", earlier, on=False) if earlier else "")
         + _group("Plot", _PLOT)
     )
@@ -150,7 +160,7 @@ def _project(
                                                      strict=True))
         + f"</extent><destinationsrs>{_system(3857)}</destinationsrs></mapcanvas>"
         f"<ProjectViewSettings><DefaultViewExtent{extent}>{_system(3857)}</DefaultViewExtent>"
-        f"</ProjectViewSettings><projectlayers>{drawn}</projectlayers>{_themes(earlier)}"
+        f"</ProjectViewSettings><projectlayers>{drawn}</projectlayers>{_themes(today, earlier)}"
         '<properties><SpatialRefSys><ProjectionsEnabled type="int">1</ProjectionsEnabled>'
         '</SpatialRefSys><Paths><Absolute type="bool">false</Absolute></Paths></properties></qgis>'
     )  # fmt: skip
@@ -187,10 +197,10 @@ def _layer(file: str, one: Shown, shape: str) -> str:
     )
 
 
-def _themes(earlier: list[Shown]) -> str:
+def _themes(today: tuple[Shown, ...], earlier: tuple[Shown, ...]) -> str:
     """Return the theme for print: no chance map, whose colours a printer drowns the route in."""
-    printed = [one for one in (*_TODAY, *_PLOT) if one.on and one.table != "chance"]
-    everything = [one for one in (*_TODAY, *_PLOT) if one.on]
+    printed = [one for one in (*today, *_PLOT) if one.on and one.table != "chance"]
+    everything = [one for one in (*today, *_PLOT) if one.on]
     presets = (("Print", printed), ("Screen", everything), ("All routes", [*everything, *earlier]))
     inner = "".join(
         f'<visibility-preset name="{name}" has-expanded-info="0">'

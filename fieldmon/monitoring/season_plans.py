@@ -25,6 +25,7 @@ from fieldmon.planning.team_worker import Posted
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
+    import sqlite3
     from collections.abc import Sequence
     from datetime import date, time
 
@@ -163,12 +164,40 @@ class SeasonPlans(OpenSeason):
 
     def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
         """Return who has a code for work on the day `on` now, by `person`, and of which rows."""
-        return self._codes(on, is_over=False)
-
-    def _codes(self, on: date, *, is_over: bool) -> dict[str, tuple[int, int] | None]:
         with self.store.reading() as db:
-            known = scouts.scouts_on(db, local_clock(self.plot.field), on, is_over=is_over)
+            return self._codes(db, on, is_over=False)
+
+    def _codes(
+        self, db: sqlite3.Connection, on: date, *, is_over: bool
+    ) -> dict[str, tuple[int, int] | None]:
+        known = scouts.scouts_on(db, local_clock(self.plot.field), on, is_over=is_over)
         return {person(one.name): one.rows for one in known}
+
+    def _out(self, db: sqlite3.Connection, contents: SeasonContents, on: date) -> set[str]:
+        """Return who is out, by `person`, of those whose routes are kept of a day."""
+        last = routes.kept_last(db, contents.settings.day(on))
+        if len(last) < 2:
+            return {*last}
+        codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
+        return _out(last, codes, self._planned_by(contents, on, db))
+
+    def _gone(
+        self, db: sqlite3.Connection, contents: SeasonContents, day: int, since: int
+    ) -> set[str]:
+        wanted = "SELECT DISTINCT who FROM routes WHERE day = ?"
+        names = {who for (who,) in db.execute(wanted, (day,))}
+        if all(contents.settings.named(who) for who in names):
+            return set()
+        if day >= since:
+            self._gone_then.pop(day, None)
+        elif day in self._gone_then:  # to look it up takes reading all of the log
+            return self._gone_then[day]
+        on = contents.settings.date(day)
+        out = self._out(db, contents, on)
+        gone = {who for who in names if person(who) not in out}
+        if day < since and self._is_earlier(contents, on):
+            self._gone_then[day] = gone
+        return gone
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
@@ -180,12 +209,8 @@ class SeasonPlans(OpenSeason):
             contents = self._read(db)
             day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
             kept = routes.of_day(db, day)
-            codes = self._codes(on, is_over=self._is_earlier(contents, on))
-            last = routes.kept_last(db, day)
-        if who is None:
-            out = _out(last, codes, self._planned_by(contents, on))
-        else:
-            out = {*last} & {person(who)}
+            out = self._out(db, contents, on) if who is None else {person(who)}
+        if who is not None:
             kept = [one for one in kept if one.who in out]
         if not kept:
             return None

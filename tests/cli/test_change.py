@@ -72,8 +72,9 @@ def test_what_is_said_of_everybody_is_refused_where_members_of_a_team_differ(run
     assert [one.robot.hours for one in Season(season).settings.team] == [3.0, 2.0]
     assert run("change", season, "--start", "07:00")[0] == 0
     # what the table leaves open is as told beside it
-    team.write_text("name,hours\nR1,3\nR2,\n")
-    run("change", season, "--robots", team, "--hours", "5")
+    team.write_text("name,who,hours\nR1,scout,3\nR2\n")
+    _, _, err, _ = run("change", season, "--robots", team, "--hours", "5")
+    assert "seen: The team is R1, scout, 3 h; R2, robot, 5 h." in err
     assert [one.robot.hours for one in Season(season).settings.team] == [3.0, 5.0]
 
 

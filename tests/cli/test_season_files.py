@@ -64,6 +64,12 @@ def test_a_day_that_was_filled_in_is_not_written_over_before_it_is_recorded(run,
         code, _, err, _ = run(*words)
         assert code == 0, err
     filled_in(tmp_path / "day.csv", {0}, 1)
+    held = (tmp_path / "day.csv").read_text(encoding="utf-8-sig")
+    (tmp_path / "day.csv").write_text(held + '"1,1,1,clean\n')
+    code, _, err, made = run(*words)
+    assert (code, made) == (2, set())
+    assert "cannot be read. day, line" in err
+    (tmp_path / "day.csv").write_text(held)
     run("record", season, "day.csv")
     run("undo", season)  # what was taken back was recorded
     code, _, err, _ = run(*words)

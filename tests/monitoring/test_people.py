@@ -24,3 +24,13 @@ def test_a_person_is_written_as_at_first_whoever_types_it(path):
     season.undo()
     scouts.take_back(season, "ANN")
     assert scouts.who(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"
+
+
+def test_a_name_with_a_comma_is_one(path):
+    season = Season(path)
+    scouts.let_in(season, "COHEN, Uri", (1, 2))
+    scouts.let_in(season, "uri", (3, 4))
+    assert scouts.who(season, scouts.let_in(season, "Cohen, uri", (1, 2))).name == "COHEN, Uri"
+    assert [one.name for one in scouts.scouts_of(season)] == ["uri", "COHEN, Uri"]
+    season.record(three_results(), "f", "Levi, Dan")
+    assert scouts.who(season, scouts.let_in(season, "levi, dan", (5, 6))).name == "Levi, Dan"

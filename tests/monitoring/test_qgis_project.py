@@ -9,6 +9,7 @@ import subprocess
 import sys
 import zipfile
 from contextlib import closing
+from dataclasses import replace
 from datetime import timedelta
 from xml.etree import ElementTree as ET
 
@@ -18,7 +19,7 @@ from pyproj import Transformer
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.qgis_project import _mercator
-from fieldmon.planning.members import team_of
+from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.plot.robot import Robot
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -79,6 +80,24 @@ def test_of_a_team_the_last_route_of_each_is_shown(tmp_path):
         assert len(rows_shown(team.path, shown[name])) == 2
     stops = rows_shown(team.path, shown["Stops today"])
     assert len(stops) == sum(len(day.route) for day in last)
+
+
+def test_routes_of_whoever_is_no_longer_out_are_not_shown(tmp_path):
+    robot = Robot(hours=0.5)
+    first = TeamMember("Ann O'Neill", robot), TeamMember("R1", robot)
+    season = a_season(tmp_path / "team.gpkg", team=first)
+    season.plan_each(BEGINS)
+    for team, n in ((team_of(3, robot), 3), ((), 1), (first, 2)):
+        season.change(replace(season.settings, team=team), season.settings)
+        last = season.plan_each(BEGINS)
+        shown = layers(project_of(season.path))
+        routes = rows_shown(season.path, shown["Route today"])
+        assert len(routes) == n
+        stops = rows_shown(season.path, shown["Stops today"])
+        assert len(stops) == sum(len(day.route) for day in last)
+    season.plan_each(BEGINS + timedelta(days=1))
+    shown = layers(project_of(season.path))
+    assert rows_shown(season.path, shown[f"Route {BEGINS}"]) == routes
 
 
 def test_every_layer_of_the_tree_is_there_and_none_is_internal(season):

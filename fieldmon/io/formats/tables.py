@@ -18,6 +18,7 @@ from fieldmon.io.formats.wkt import with_shapes
 from fieldmon.io.formats.workbooks import sheet_rows
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, seen
 from fieldmon.io.parse.columns import recognised
+from fieldmon.io.parse.quotes import refuse_open_quote
 from fieldmon.io.parse.text import decode
 from fieldmon.io.parse.values import dates, degrees, number
 from fieldmon.io.sandbox import limits
@@ -44,6 +45,9 @@ def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
     content, told = _told_delimiter(content)
     delimiter = options.delimiter or told or _delimiter(content)
     csv.field_size_limit(limits.CELL_CHARACTERS)
+    if '"' in content:
+        lines = io.StringIO(content, newline="")
+        refuse_open_quote(lines, delimiter, name, above=int(told is not None))
     try:
         rows = list(csv.reader(io.StringIO(content, newline=""), delimiter=delimiter))
     except csv.Error as bad:

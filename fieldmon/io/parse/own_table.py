@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
+from fieldmon.io.parse.quotes import refuse_open_quote
+from fieldmon.io.sandbox import limits
 
 
 class OwnTable(NamedTuple):
@@ -39,13 +41,18 @@ def own_table(text: str, name: str, *, comments: bool = True) -> OwnTable:
     Raises
     ------
     FileProblem
-        If a column is named twice, or a line has more cells than there are columns.
+        If a quote is not closed, a column is named twice, or a line has more cells than there are
+        columns.
     """
-    lines = ["" if comments and one.startswith("#") else one for one in text.splitlines()]
+    lines = [
+        "\n" if comments and one.startswith("#") else one for one in text.splitlines(keepends=True)
+    ]
     delimiter = max(",;\t", key=next((line for line in lines if line.strip()), "").count)
+    csv.field_size_limit(limits.CELL_CHARACTERS)
+    refuse_open_quote(lines, delimiter, name)
     reader = csv.reader(lines, delimiter=delimiter)
     try:
-        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        rows = [(reader.line_num, [_in_one_line(cell) for cell in row]) for row in reader]
     except csv.Error as bad:
         raise FileProblem(
             worded("{name} must be a text table, but it cannot be read: {bad}.", name=name, bad=bad)
@@ -75,3 +82,7 @@ def own_table(text: str, name: str, *, comments: bool = True) -> OwnTable:
         cells = row + [""] * (len(columns) - len(row))
         made.append((where, dict(zip(columns, cells, strict=False))))
     return OwnTable(columns, tuple(made))
+
+
+def _in_one_line(cell: str) -> str:
+    return " ".join(part.strip() for part in cell.splitlines())

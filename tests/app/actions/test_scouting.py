@@ -6,6 +6,7 @@ from datetime import UTC, date, datetime
 import numpy as np
 
 from app.state.choices import WHOSE_DAY
+from app.words import texts
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
@@ -53,6 +54,9 @@ def test_the_scout_takes_the_last_tap_back(season_app, season):
     tap(season_app, "scout_undo")
     assert place(season_app) == before
     assert season().history.inspections.result.tolist() == [0]
+    season().undo()
+    season_app.button(key="scout_undo").click().run()
+    assert season_app.error[0].value == texts.UNDONE_BEFORE
 
 
 def test_a_scout_takes_back_what_is_said_beside_the_button_and_nobody_elses(season_app, season):

@@ -104,6 +104,7 @@ def test_cells_beyond_the_last_column_are_left_out_and_said(tmp_path):
         (b"\n \n", "line of column names"),
         (b"lon,lat\n\n", "records below its column names"),
         (b"lon,lat\n1,\x00\n", "no text"),
+        (b'sep=,\nlon,lat\n"1,2\n3,4\n', "table, line 3: a quote"),
     ],
 )
 def test_what_is_no_table_is_refused(tmp_path, content, says):

@@ -13,6 +13,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
 from fieldmon.planning.members import person
+from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
     import sqlite3
@@ -110,11 +111,15 @@ def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
 
 
 class KeptRoute(NamedTuple):
-    """A route that is kept: its number in the file, which of its day it is, and its digest."""
+    """A route that is kept: its number in the file, which of its day it is, its digest, its begin.
+
+    It begins `at` a plant, or at the gate (-1).
+    """
 
     number: int
     revision: int
     digest: str
+    at: int = GATE
 
     @property
     def plan(self) -> int:
@@ -125,11 +130,13 @@ class KeptRoute(NamedTuple):
 def kept_last(db: sqlite3.Connection, day: int) -> dict[str, KeptRoute]:
     """Return the route kept last for a day of each who has one, by `person`."""
     last: dict[str, KeptRoute] = {}
-    wanted = "SELECT who, fid, revision, digest FROM routes WHERE day = ? ORDER BY fid"
-    for who, number, revision, mark in db.execute(wanted, (day,)):
+    wanted = "SELECT who, fid, revision, digest, at_plant FROM routes WHERE day = ? ORDER BY fid"
+    for who, number, revision, mark, at in db.execute(wanted, (day,)):
         # older files may write a name in two ways, and count each
         before = last.get(person(who), KeptRoute(0, 0, ""))
-        last[person(who)] = KeptRoute(number, max(revision, before.revision), mark)
+        last[person(who)] = KeptRoute(
+            number, max(revision, before.revision), mark, GATE if at is None else at
+        )
     return last
 
 

@@ -325,12 +325,13 @@ def _tell_left_out(scouts: list[str]) -> None:
 
 def _tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) -> None:
     """Print that others are out, and what is left to them."""
-    from fieldmon.reports.words import DAY_OF_NOBODY
-
     if not (codes := season.codes_on(on)):
         return
-    rows = ", ".join(f"{first} to {last}" for first, last in sorted(left_out))
-    said = [DAY_OF_NOBODY, *([f"Left to those with a code for them: rows {rows}."] if rows else [])]
+    out = "is out with a route" if len(codes) == 1 else "are out with routes"
+    theirs = f"{' and '.join(codes)} {out} of their own"
+    if rows := ", ".join(f"{first}-{last}" for first, last in sorted(left_out)):
+        theirs += f"; the robot leaves rows {rows} to them"
+    said = [f"{theirs}."]
     if None in codes.values():
         said.append("Whoever has a code for the whole plot may be sent to the same plants.")
     typer.echo(" ".join(said), err=True)

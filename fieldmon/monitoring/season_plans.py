@@ -162,13 +162,13 @@ class SeasonPlans(OpenSeason):
             return routes.plants(db, last.get(person(who if named is None else named.name)))
 
     def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
-        """Return who has a code for work on the day `on` now, by `person`, and of which rows."""
+        """Return who has a code for work on the day `on` now, by name, and of which rows."""
         return self._codes(on, is_over=False)
 
     def _codes(self, on: date, *, is_over: bool) -> dict[str, tuple[int, int] | None]:
         with self.store.reading() as db:
             known = scouts.scouts_on(db, local_clock(self.plot.field), on, is_over=is_over)
-        return {person(one.name): one.rows for one in known}
+        return {one.name: one.rows for one in known}
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
@@ -276,7 +276,7 @@ def _out(
     They are of the team or have a code. The season's own route is that of who is alone, and counts
     where none was given to anybody.
     """
-    out = {*last} & ({person(one.name) for one in settings.team} | {*codes})
+    out = {*last} & ({person(one.name) for one in settings.team} | {*map(person, codes)})
     if not settings.team and [*codes.values()] == [None] and "" in last:
         return {max(out | {""}, key=lambda who: last[who].number)}
     return out or ({""} if "" in last else {*last})

@@ -157,23 +157,31 @@ class KeptPlans:
         As by `person`; empty where one works.
     last, of_all
         Plants of the plan kept last, and of all of them.
-    hours
-        From the begin of the first to the end of the last.
+    begins, ends
+        When the first begins, and the last ends.
+    at
+        The plants where the first and the last begin, -1: the gate.
     """
 
     who: str
     last: NDArray[np.int32]
     of_all: NDArray[np.int32]
-    hours: float
+    begins: datetime
+    ends: datetime
+    at: tuple[int, int]
 
     def __repr__(self) -> str:
-        return f"<KeptPlans: {len(self.last)} stops, {self.hours:.1f} h>"
+        return f"<KeptPlans: {len(self.last)} stops, {self.hours():.1f} h>"
+
+    def hours(self, begun: datetime | None = None) -> float:
+        """Return the hours that they take; `begun`: when the work they were made for began."""
+        return (self.ends - (self.begins if begun is None else begun)).total_seconds() / 3600
 
 
 def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     """Return what is kept of a day's plans, for each who has one."""
     rows = db.execute(
-        "SELECT who, starts, seconds FROM routes WHERE day = ? ORDER BY fid", (day,)
+        "SELECT who, starts, seconds, at_plant FROM routes WHERE day = ? ORDER BY fid", (day,)
     ).fetchall()
     stops = db.execute(
         "SELECT DISTINCT who, plant FROM stops JOIN routes ON routes.fid = route WHERE day = ?",
@@ -181,12 +189,12 @@ def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     ).fetchall()
     made = []
     for who, last in kept_last(db, day).items():
-        own = [(datetime.fromisoformat(at), s) for name, at, s in rows if person(name) == who]
-        ends = own[-1][0] + timedelta(seconds=own[-1][1])
+        own = [(datetime.fromisoformat(t), s, at) for name, t, s, at in rows if person(name) == who]
+        begins, ends = own[0][0], own[-1][0] + timedelta(seconds=own[-1][1])
+        first, newest = (GATE if at is None else at for _, _, at in (own[0], own[-1]))
         every = {plant for name, plant in stops if person(name) == who}
-        hours = (ends - own[0][0]).total_seconds() / 3600
         of_all = np.array(sorted(every), np.int32)
-        made.append(KeptPlans(who, plants(db, last), of_all, hours))
+        made.append(KeptPlans(who, plants(db, last), of_all, begins, ends, (first, newest)))
     return made
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
+from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,12 +27,12 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from datetime import date, time
+    from datetime import date
 
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.open_season import SeasonContents
-    from fieldmon.monitoring.routes import KeptRoute
+    from fieldmon.monitoring.routes import KeptPlans, KeptRoute
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
@@ -193,8 +194,26 @@ class SeasonPlans(OpenSeason):
         return PlannedAndDone.of(
             [(one.last if one.who in out else none, one.of_all) for one in kept],
             np.unique(made_by(done, who).plant),
-            [one.hours for one in kept if one.who in out],
+            [one.hours(self._begun(contents, on, one, codes)) for one in kept if one.who in out],
         )
+
+    def _begun(
+        self, contents: SeasonContents, on: date, kept: KeptPlans,
+        codes: dict[str, tuple[int, int] | None],
+    ) -> datetime | None:  # fmt: skip
+        """Return when the work of whoever goes by these plans began; None: as the first one says.
+
+        That counts where the first was made before it, and the last during it. The season's own
+        route is that of who is alone, or of the robot besides those with codes.
+        """
+        alone = [*codes.values()] in ([], [None])
+        who = kept.who or ("" if alone else Besides(tuple(codes)))
+        done = made_by(contents.history.inspections.on(on), who or None)
+        first, last = np.isin(kept.at, done.plant)
+        if first or not last or not np.isfinite(done.second[0]):
+            return None
+        midnight = datetime.combine(on, time())
+        return midnight + timedelta(seconds=round(self._begun_s(contents, on, who)))
 
     def _keep(
         self, contents: SeasonContents, on: date, noted: tuple[DayPlan, ...],

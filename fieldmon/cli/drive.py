@@ -239,6 +239,7 @@ def _season(options: DriveOptions, file: Path) -> None:
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
+        _tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
     begins, so_far = _begins(season, on, today.begun_s), DrivenDay()
     with _driver(options, season.plot, worker, (season.morning(on), on)) as driver:
@@ -246,9 +247,11 @@ def _season(options: DriveOptions, file: Path) -> None:
             driven = _driven(options, today, aisles, (worker, driver), begins, so_far)
         except KeyboardInterrupt:
             _write(so_far, on, options, _name(options), before)
+            _tell_replanned(today.replanned - 1)
             _tell_stopped(season, on, today.batch)
             raise
     _write(driven, on, options, _name(options), before)
+    _tell_replanned(today.replanned - 1)
 
 
 def _team(options: DriveOptions, file: Path) -> bool:
@@ -277,6 +280,9 @@ def _team(options: DriveOptions, file: Path) -> bool:
     files = files_of_each(asked, today.robots) if asked else [[] for _ in today.robots]
     tell_assumed(season.assumed(settings))
     _tell_left_out([one.name for one in today.team if one not in today.robots])
+    if today.batch is not None:
+        typer.echo(f"{on} goes on (batch {today.batch}).")
+        _tell_plan(goes_on=today.goes_on)
     done = season.history.inspections.on(on)
     before = {one.name: len(made_by(done, one.name)) for one in today.robots}
     recordings = {
@@ -298,6 +304,7 @@ def _team(options: DriveOptions, file: Path) -> bool:
         mine = replace(options, output=output, bag=bag, serial=one.name)
         _write_bag(recordings[one.name], begins[one.name], mine)
         _write(each, on, mine, one.name, before[one.name])
+    _tell_replanned(today.replanned - 1)
     if today.stopped:
         _tell_stopped(season, on, today.batch)
         raise KeyboardInterrupt
@@ -318,15 +325,33 @@ def _tell_left_out(scouts: list[str]) -> None:
 
 def _tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) -> None:
     """Print that others are out, and what is left to them."""
-    from fieldmon.reports.words import DAY_OF_NOBODY
-
     if not (codes := season.codes_on(on)):
         return
-    rows = ", ".join(f"{first} to {last}" for first, last in sorted(left_out))
-    said = [DAY_OF_NOBODY, *([f"Left to those with a code for them: rows {rows}."] if rows else [])]
+    out = "is out with a route" if len(codes) == 1 else "are out with routes"
+    theirs = f"{' and '.join(codes)} {out} of their own"
+    if rows := ", ".join(f"{first}-{last}" for first, last in sorted(left_out)):
+        theirs += f"; the robot leaves rows {rows} to them"
+    said = [f"{theirs}."]
     if None in codes.values():
         said.append("Whoever has a code for the whole plot may be sent to the same plants.")
     typer.echo(" ".join(said), err=True)
+
+
+def _tell_plan(*, goes_on: bool) -> None:
+    """Print by which plan a day goes on."""
+    typer.echo(
+        "It follows what is left of the plan given out last."
+        if goes_on
+        else "Planned anew: the plan given out last is done, or results or hours changed it."
+    )
+
+
+def _tell_replanned(n: int) -> None:
+    """Print how often a day was planned anew while it was driven."""
+    from fieldmon.compute.wording import counted
+
+    if n:
+        typer.echo(f"Planned anew {counted(n, 'time')} after finds or delays; each plan is kept.")
 
 
 def _tell_stopped(season: Season, on: date, batch: int | None) -> None:

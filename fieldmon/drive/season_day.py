@@ -8,12 +8,14 @@ import numpy as np
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring.day_ahead import inside
-from fieldmon.monitoring.history import Besides
+from fieldmon.monitoring.day_ahead import DayAhead, inside, through
+from fieldmon.monitoring.history import Besides, made_by
 from fieldmon.monitoring.monitor import PlantToInspect
+from fieldmon.planning.members import person
 from fieldmon.planning.wishes import Wishes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from datetime import date
 
     from fieldmon.monitoring.season_file import Season
@@ -26,8 +28,9 @@ LATE_S = 30.0
 class SeasonDay:
     """A day of a season that is asked for the next plant and told what was seen there.
 
-    All that is told of a day is one batch. Who begins again after a crash goes on from the plant
-    told last, at its time. Who is out with a code works beside it: their rows are left to them.
+    All that is told of a day is one batch, and every plan is kept. Who begins again after a crash
+    goes on from the plant told last, at its time, with what is left of the plan given out last. Who
+    is out with a code works beside it: their rows are left to them.
 
     Parameters
     ----------
@@ -52,9 +55,17 @@ class SeasonDay:
         self.begun_s = season.begun_s(on, self._who or "")
         self._source = f"{source} {on}"
         self.batch = begun_batch(season, self._source)
+        #: plans that it went by, the one it began or went on with included
         self.replanned = 0
         self._asked: PlantToInspect | None = None
-        self._plan()
+        begun, beside = self.batch is not None, self._who or ""
+        left = left_of_plan(season, on, beside, self.left_out) if begun else None
+        #: whether it goes on with what is left of the plan given out last
+        self.goes_on = left is not None and len(left.route) > 0
+        if left is not None and self.goes_on:
+            self._take(left)
+        else:
+            self._plan()
 
     def __repr__(self) -> str:
         """Say which day of which season."""
@@ -111,8 +122,10 @@ class SeasonDay:
         return (wishes or Wishes()).never(tuple(np.flatnonzero(theirs).tolist()))
 
     def _plan(self) -> None:
+        self._take(self._season.plan(self._on, wishes=self._wishes, who=self._who))
+
+    def _take(self, today: DayPlan) -> None:
         season, on, who = self._season, self._on, self._who
-        today = season.plan(on, keep=self.batch is None, wishes=self._wishes, who=who)
         self._today: DayPlan = today
         self._next, self._late_s = 0, 0.0
         self._at = today.scene.at
@@ -145,6 +158,36 @@ def begun_batch(season: Season, source: str) -> int | None:
         if one.source == source and one.kind == "findings" and not one.undone
     ]
     return begun[0] if begun else None
+
+
+def left_of_plan(
+    season: Season, on: date, who: str | Besides = "", left_out: Sequence[tuple[int, int]] = ()
+) -> DayPlan | None:
+    """Return what is left of the plan given out last; None: the day is to be planned anew.
+
+    So it is if a plant was found since, or could not be inspected, or the hours left are too few.
+
+    Parameters
+    ----------
+    season, on, who
+        As of `Season.plan`.
+    left_out
+        First and last row of each part that is left to others.
+    """
+    ahead, scene = DayAhead.of(season, on), season.scene(on, who=who)
+    name = person(who) if isinstance(who, str) else ""
+    if (kept := ahead.last.get(name)) is None:
+        return None
+    done = made_by(season.history.on(scene.day), who or None)
+    before = np.flatnonzero(done.plant == kept.at)
+    since = done.result[before[-1] + 1 if len(before) else 0 :]
+    plants = ahead.plants[name]
+    is_left = scene.last_inspected[plants] != scene.day
+    for rows in left_out:
+        is_left &= ~inside(season.label, rows)[plants]
+    left = through(scene, plants[is_left])
+    fits = left.route.end_s <= scene.seconds_left + LATE_S
+    return left if fits and (since == CLEAN).all() else None
 
 
 def as_inspection(

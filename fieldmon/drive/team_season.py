@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.drive.aisle_keeper import AisleKeeper
-from fieldmon.drive.season_day import LATE_S, as_inspection, begun_batch
+from fieldmon.drive.season_day import LATE_S, as_inspection, begun_batch, left_of_plan
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.monitoring.monitor import PlantToInspect
 from fieldmon.plot.travel import GATE, travel_s
@@ -62,6 +62,7 @@ class TeamSeason:
         self.lock = threading.RLock()
         self.source = f"{source} {on}"
         self.batch = begun_batch(season, self.source)
+        #: plans that it went by, the one it began or went on with included
         self.replanned = 0
         #: whether somebody stopped it: nobody is given another plant
         self.stopped = False
@@ -71,7 +72,12 @@ class TeamSeason:
         self.aisle = grid.corridor[grid.row]
         today = season.history.inspections.on(on)
         self.done: set[int] = set(today.plant.tolist())
-        self.plan()
+        #: whether it goes on with what is left of the plans given out last
+        self.goes_on = self.batch is not None and self._go_on()
+        if self.goes_on:
+            self.replanned = 1
+        else:
+            self.plan()
 
     def __repr__(self) -> str:
         """Say which day of which season, and of how many."""
@@ -82,11 +88,17 @@ class TeamSeason:
         return MemberDay(self, self.settings.member(name))
 
     def plan(self) -> None:
-        """Plan the rest of the day for all, each from where it was told of last."""
+        """Plan the rest of the day for all, each from where it was told of last; keep the plans."""
         with self.lock:
-            days = self.season.plan_each(self.on, keep=self.batch is None)
+            days = self.season.plan_each(self.on)
             self.days = dict(zip((one.name for one in self.team), days, strict=True))
             self.replanned += 1
+
+    def _go_on(self) -> bool:
+        """Take what is left of the plans given out last; tell whether all fit and any is left."""
+        left = {one.name: left_of_plan(self.season, self.on, one.name) for one in self.team}
+        self.days = {name: today for name, today in left.items() if today is not None}
+        return len(self.days) == len(left) and any(len(one.route) for one in self.days.values())
 
 
 class MemberDay:

@@ -12,6 +12,7 @@ from fieldmon.monitoring import routes
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import scouts_in
 from fieldmon.planning.members import person
+from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.wishes import Wishes
 from fieldmon.planning.workday import Workday
@@ -211,7 +212,7 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     left = kept[ahead.own(part)[kept]]
     if not len(left) or (part.name and ahead.is_others(part, kept)):
         return planned_again(season, on, part)
-    return _through(scene, left)
+    return through(scene, left).route
 
 
 def planned_again(
@@ -261,8 +262,8 @@ def _time(season: Season, on: date, seconds_left: float, member: TeamMember | No
     return (datetime.combine(on, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
 
 
-def _through(scene: Scene, plants: Plants) -> Route:
-    """Return the way through plants in their order, from where the scene stands."""
+def through(scene: Scene, plants: Plants) -> DayPlan:
+    """Return a day of plants in their order, from where the scene stands."""
     robot = scene.robot
     places = np.concatenate([[scene.at], plants, [GATE] if robot.returns else []]).astype(np.int64)
     legs = [places[k : k + 2] for k in range(len(places) - 1)]
@@ -275,6 +276,6 @@ def _through(scene: Scene, plants: Plants) -> Route:
         found=np.zeros(k, np.bool_),
         stop_s=np.full(k, robot.visit_s),
         detects=np.full(k, robot.detects),
-        end_s=float(arrive_s[-1] + robot.visit_s + drive_s[k:].sum()),
+        end_s=float(arrive_s[-1] + robot.visit_s + drive_s[k:].sum()) if k else 0.0,
     )
-    return route_of(scene, work)
+    return DayPlan(scene, work, route_of(scene, work))

@@ -267,11 +267,12 @@ class OpenSeason:
         """Row and number of every plant, as people count."""
         return row_label(self.plot.grid)
 
-    def scene(self, on: date, now: time | None = None, who: str = "") -> Scene:
+    def scene(self, on: date, now: time | None = None, who: str | Besides = "") -> Scene:
         """Return the day `on` as it stands after what was recorded of it; `now` as in `plan`.
 
         Of a team it is that of `who` is named, or of the first. Whoever else is named has the
-        season's robot and stands where they inspected last, or at the gate.
+        season's robot and stands where they inspected last, or at the gate. The season's robot
+        may also be `Besides` others, see `plan`.
         """
         with self._lock, self.store.reading() as db:  # all of one moment
             return self._scene(self._read(db), on, now, who, db)

@@ -13,6 +13,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
 from fieldmon.planning.members import person
+from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
     import sqlite3
@@ -110,11 +111,15 @@ def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
 
 
 class KeptRoute(NamedTuple):
-    """A route that is kept: its number in the file, which of its day it is, and its digest."""
+    """A route that is kept: its number in the file, which of its day it is, its digest, its begin.
+
+    It begins `at` a plant, or at the gate (-1).
+    """
 
     number: int
     revision: int
     digest: str
+    at: int = GATE
 
     @property
     def plan(self) -> int:
@@ -125,11 +130,13 @@ class KeptRoute(NamedTuple):
 def kept_last(db: sqlite3.Connection, day: int) -> dict[str, KeptRoute]:
     """Return the route kept last for a day of each who has one, by `person`."""
     last: dict[str, KeptRoute] = {}
-    wanted = "SELECT who, fid, revision, digest FROM routes WHERE day = ? ORDER BY fid"
-    for who, number, revision, mark in db.execute(wanted, (day,)):
+    wanted = "SELECT who, fid, revision, digest, at_plant FROM routes WHERE day = ? ORDER BY fid"
+    for who, number, revision, mark, at in db.execute(wanted, (day,)):
         # older files may write a name in two ways, and count each
         before = last.get(person(who), KeptRoute(0, 0, ""))
-        last[person(who)] = KeptRoute(number, max(revision, before.revision), mark)
+        last[person(who)] = KeptRoute(
+            number, max(revision, before.revision), mark, GATE if at is None else at
+        )
     return last
 
 
@@ -150,23 +157,31 @@ class KeptPlans:
         As by `person`; empty where one works.
     last, of_all
         Plants of the plan kept last, and of all of them.
-    hours
-        From the begin of the first to the end of the last.
+    begins, ends
+        When the first begins, and the last ends.
+    at
+        The plants where the first and the last begin, -1: the gate.
     """
 
     who: str
     last: NDArray[np.int32]
     of_all: NDArray[np.int32]
-    hours: float
+    begins: datetime
+    ends: datetime
+    at: tuple[int, int]
 
     def __repr__(self) -> str:
-        return f"<KeptPlans: {len(self.last)} stops, {self.hours:.1f} h>"
+        return f"<KeptPlans: {len(self.last)} stops, {self.hours():.1f} h>"
+
+    def hours(self, begun: datetime | None = None) -> float:
+        """Return the hours that they take; `begun`: when the work they were made for began."""
+        return (self.ends - (self.begins if begun is None else begun)).total_seconds() / 3600
 
 
 def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     """Return what is kept of a day's plans, for each who has one."""
     rows = db.execute(
-        "SELECT who, starts, seconds FROM routes WHERE day = ? ORDER BY fid", (day,)
+        "SELECT who, starts, seconds, at_plant FROM routes WHERE day = ? ORDER BY fid", (day,)
     ).fetchall()
     stops = db.execute(
         "SELECT DISTINCT who, plant FROM stops JOIN routes ON routes.fid = route WHERE day = ?",
@@ -174,12 +189,12 @@ def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     ).fetchall()
     made = []
     for who, last in kept_last(db, day).items():
-        own = [(datetime.fromisoformat(at), s) for name, at, s in rows if person(name) == who]
-        ends = own[-1][0] + timedelta(seconds=own[-1][1])
+        own = [(datetime.fromisoformat(t), s, at) for name, t, s, at in rows if person(name) == who]
+        begins, ends = own[0][0], own[-1][0] + timedelta(seconds=own[-1][1])
+        first, newest = (GATE if at is None else at for _, _, at in (own[0], own[-1]))
         every = {plant for name, plant in stops if person(name) == who}
-        hours = (ends - own[0][0]).total_seconds() / 3600
         of_all = np.array(sorted(every), np.int32)
-        made.append(KeptPlans(who, plants(db, last), of_all, hours))
+        made.append(KeptPlans(who, plants(db, last), of_all, begins, ends, (first, newest)))
     return made
 
 

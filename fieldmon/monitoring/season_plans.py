@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
+from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,12 +28,12 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
-    from datetime import date, time
+    from datetime import date
 
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.open_season import SeasonContents
-    from fieldmon.monitoring.routes import KeptRoute
+    from fieldmon.monitoring.routes import KeptPlans, KeptRoute
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
@@ -163,7 +164,7 @@ class SeasonPlans(OpenSeason):
             return routes.plants(db, last.get(person(who if named is None else named.name)))
 
     def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
-        """Return who has a code for work on the day `on` now, by `person`, and of which rows."""
+        """Return who has a code for work on the day `on` now, by name, and of which rows."""
         with self.store.reading() as db:
             return self._codes(db, on, is_over=False)
 
@@ -171,7 +172,7 @@ class SeasonPlans(OpenSeason):
         self, db: sqlite3.Connection, on: date, *, is_over: bool
     ) -> dict[str, tuple[int, int] | None]:
         known = scouts.scouts_on(db, local_clock(self.plot.field), on, is_over=is_over)
-        return {person(one.name): one.rows for one in known}
+        return {one.name: one.rows for one in known}
 
     def _out(self, db: sqlite3.Connection, contents: SeasonContents, on: date) -> set[str]:
         """Return who is out, by `person`, of those whose routes are kept of a day."""
@@ -210,6 +211,7 @@ class SeasonPlans(OpenSeason):
             day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
             kept = routes.of_day(db, day)
             out = self._out(db, contents, on) if who is None else {person(who)}
+            codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
         if who is not None:
             kept = [one for one in kept if one.who in out]
         if not kept:
@@ -218,8 +220,26 @@ class SeasonPlans(OpenSeason):
         return PlannedAndDone.of(
             [(one.last if one.who in out else none, one.of_all) for one in kept],
             np.unique(made_by(done, who).plant),
-            [one.hours for one in kept if one.who in out],
+            [one.hours(self._begun(contents, on, one, codes)) for one in kept if one.who in out],
         )
+
+    def _begun(
+        self, contents: SeasonContents, on: date, kept: KeptPlans,
+        codes: dict[str, tuple[int, int] | None],
+    ) -> datetime | None:  # fmt: skip
+        """Return when the work of whoever goes by these plans began; None: as the first one says.
+
+        That counts where the first was made before it, and the last during it. The season's own
+        route is that of who is alone, or of the robot besides those with codes.
+        """
+        alone = [*codes.values()] in ([], [None])
+        who = kept.who or ("" if alone else Besides(tuple(codes)))
+        done = made_by(contents.history.inspections.on(on), who or None)
+        first, last = np.isin(kept.at, done.plant)
+        if first or not last or not np.isfinite(done.second[0]):
+            return None
+        midnight = datetime.combine(on, time())
+        return midnight + timedelta(seconds=round(self._begun_s(contents, on, who)))
 
     def _keep(
         self, contents: SeasonContents, on: date, noted: tuple[DayPlan, ...],
@@ -301,7 +321,7 @@ def _out(
     They are of the team or have a code. The season's own route is that of who is alone, and counts
     where none was given to anybody.
     """
-    out = {*last} & ({person(one.name) for one in settings.team} | {*codes})
+    out = {*last} & ({person(one.name) for one in settings.team} | {*map(person, codes)})
     if not settings.team and [*codes.values()] == [None] and "" in last:
         return {max(out | {""}, key=lambda who: last[who].number)}
     return out or ({""} if "" in last else {*last})

@@ -65,11 +65,14 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
     code, out, err, _ = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
     assert code == 130
     assert f"3 results of {BEGINS} in the season; the same command goes on" in out
-    assert "those who are out have their own. Left to those with a code for them: rows 1 to" in err
+    assert "Ann is out with a route of their own; the robot leaves rows 1-2 to them." in err
     assert len(table(tmp_path / "day.stops.csv")) == 3
     assert len(Season(season).history.inspections) == 3
     _, _, err, _ = run("plan", season, "--date", BEGINS, "--no-bound", "-o", "r.csv")
     assert "those who are out have their own" in err
+    monkeypatch.setattr(ChargedRobot, "visit", visit)
+    _, out, _, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    assert "follows what is left of the plan given out last" in out
 
 
 def test_where_no_broker_answers_it_is_a_sentence(run):

@@ -1,5 +1,6 @@
 """A day of a season driven: one batch, in the file before the next plant is asked for."""
 
+from contextlib import suppress
 from datetime import date
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from fieldmon.drive.charged import ChargedRobot
 from fieldmon.drive.day import drive_day
-from fieldmon.drive.season_day import SeasonDay
+from fieldmon.drive.season_day import SeasonDay, as_inspection
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, scouts
@@ -16,6 +17,7 @@ from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.plot.robot import Robot
 
 ON = date(2026, 4, 6)
+SETTINGS = MonitoringSettings(ON, robot=Robot(hours=0.3))
 
 
 def found_at(stop):
@@ -24,15 +26,14 @@ def found_at(stop):
 
 @pytest.fixture
 def season(plot, tmp_path):
-    settings = MonitoringSettings(ON, robot=Robot(hours=0.3))
-    return Season.create(tmp_path / "season.gpkg", plot, None, settings)
+    return Season.create(tmp_path / "season.gpkg", plot, None, SETTINGS)
 
 
 class CrashesAfter:
     """A robot whose program dies after some plants."""
 
-    def __init__(self, n):
-        self.left, self.asked = n, []
+    def __init__(self, n, found=found_at):
+        self.left, self.asked, self.found = n, [], found
 
     def begin(self, aisles, at_m, gone_s):  # noqa: ARG002
         self.begun = at_m, gone_s
@@ -42,7 +43,7 @@ class CrashesAfter:
             raise KeyboardInterrupt
         self.left -= 1
         self.asked.append(errand.stop.plant)
-        return ChargedRobot(found_at).visit(errand)
+        return ChargedRobot(self.found).visit(errand)
 
     def home(self, line_m):  # noqa: ARG002
         return None
@@ -88,6 +89,35 @@ def test_after_a_crash_it_goes_on_from_the_plant_told_last(season):
     assert day.gone_s <= again.settings.robot.day_s
     times = again.history.inspections.second
     assert (np.diff(times) > 0).all()
+
+
+@pytest.mark.parametrize("found", [lambda _: False, found_at])
+def test_a_day_stopped_and_gone_on_with_is_driven_as_if_nobody_had_stopped_it(
+    plot, tmp_path, found
+):
+    asked = []
+    for stops in ([10**6], [3, 8, 10**6]):
+        day = Season.create(tmp_path / f"{len(stops)}.gpkg", plot, None, SETTINGS)
+        for n in stops:
+            robot = CrashesAfter(n, found)
+            with suppress(KeyboardInterrupt):
+                gone_on = driven(Season(day.path), robot)[1]
+        asked.append(day.history.inspections.plant.tolist())
+        held = day.planned_and_done(ON)
+        assert (held.planned, held.left, held.added) == (len(asked[-1]), 0, 0)
+    assert asked[0] == asked[1]
+    assert gone_on.goes_on
+
+
+def test_a_day_is_planned_anew_where_the_last_plan_did_not_hear_of_a_find(season):
+    with pytest.raises(KeyboardInterrupt):
+        driven(season, CrashesAfter(3))
+    plant = int(season.kept_route(ON)[0])
+    season.undo()
+    season.record(as_inspection(plant, True, (ON, 6 * 3600.0 + 40.0)), f"charged {ON}")
+    day = SeasonDay(season, ON, "charged")
+    assert not day.goes_on
+    assert [day.ask().plant, *day.ahead(500)] == season.kept_route(ON).tolist()
 
 
 def noted(plants, second, who=""):

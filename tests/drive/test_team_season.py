@@ -71,6 +71,20 @@ def test_after_a_crash_each_goes_on_where_it_was_told_of_last(team):
     assert plant not in again.member("robot-1").ahead(500)
 
 
+def test_a_team_that_goes_on_follows_what_is_left_of_the_plans_given_out_last(team):
+    def left(team):
+        days = [team.member(name) for name in ("robot-1", "robot-2")]
+        return [(day.ask().plant, *day.ahead(500)) for day in days]
+
+    for name, found in [("robot-1", True), ("robot-2", False), ("robot-1", False)]:
+        day = team.member(name)
+        day.ask()
+        day.tell(found=found)
+    again = TeamSeason(Season(team.season.path), ON)
+    assert again.goes_on
+    assert left(again) == left(team)
+
+
 def test_each_goes_on_at_the_time_of_its_own_last_result(team):
     plant = int(team.days["robot-2"].route.plant[0])
     team.season.record(noted([plant], 34_200.0, "robot-2"), "by hand")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import AccessError
-from fieldmon.monitoring import Season, scouts
-from tests.monitoring.seasons import three_results
+from fieldmon.monitoring import Application, Season, scouts
+from tests.monitoring.seasons import BEGINS, three_results
 
 
 def test_a_person_is_written_as_at_first_whoever_types_it(path):
@@ -21,6 +21,11 @@ def test_a_person_is_written_as_at_first_whoever_types_it(path):
     theirs = np.array(["Ben", "BEN", "aNN"], object)
     season.record(replace(three_results(on=1), who=theirs), "g")
     assert season.history.inspections.who.tolist()[-6:] == ["Ann"] * 3 + ["Ben", "Ben", "Ann"]
+    season.treat(BEGINS, 0.5, application=Application("soap", operator="aNN "))
+    assert season.treat(BEGINS, 0.5, application=Application("soap", operator="ann")).new == 0
+    (treated,) = season.treatments()
+    assert (treated.application.operator, season.batches()[0].who) == ("Ann", "Ann")
+    season.undo()
     season.undo()
     scouts.take_back(season, "ANN")
     assert scouts.who(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"

@@ -129,4 +129,4 @@ def test_all_plans_of_a_day_are_told_with_the_last_apart(season):
         assert routes.of_day(db, 1) == []
     assert kept.last.tolist() == rest.route.plant.tolist()
     assert {*kept.last} < {*kept.of_all}
-    assert kept.hours <= ROBOT.hours
+    assert kept.hours() <= ROBOT.hours

@@ -167,6 +167,21 @@ def test_a_kept_plan_is_held_to_what_was_inspected(season):
     assert Season(season.path).planned_and_done(on(1)) is None
 
 
+@pytest.mark.parametrize(("name", "off_s"), [("", 4200.0), ("", -3600.0), ("Ann", 4200.0)])
+def test_the_hours_of_a_day_that_began_late_or_early_are_those_of_its_work(season, name, off_s):
+    if name:
+        scouts.let_in(season, name)
+    first = season.plan(BEGINS).route
+    at_s = np.array([6 * 3600 + off_s])
+    n, day = len(first), np.datetime64(BEGINS)
+    one = Inspections.of(first.plant[:1], np.zeros(1, np.int8), day, second=at_s)
+    season.record(one, "phone", name)
+    held = season.planned_and_done(BEGINS)
+    assert (held.planned, held.hours) == (n, pytest.approx(first.end_s / 3600, abs=1e-3))
+    season.plan(BEGINS)
+    assert ROBOT.hours - 0.1 < season.planned_and_done(BEGINS).hours <= ROBOT.hours + 0.01
+
+
 def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
     plot = a_plot()
     today = local_clock(plot.field).today()

@@ -276,12 +276,12 @@ def _undone_one(row: int, plant: int, on: str, result: str) -> str:
     )
 
 
-def date_or_text(said: str) -> date | str:
+def date_or_text(said: str | None) -> date | str:
     """Return a date of a season's file, which another program may have written."""
     try:
-        return date.fromisoformat(said)
+        return date.fromisoformat(said or "")
     except ValueError:
-        return said
+        return said or ""
 
 
 def first_day(db: sqlite3.Connection, number: int) -> int:

@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
 from fieldmon.plot.strands import row_deviations
@@ -259,6 +258,8 @@ def _paired_share(xy_m: NDArray[np.float64]) -> float:
     """Return the share of plants that are much nearer to one other than to any third."""
     if len(xy_m) < _FEW:
         return 0.0
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
     near_m = cKDTree(xy_m).query(xy_m, k=3)[0]
     return float(np.mean(near_m[:, 1] < _CLOSE * near_m[:, 2]))
 

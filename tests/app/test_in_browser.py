@@ -585,7 +585,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     rest(page)
     open_room(page, texts.ROOMS["today"])
     open_part(page, texts.PARTS["today"])
-    page.get_by_text("8 plants inspected today so far").wait_for(timeout=180_000)
+    page.get_by_text("8 plants inspected so far").wait_for(timeout=180_000)
     remaining = stops(page)
     # planned anew, the rest may be a stop or two more than it was
     assert len(first) - 20 < len(remaining) <= len(first)

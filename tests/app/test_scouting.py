@@ -489,7 +489,7 @@ def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone,
     key = scouts.let_in(season, "Cem")
     page = phone.page
     page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
-    page.locator("#clean").wait_for()
+    page.locator(SENT).wait_for()  # till then, the page may draw its buttons anew
     assert page.locator("html").get_attribute("dir") == ("rtl" if language == "he" else "ltr")
     sizes = page.evaluate(
         "[...document.querySelectorAll('button')].filter((b) => b.offsetParent)"
@@ -497,12 +497,15 @@ def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone,
     )
     assert all(width >= 56 and height >= 56 and fits for width, height, fits in sizes)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    clean, found = (page.locator(name).bounding_box()["x"] for name in ("#clean", "#found"))
+    lefts = (
+        "['clean', 'found'].map((one) => document.getElementById(one).getBoundingClientRect().x)"
+    )
+    clean, found = page.evaluate(lefts)
     assert clean > found, "under the right thumb"
     page.locator("#open_menu").click()
     page.locator("fieldset").first.locator("button").first.click()  # the left hand
     page.locator("#close").click()
-    clean, found = (page.locator(name).bounding_box()["x"] for name in ("#clean", "#found"))
+    clean, found = page.evaluate(lefts)
     assert clean < found, "under the left thumb"
 
 

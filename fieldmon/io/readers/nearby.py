@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyproj
 import shapely
-from scipy.spatial import cKDTree
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
@@ -128,6 +127,8 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
 def _corners(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.bool_]:
     """Return which records are the plot's corners, in a file that holds both: all, or none."""
     corners = np.unique(shapely.get_coordinates(field.boundary), axis=0)
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
     away_deg, corner = cKDTree(corners).query(lonlat)
     met = away_deg < _SAME_DEG
     every = len(np.unique(corner[met])) == len(corners)

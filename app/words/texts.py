@@ -1071,7 +1071,8 @@ INVITE_CODE = "Code for {name}"
 INVITE_ALT = "Picture with a person's own address of the season, for a phone's camera."
 INVITE_RULES = (
     "A new code for a name ends the earlier one at once. Without rows it is for the whole plot; "
-    "two codes for the same rows share them. Hours run from the first plant recorded."
+    "two codes for the same rows share them. Hours run from the start of work that the settings "
+    "say, or from the first plant if that is more than five minutes off."
 )
 INVITE_RULES_TEAM = (
     "A new code for a name ends the earlier one at once. One of the team needs no rows: the team's "

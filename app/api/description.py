@@ -225,7 +225,10 @@ DAY: dict[str, Any] = {
 ERROR: dict[str, Any] = {
     "type": "object",
     "required": ["error"],
-    "properties": {"error": {"type": "string", "description": "A sentence for a person."}},
+    "properties": {
+        "error": {"type": "string", "description": "A sentence for a person."},
+        "cause": {"enum": ["held"], "description": "Of 503: another program holds the file."},
+    },
 }
 
 _REFUSALS = {

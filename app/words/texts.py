@@ -1042,6 +1042,7 @@ SCOUT_PAGE = {
     "state_idle": "Nothing was sent yet.", "state_sending": "Sending ...",
     "state_sent": "The season has everything.",
     "state_offline": "No network: all is kept on this phone and goes in by itself later.",
+    "state_held": "Another program holds the season; it is tried again. All is kept on this phone.",
     "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
     "scan it.",
     "count_whole": "Pests of a find are a whole number from 1. Leave it empty if nobody counted.",

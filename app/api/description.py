@@ -185,7 +185,9 @@ DAY: dict[str, Any] = {
         "past": {"type": "boolean", "description": "Whether it is over on the plot."},
         "starts": {"type": "string"},
         "robot": {"type": "object"},
-        "seconds_left": {"type": "number"},
+        "begins": _MOMENT | {"description": "When this person's work began, or will."},
+        "begun": {"type": "boolean", "description": "Whether the hours run by the clock now."},
+        "seconds_left": {"type": "number", "description": "Of the hours: now where they run."},
         "route": ROUTE,
         "plan": _PLAN,
         "chance": _LIST | {"description": "Of each plant, in thousandths."},
@@ -223,7 +225,10 @@ DAY: dict[str, Any] = {
 ERROR: dict[str, Any] = {
     "type": "object",
     "required": ["error"],
-    "properties": {"error": {"type": "string", "description": "A sentence for a person."}},
+    "properties": {
+        "error": {"type": "string", "description": "A sentence for a person."},
+        "cause": {"enum": ["held"], "description": "Of 503: another program holds the file."},
+    },
 }
 
 _REFUSALS = {

@@ -6,6 +6,7 @@ Plants are numbered as in the season's file, from 0; columns of the plot are in 
 from __future__ import annotations
 
 import json
+from datetime import datetime, time, timedelta
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -23,11 +24,11 @@ from fieldmon.monitoring.day_ahead import (
     Part,
     planned_again,
     route_ahead,
-    work_left_s,
+    work_hours,
 )
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
-from fieldmon.plot.local_clock import local_clock, utc_now
+from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 from ..state import heard
 
@@ -91,6 +92,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     settings, plan, member = ahead.settings, ahead.plan_of(part), ahead.member(part)
     heard.note(season.path, scout.name, on, plan if has is None else has)
     robot = settings.robot if member is None else member.robot
+    hours = work_hours(season, on, part)
     known = history.known(settings.day(on))
     return {
         "season": season.path.stem,
@@ -108,7 +110,9 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
             "visit_s": robot.visit_s,
             "returns": robot.returns,
         },
-        "seconds_left": work_left_s(season, on, part),
+        "begins": _moment(season, on, hours.begins_s),
+        "begun": hours.run,
+        "seconds_left": hours.left_s,
         "route": _route(route),
         "plan": plan,
         # evening: what was found today counts
@@ -151,6 +155,12 @@ def _day(season: Season, on: date | None) -> date:
 
 def _today(season: Season) -> date:
     return local_clock(season.plot.field).at(utc_now()).date()
+
+
+def _moment(season: Season, on: date, second: float) -> str:
+    """Return a second of a day on the plot as a moment, in UTC."""
+    local = datetime.combine(on, time()) + timedelta(seconds=round(second))
+    return utc_text(local_clock(season.plot.field).moment(local.date(), local.time()))
 
 
 def _route(route: Route) -> dict[str, Any]:

@@ -28,6 +28,8 @@ from fieldmon.errors import (
     SettingError,
 )
 from fieldmon.monitoring import findings, photos, photos_asked, scouts
+from fieldmon.monitoring.file_problems import FileHeld
+from fieldmon.monitoring.transactions import waiting_at_most
 
 from ..state import heard, opened_seasons, seasons_folder
 from . import description, documents, reading
@@ -49,6 +51,8 @@ _HEADERS = {
     "referrer-policy": "no-referrer",
     "x-content-type-options": "nosniff",
 }
+# a phone waits for an answer for half a minute, and tries again by itself
+_PATIENCE_S = 3.0
 _CODES = {AccessError: 401, LimitError: 429, FileProblem: 503}
 
 
@@ -143,7 +147,7 @@ def _opened(name: str, key: str) -> tuple[Season, Scout]:
     try:
         season = opened_seasons.opened(path)
         scout = scouts.who(season, key)
-    except AccessError:
+    except (AccessError, FileHeld):
         raise
     except FieldmonError as error:  # what is wrong with it is no stranger's business
         raise FileProblem(
@@ -202,9 +206,16 @@ def _json(made: bytes, **more: str) -> Response:
     return Response(made, media_type="application/json", headers=_HEADERS | more)
 
 
-def _refused(code: int, sentence: str) -> Response:
+def _refused(code: int, sentence: str, **why: str) -> Response:
     more = {"www-authenticate": "Bearer"} if code == HTTPStatus.UNAUTHORIZED else {}
-    return JSONResponse({"error": sentence}, code, headers=_HEADERS | more)
+    return JSONResponse({"error": sentence} | why, code, headers=_HEADERS | more)
+
+
+def _refused_for(error: FieldmonError) -> Response:
+    if isinstance(error, FileHeld):
+        said = "Another program holds the season's file (QGIS, a backup?); nothing is lost. "
+        return _refused(503, f"{said}Try again later.", cause="held")
+    return _refused(_CODES.get(type(error), 422), str(error))
 
 
 def _guarded(answer: Answer) -> Answer:
@@ -214,9 +225,10 @@ def _guarded(answer: Answer) -> Answer:
         try:
             if _is_foreign(request):
                 return _refused(403, "Requests must come from this site, but this one does not.")
-            return await answer(request)
+            with waiting_at_most(_PATIENCE_S):
+                return await answer(request)
         except FieldmonError as error:
-            return _refused(_CODES.get(type(error), 422), str(error))
+            return _refused_for(error)
         except HTTPException as error:
             return _refused(error.status_code, error.detail)
         except ClientDisconnect:

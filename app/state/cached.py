@@ -169,7 +169,7 @@ def planned_and_done(
     of: tuple[str, str | None],
     _season: Season,
 ) -> PlannedAndDone | None:
-    """Return a day's kept plan, held to what was inspected; None: none was kept."""
+    """Return a day's kept plan, held to what was done; None: none was kept."""
     day, who = of
     return _season.planned_and_done(np.datetime64(day).item(), who)
 

@@ -13,6 +13,7 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked
+from fieldmon.monitoring.history import made_by
 from fieldmon.planning import day_bound
 
 from . import cached
@@ -102,7 +103,7 @@ def is_given_out(choices: Choices, plan: DayPlan) -> bool:
 
 
 def planned_and_done(choices: Choices) -> PlannedAndDone | None:
-    """Return the plan that a season keeps of the day, held to what was inspected; None: none."""
+    """Return the plan that a season keeps of the day, held to what was done; None: none."""
     of = choices.day, choices.who
     return cached.planned_and_done(choices.key, choices.revision, of, choices.season)
 
@@ -177,6 +178,12 @@ def counts(choices: Choices) -> tuple[cached.Array, cached.Array]:
 def progress(choices: Choices) -> Progress:
     """Return how far a season's inspections are."""
     return cached.progress(choices.key, choices.revision, choices.day, choices.season)
+
+
+def n_done(choices: Choices) -> int:
+    """Return how many plants whoever is shown told of on the day, inspected or not."""
+    told = choices.season.history.inspections.on(choices.on)
+    return len(np.unique(made_by(told, choices.who).plant))
 
 
 def flagged(choices: Choices) -> float:

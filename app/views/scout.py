@@ -47,7 +47,7 @@ def show(choices: Choices) -> None:
         _undo(choices)
         inviting.show_below(choices)
         return
-    stop = next_stop(plan, progress.inspected_today, choices.units)
+    stop = next_stop(plan, chosen_day.n_done(choices), choices.units)
     st.markdown(f"## {stop.arrow} {stop.place}")
     st.markdown(f"**{stop.direction}**")
     with st.container(key="scout_buttons", horizontal=True):

@@ -1052,6 +1052,7 @@ SCOUT_PAGE = {
     "state_idle": "Nothing was sent yet.", "state_sending": "Sending ...",
     "state_sent": "The season has everything.",
     "state_offline": "No network: all is kept on this phone and goes in by itself later.",
+    "state_held": "Another program holds the season; it is tried again. All is kept on this phone.",
     "state_ended": "The key no longer holds. All is kept on this phone: ask for a new code and "
     "scan it.",
     "count_whole": "Pests of a find are a whole number from 1. Leave it empty if nobody counted.",
@@ -1081,7 +1082,8 @@ INVITE_CODE = "Code for {name}"
 INVITE_ALT = "Picture with a person's own address of the season, for a phone's camera."
 INVITE_RULES = (
     "A new code for a name ends the earlier one at once. Without rows it is for the whole plot; "
-    "two codes for the same rows share them. Hours run from the first plant recorded."
+    "two codes for the same rows share them. Hours run from the start of work that the settings "
+    "say, or from the first plant if that is more than five minutes off."
 )
 INVITE_RULES_TEAM = (
     "A new code for a name ends the earlier one at once. One of the team needs no rows: the team's "

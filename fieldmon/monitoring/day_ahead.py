@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime, time, timedelta
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.monitoring import routes
+from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import scouts_in
 from fieldmon.planning.members import person
@@ -16,6 +17,7 @@ from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.wishes import Wishes
 from fieldmon.planning.workday import Workday
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.travel import GATE, driven_s
 
 if TYPE_CHECKING:
@@ -56,6 +58,24 @@ class Part:
 
 
 WHOLE = Part()
+
+
+class WorkHours(NamedTuple):
+    """Somebody's hours on a day.
+
+    Parameters
+    ----------
+    begins_s
+        The second of the day at which work began, or will, see `Season.begun_s`.
+    run
+        Whether they run by the clock now: it is today, and it is known when work began.
+    left_s
+        What is left of them: now where they run, else where the last inspection left them.
+    """
+
+    begins_s: float
+    run: bool
+    left_s: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +224,8 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     """Return what is left of the route given out for a day; give one out if there is none.
 
     Somebody of the team has a route of their own, and so has whoever has rows, or shares them, see
-    `DayAhead.crew`. It begins where that person inspected last, or at the gate.
+    `DayAhead.crew`. It begins where that person inspected last, or at the gate. What no longer fits
+    the hours that run is left out at its end.
     """
     ahead, scene = DayAhead.of(season, on), season.scene(on, who=part.name)
     kept = ahead.route(part)
@@ -212,7 +233,8 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     left = kept[ahead.own(part)[kept]]
     if not len(left) or (part.name and ahead.is_others(part, kept)):
         return planned_again(season, on, part)
-    return through(scene, left).route
+    hours = work_hours(season, on, part)
+    return _fitting(scene, left, hours.left_s) if hours.run else through(scene, left).route
 
 
 def planned_again(
@@ -221,6 +243,7 @@ def planned_again(
     """Plan what is left of a day with all that is known now, by the plants to be photographed.
 
     It is kept as the route given out, unless it is a part of the plot and nobody's own.
+    `seconds_left`: as told by whose part it is; None: what `work_hours` says.
     """
     ahead = DayAhead.of(season, on)
     own, member = ahead.own(part), ahead.member(part)
@@ -232,18 +255,27 @@ def planned_again(
     if part.name and member is None:
         crew = ahead.crew(part)
         (me,) = {*crew} - {*ahead.others(part)}
-        told = None if seconds_left is None else {me: seconds_left}
+        told = {one: work_hours(season, on, Part(name=one)).left_s for one in crew}
+        if seconds_left is not None:
+            told[me] = seconds_left
         named = (ahead.kept_as(part),) if len(crew) == 1 else None
         days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
         return days[crew.index(me)].route
-    who = None if member is None else member.name
+    who, hours = None if member is None else member.name, work_hours(season, on, part)
+    if seconds_left is None and hours.run:
+        seconds_left = hours.left_s
     now = None if seconds_left is None else _time(season, on, seconds_left, member)
     return season.plan(on, now, keep=ahead.rows(part) is None, wishes=wishes, who=who).route
 
 
-def work_left_s(season: Season, on: date, part: Part) -> float:
-    """Return the seconds left of somebody's working day, see `Season.begun_s`."""
-    return float(season.scene(on, who=part.name).seconds_left)
+def work_hours(season: Season, on: date, part: Part = WHOLE) -> WorkHours:
+    """Return somebody's hours on a day."""
+    member, now = season.planned_by(on).at_work(part.name), local_clock(season.plot.field).now()
+    who = (part.name or None) if member is None else member.name
+    second = made_by(season.history.inspections.on(on), who).second
+    run = now.date() == on and len(second) > 0 and bool(np.isfinite(second[0]))
+    scene = season.scene(on, now.time() if run else None, part.name)
+    return WorkHours(season.begun_s(on, part.name), run, float(scene.seconds_left))
 
 
 def inside(label: RowLabel, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
@@ -260,6 +292,17 @@ def _time(season: Season, on: date, seconds_left: float, member: TeamMember | No
     left_s = min(max(seconds_left, 0.0), robot.day_s)
     now_s = min(season.begun_s(on, who) + robot.day_s - left_s, 86_399.0)
     return (datetime.combine(on, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
+
+
+def _fitting(scene: Scene, plants: Plants, left_s: float) -> Route:
+    """Return the way through as many of the plants as fit with the way back."""
+    route, robot = through(scene, plants).route, scene.robot
+    if route.end_s <= left_s:
+        return route
+    back = [np.array([plant, GATE]) for plant in plants] if robot.returns else []
+    back_s = np.array([driven_s(scene.aisles.travel, scene.clock, leg) for leg in back] or 0.0)
+    fit = np.flatnonzero(route.leave_s + back_s <= left_s)
+    return through(scene, plants[: fit[-1] + 1 if len(fit) else 0]).route
 
 
 def through(scene: Scene, plants: Plants) -> DayPlan:

@@ -137,14 +137,16 @@ class Progress:
 
 @dataclass(frozen=True)
 class PlannedAndDone:
-    """The stops of a day's kept plan, held to what was inspected.
+    """The stops of a day's kept plan, held to what was done.
+
+    Done is a plant that somebody told of, be it that it could not be inspected.
 
     Parameters
     ----------
     planned
-        Stops of the plan kept last, with those of plans before it that were inspected.
+        Stops of the plan kept last, with those of plans before it that were done.
     done, added
-        Plants inspected of these, and besides them.
+        Plants done of these, and besides them.
     hours
         From the begin of the first plan to the end of the last one, those of all together.
     people
@@ -159,15 +161,15 @@ class PlannedAndDone:
 
     @property
     def left(self) -> int:
-        """Return how many stops were not inspected, or could not be."""
+        """Return how many stops nobody told of."""
         return self.planned - self.done
 
     @classmethod
     def of(
         cls, kept: Iterable[tuple[NDArray[np.int32], NDArray[np.int32]]],
-        inspected: NDArray[np.int32], hours: Sequence[float],
+        told: NDArray[np.int32], hours: Sequence[float],
     ) -> PlannedAndDone:  # fmt: skip
-        """Return it of each one's plans, the plants of the last one and of all, and what was done.
+        """Return it of each one's plans, the plants of the last one and of all, and those told of.
 
         Examples
         --------
@@ -175,7 +177,7 @@ class PlannedAndDone:
         >>> PlannedAndDone.of([(last, of_all)], seen, [4.0])
         PlannedAndDone(planned=3, done=2, added=1, hours=4.0, people=1)
         """
-        seen = set(inspected.tolist())
+        seen = set(told.tolist())
         planned: set[int] = set()
         for last, of_all in kept:
             planned |= {*last.tolist()} | (seen & {*of_all.tolist()})

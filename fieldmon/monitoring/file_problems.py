@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+class FileHeld(FileProblem):
+    """Another program holds a season's file for longer than is waited for."""
+
+
 @contextmanager
 def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterator[None]:
     """Say what is wrong with a file that was waited for so long.
@@ -43,7 +47,7 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
                 )
             ) from error
         if "locked" in text:
-            raise FileProblem(
+            raise FileHeld(
                 worded(
                     "{path} must be free to be written, but another program "
                     "has held it for {patience_s:.0f} seconds. Close that "

@@ -201,14 +201,14 @@ class SeasonPlans(OpenSeason):
         return gone
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
-        """Return the plan kept of the day `on`, held to what was inspected; None: none was kept.
+        """Return the plan kept of the day `on`, held to what was done; None: none was kept.
 
         `who`: of one of a team alone; None: of all who are out. Of a plan that nobody goes by any
         more only what was done of it is part.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             contents = self._read(db)
-            day, done = contents.settings.day(on), contents.history.inspections.on(on).inspected
+            day, done = contents.settings.day(on), contents.history.inspections.on(on)
             kept = routes.of_day(db, day)
             out = self._out(db, contents, on) if who is None else {person(who)}
             codes = self._codes(db, on, is_over=self._is_earlier(contents, on))

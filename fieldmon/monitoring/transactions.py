@@ -9,6 +9,7 @@ import tempfile
 import threading
 import time
 from contextlib import closing, contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,6 +46,8 @@ _ASK_AGAIN_S, _MOMENT_S = 0.25, 1.0
 _MAGIC = b"SQLite format 3\x00"
 # the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
 _KEPT = threading.local()
+# how long is waited for others at most within `waiting_at_most`, in its threads, too
+_MOST_S: ContextVar[float] = ContextVar("most_s")
 # the files that a thread reads as of one moment within `Store.one_moment`, by path
 _STILL = threading.local()
 
@@ -229,6 +232,20 @@ def kept_open() -> Iterator[None]:
             db.close()
 
 
+@contextmanager
+def waiting_at_most(seconds: float) -> Iterator[None]:
+    """Let nobody wait longer for another program that holds a season's file, within this block."""
+    before = _MOST_S.set(seconds)
+    try:
+        yield
+    finally:
+        _MOST_S.reset(before)
+
+
+def _patience_s() -> float:
+    return min(_PATIENCE_S, _MOST_S.get(_PATIENCE_S))
+
+
 def wait_until_free(
     path: Path,
     tell: Callable[[float], None],
@@ -241,7 +258,7 @@ def wait_until_free(
     `tell` hears again and again for how many seconds that has been; `patience_s`: how long to wait,
     None: as long as for any command. What else is wrong with a file is said when it is opened.
     """
-    patience_s = _PATIENCE_S if patience_s is None else patience_s
+    patience_s = _patience_s() if patience_s is None else patience_s
     if path in _still() or not path.is_file():
         return True
     began = time.monotonic()
@@ -389,12 +406,12 @@ def get_meta(db: sqlite3.Connection, key: str) -> str | None:
 
 def _sentences(path: Path, into: Path | None = None) -> AbstractContextManager[None]:
     """Say what is wrong with a file, as `sentences` does of one that is waited for as usual."""
-    return sentences(path, _PATIENCE_S, into)
+    return sentences(path, _patience_s(), into)
 
 
 def _connect(path: Path, patience_s: float | None = None) -> sqlite3.Connection:
     # autocommit: transactions begin and end where the code says so
-    patience_s = _PATIENCE_S if patience_s is None else patience_s
+    patience_s = _patience_s() if patience_s is None else patience_s
     db = sqlite3.connect(path, timeout=patience_s, isolation_level=None)
     db.execute("PRAGMA trusted_schema = OFF")
     return db

@@ -78,7 +78,7 @@ class DayFacts:
     results
         Result of each plant inspected that day, by its number.
     held
-        The plan kept of the day, held to what was inspected; None: none was kept.
+        The plan kept of the day, held to what was done; None: none was kept.
     who
         Whose route it is, of a team; empty: that of all who work.
     team

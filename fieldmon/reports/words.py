@@ -22,9 +22,7 @@ FEW_FINDS = "{n:.1f} finds"
 HEADLINE = "Inspect {plants} in {rows} on {day}, {hours} h: about {finds} expected."
 HEADLINE_NONE = "Nothing to inspect on {day}."
 WORKED = "Worked on {day}: {inspected:,} plants inspected, {found:,} found infested."
-PLANNED_DONE = (
-    "Stops planned: {planned:,}; inspected: {done:,}; left out: {left:,}; added: {added:,}."
-)
+PLANNED_DONE = "Stops planned: {planned:,}; done: {done:,}; left out: {left:,}; added: {added:,}."
 PLANNED_DAYS = "On {days} planned and worked:"
 ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
 NO_ROWS = "no rows"

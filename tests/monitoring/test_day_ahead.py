@@ -14,7 +14,7 @@ from fieldmon.monitoring.day_ahead import (
     inside,
     planned_again,
     route_ahead,
-    work_left_s,
+    work_hours,
 )
 from fieldmon.monitoring.photos_asked import ask_photo
 from fieldmon.planning.members import team_of
@@ -77,11 +77,11 @@ def test_the_hours_of_each_run_from_the_first_inspection_of_that_person(tmp_path
     late = np.array([15.5, 16.5]) * 3600.0
     first_s = fresh.plan(BEGINS).route.leave_s[0]
     fresh.record(Inspections.of(plants[:2], np.zeros(2, np.int8), BEGINS, second=late), "f", "Ann")
-    assert work_left_s(fresh, BEGINS, Part(name="Ann")) == pytest.approx(day_s - 3600 - first_s)
-    assert work_left_s(fresh, BEGINS, Part(name="Ben")) == day_s
-    assert work_left_s(fresh, BEGINS, Part()) == work_left_s(fresh, BEGINS, Part(name="Ann"))
+    ann, ben, whole = (work_hours(fresh, BEGINS, Part(name=who)) for who in ("Ann", "Ben", ""))
+    assert ann.left_s == pytest.approx(day_s - 3600 - first_s)
+    assert (ben.left_s, whole) == (day_s, ann)
     fresh.record(Inspections.of(plants[2:3], np.zeros(1, np.int8), BEGINS), "f", "Cem")
-    assert 0 < work_left_s(fresh, BEGINS, Part(name="Cem")) < day_s
+    assert 0 < work_hours(fresh, BEGINS, Part(name="Cem")).left_s < day_s
     assert len(planned_again(fresh, BEGINS, Part((1, 3), "Ben"), day_s)), "though it is evening"
 
 
@@ -141,7 +141,7 @@ def test_each_scout_has_a_whole_day_in_their_own_rows_and_goes_on_from_where_the
             assert line[begins_at(fresh, rest)] == pytest.approx(line[stands], abs=1)
             assert rest.plant[0] in route.plant[5:]
             assert rest.arrive_s[0] < 60.0
-    assert work_left_s(fresh, BEGINS, ann) == fresh.scene(BEGINS, who="Ann").seconds_left
+    assert work_hours(fresh, BEGINS, ann).left_s == fresh.scene(BEGINS, who="Ann").seconds_left
 
 
 def test_scouts_with_codes_for_the_same_plants_share_them(tmp_path):
@@ -212,7 +212,7 @@ def test_who_begins_in_the_evening_has_the_whole_day_for_the_phone_and_for_the_s
     day_s, plants = fresh.settings.robot.day_s, fresh.plan(BEGINS).route.plant
     assert fresh.begun_s(BEGINS) == 6 * 3600.0
     told(fresh, "Ann", plants[:3], 20.5 * 3600.0)
-    left_s = work_left_s(fresh, BEGINS, Part(name="Ann"))
+    left_s = work_hours(fresh, BEGINS, Part(name="Ann")).left_s
     assert day_s - 300.0 < left_s < day_s
     today = fresh.plan(BEGINS)
     assert today.scene.seconds_left == left_s

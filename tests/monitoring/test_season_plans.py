@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.inspections import SKIPPED, Inspections
+from fieldmon.infestation.inspections import CLEAN, SKIPPED, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.history import Besides
@@ -150,13 +150,14 @@ def test_beside_others_the_seasons_robot_goes_on_from_where_it_was(season):
     assert route.plant[5] not in beside.route.plant
 
 
-def test_a_kept_plan_is_held_to_what_was_inspected(season):
+def test_a_kept_plan_is_held_to_what_was_done_be_it_that_a_plant_could_not_be_inspected(season):
     assert season.planned_and_done(on(0)) is None
     first = season.plan(on(0))
     n = len(first.route)
     besides = np.setdiff1d(np.arange(len(season.plot.grid)), first.route.plant)[:2]
     done = np.concatenate([first.route.plant[:4], besides.astype(np.int32)])
-    season.record(Inspections.of(done, np.zeros(6, np.int8), np.datetime64(on(0))))
+    results = np.array([CLEAN, CLEAN, CLEAN, SKIPPED, CLEAN, CLEAN], np.int8)
+    season.record(Inspections.of(done, results, np.datetime64(on(0))))
     held = season.planned_and_done(on(0))
     assert (held.planned, held.done, held.left, held.added) == (n, 4, n - 4, 2)
     assert held.hours == pytest.approx(first.route.end_s / 3600, abs=1e-3)

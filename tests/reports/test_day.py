@@ -185,10 +185,10 @@ def test_the_report_of_a_day_that_is_over_says_what_was_chosen_then(tmp_path):
 
 def test_a_worked_day_is_held_to_its_plan(done, of_worked_day):
     n = done.held.planned
-    said = f"Stops planned: {n:,}; inspected: {n:,}; left out: 0; added: 0."
+    said = f"Stops planned: {n:,}; done: {n:,}; left out: 0; added: 0."
     assert said in paragraphs(of_worked_day)
     other = day_report(replace(done, held=PlannedAndDone(9, 5, 1, 2.0)), Units())
-    said = "Stops planned: 9; inspected: 5; left out: 4; added: 1."
+    said = "Stops planned: 9; done: 5; left out: 4; added: 1."
     assert said in paragraphs(other)
     assert len(paragraphs(day_report(replace(done, held=None), Units()))) == (
         len(paragraphs(other)) - 1

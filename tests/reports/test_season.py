@@ -166,7 +166,7 @@ def test_all_days_are_held_to_their_plans(of_season, worked):
     planned = sum(len(worked.kept_route(one.on)) for one in worked.days() if one.inspected)
     (said,) = on_sheet(of_season, 1, Paragraph)
     assert said.text == (
-        f"On 5 days planned and worked: Stops planned: {planned:,}; inspected: {planned:,}; "
+        f"On 5 days planned and worked: Stops planned: {planned:,}; done: {planned:,}; "
         "left out: 0; added: 0."
     )
 

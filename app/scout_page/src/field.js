@@ -12,6 +12,8 @@ const EMPTY = { plot: null, day: null, ahead: [], draft: null, begun: null, last
 const WRITING = "writing";
 // where one was longer ago is not where one is
 const FRESH_MS = 60000;
+// whose first plant is no more off the start than this has the hours from the start, as the season counts them
+const LATE_MS = 300000;
 
 const AS_TIME = { dateStyle: "short", timeStyle: "short" };
 
@@ -176,8 +178,9 @@ export class Field {
     const { day, plot } = heard, { season } = this;
     this.people = { ...this.people, [this.access.key]: day.scout };
     if (plot) this.plot = laidOut(plot, day.plot);
-    this.#take(day);
-    this.begun = null;
+    const { begun, ...left } = this.#hours(day);
+    this.#take({ ...day, ...left });
+    this.begun = begun;
     this.last = null;
     this.ahead = this.#withAsked(day.route.plants);
     const by = this.draft?.by;
@@ -188,21 +191,38 @@ export class Field {
     await this.reread();
   }
 
+  /** What is left of a day that is heard now, and since when that runs: null, from the first record on. */
+  #hours(day) {
+    if (day.begun) return { seconds_left: day.seconds_left, begun: this.time.best() };
+    // the season has not heard yet that work began
+    const isGoing = this.begun && this.day?.day === day.day && this.lastRecord();
+    return isGoing ? { seconds_left: this.day.seconds_left, begun: this.begun } : { seconds_left: day.seconds_left, begun: null };
+  }
+
+  /** When work begins with the record of a plant now: at the start, or with the way to it where that is much earlier or later. */
+  #begins(plant) {
+    const { begins, route, robot } = this.day, now = this.time.best(), start = Date.parse(begins ?? "");
+    if (!start) return now; // a server of before
+    const came = now - 1000 * ((plant === route.plants[0] ? route.walk_s[0] : 0) + robot.visit_s);
+    return Math.abs(came - start) > LATE_MS ? came : start;
+  }
+
   /** See what others found meanwhile; the way stays as it is. */
   async refresh() {
     if (!this.day) return;
     const { day } = (await this.#hear((access) => fetchDay(this.ask, access, this.day.plot, this.day.plan))) ?? {};
     if (!day || day.day !== this.day.day || day.plot !== this.day.plot) return;
-    const { route, plan, seconds_left } = this.day;
+    const { route, plan } = this.day, { begun, ...left } = this.#hours(day);
     const asked = new Set(this.asked().map((one) => one.id));
-    this.#take({ ...day, route, plan, seconds_left, newest: day.plan });
+    this.#take({ ...day, ...left, route, plan, newest: day.plan });
+    this.begun = begun;
     const isNew = this.asked().some((one) => !asked.has(one.id)), { ahead, draft } = this;
     if (isNew) this.ahead = this.#withAsked(ahead);
     else if (ahead.some((one) => this.done.has(one))) this.ahead = ahead.filter((one) => !this.done.has(one));
     // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
     if (this.plant < 0 && this.ahead.length > 0) this.draft = this.#keepDraft();
     // what is as it was may be another in another window by now
-    await this.#keep("day", ...(this.ahead === ahead ? [] : ["ahead"]), ...(this.draft === draft ? [] : ["draft"]));
+    await this.#keep("day", "begun", ...(this.ahead === ahead ? [] : ["ahead"]), ...(this.draft === draft ? [] : ["draft"]));
   }
 
   /** Whether another plan was given out since, as when somebody else's rows are to be done, too. */
@@ -356,7 +376,7 @@ export class Field {
     const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0 };
     // the hours of a day ahead begin on it
     const isAhead = this.meant() !== null && this.day.past === false;
-    const begun = this.begun ?? (isAhead ? null : this.time.best());
+    const begun = this.begun ?? (isAhead ? null : this.#begins(plant));
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);

@@ -3,7 +3,7 @@
 import { plantAt, rowOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
-import { KeyEnded, NotNow } from "./sync.js";
+import { Held, KeyEnded, NotNow } from "./sync.js";
 import { LANGUAGES, own, say, speak } from "./words.js";
 
 // a glove that bounces must say nothing of the next plant
@@ -153,7 +153,7 @@ export class Page {
     ] : [h("b", {}, "fieldmon")];
     const n = this.left.records + this.left.photos + field.unwritten();
     const ended = this.state === "ended" || (this.state === "sent" && this.stranded.size > 0), done = n || this.left.refused.length ? "" : "✓", waits = navigator.onLine ? "↑" : "⏸";
-    const signs = { offline: "⏸", ended: "⚠", sending: done || "↑", sent: done || (n ? waits : ""), idle: "" };
+    const signs = { offline: "⏸", held: "⏸", ended: "⚠", sending: done || "↑", sent: done || (n ? waits : ""), idle: "" };
     const text = n ? say("waiting", { n }) : this.left.refused.length ? say("some_refused", { n: this.left.refused.length }) : say("all_sent");
     // the button stays the same: a keyboard may stand on it
     if (!this.bar.hasChildNodes()) {
@@ -435,7 +435,7 @@ export class Page {
     this.#say(say("loading"));
     let why = "";
     try { await work(); } catch (error) {
-      const known = error instanceof KeyEnded ? "state_ended" : error instanceof NotNow ? "no_network" : null;
+      const known = error instanceof KeyEnded ? "state_ended" : error instanceof Held ? "state_held" : error instanceof NotNow ? "no_network" : null;
       why = known ? say(known) : error.message;
     }
     if (this.field.season !== season) return; // it is of what is not seen any more

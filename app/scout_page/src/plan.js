@@ -62,7 +62,7 @@ export function withAsked(plot, day, at, ahead, asked, left) {
   return all;
 }
 
-/** What is left of the working day; it begins with the first record. */
+/** What is left of the working day: so much was left at `begun`, or is until the first record. */
 export const secondsLeft = (day, begun, now) => Math.max(0, day.seconds_left - (begun ? Math.max(0, now - begun) / 1000 : 0));
 
 /**

@@ -1,6 +1,6 @@
 // When things are sent: after each tap, when a network comes, and again and again until all is there.
 
-import { KeyEnded } from "./sync.js";
+import { Held, KeyEnded } from "./sync.js";
 
 // after a tap the page is left to the finger first
 const AFTER_TAP_MS = 1000, SOON_MS = 3000, LATEST_MS = 60000, NEWS_MS = 60000;
@@ -38,7 +38,7 @@ export class Runner {
       this.wait = SOON_MS;
       this.#next(NEWS_MS);
     } catch (error) {
-      this.#say(error instanceof KeyEnded ? "ended" : "offline");
+      this.#say(error instanceof KeyEnded ? "ended" : error instanceof Held ? "held" : "offline");
       this.#next(this.wait);
       this.wait = Math.min(this.wait * 2, LATEST_MS);
     }

@@ -12,6 +12,8 @@ class Stranded extends Error {}
 /** Whether two keys are the same person's: the season tells no names apart by their capitals. */
 export const isOf = (people, one, other) => one === other || (people[one] !== undefined && people[one].toLowerCase() === people[other]?.toLowerCase());
 export class NotNow extends Error {}
+/** Another program holds the season: there is a network, and it may be tried again. */
+export class Held extends NotNow {}
 
 export class Sync {
   /** `ask` is fetch; `tell` hears how it goes. */
@@ -125,12 +127,12 @@ export async function call(ask, access, path, request = {}) {
     clearTimeout(timer);
   }
   const { ok, status } = answer;
-  if (!ok && ![401, 413, 422].includes(status)) throw new NotNow(`${status}`);
-  try {
-    return { ok, status, said: JSON.parse(body) };
-  } catch { // a proxy's own page is no answer of the season
+  let said;
+  try { said = JSON.parse(body); } catch { // a proxy's own page is no answer of the season
     throw new NotNow(`${status}`);
   }
+  if (!ok && ![401, 413, 422].includes(status)) throw said.cause === "held" ? new Held(said.error) : new NotNow(`${status}`);
+  return { ok, status, said };
 }
 
 /** Bring the plot and the day; the plot only where it is another one. */

@@ -391,6 +391,34 @@ test("a code for a day ahead is of that day until it is over, and with times on 
   assert.equal(field.isOld(), false);
 });
 
+test("the hours of a day loaded in mid-work run on by the clock, without a tap and over a kill", async () => {
+  const season = new ASeason(aDay(undefined, { begins: "2026-11-22T04:00:00Z", begun: true, seconds_left: 2520 }));
+  const { field, again } = await aField(season);
+  for (const one of [field, await again()]) {
+    one.clock = () => new Date("2026-11-22T08:30:00Z");
+    assert.equal(one.secondsLeft(), 720);
+  }
+  season.day = aDay(undefined, { begins: "2026-11-22T04:00:00Z", begun: true, seconds_left: 660 });
+  await field.refresh();
+  assert.equal(field.secondsLeft(), 660, "as the season counts them");
+});
+
+test("hours begin at the start, or with the way to a first plant that is more than minutes off it", async () => {
+  for (const [begins, left] of [["2026-11-22T07:56:00Z", 14160], ["2026-11-22T08:04:00Z", 14400], ["2026-11-22T07:50:00Z", 14363], [undefined, 14400]]) {
+    const season = new ASeason(aDay(undefined, { begins, begun: false })), { field } = await aField(season);
+    await field.tell("clean");
+    assert.equal(field.secondsLeft(), left);
+    field.clock = () => new Date("2026-11-22T08:30:00Z");
+    const counted = field.secondsLeft();
+    await field.load();
+    await field.refresh();
+    assert.equal(field.secondsLeft(), counted, "the season has not heard of it yet");
+    await field.undo();
+    await field.load();
+    assert.equal(field.secondsLeft(), 14400);
+  }
+});
+
 test("a day that was over when it was loaded stays the day meant", async () => {
   const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-01", live: false, past: true }));
   const { field } = await aField(season, { ...ACCESS, on: "2026-11-01" });

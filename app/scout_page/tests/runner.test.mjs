@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { before, mock, test } from "node:test";
 import { Runner } from "../src/runner.js";
+import { call, Held, NotNow } from "../src/sync.js";
 
 const turns = async () => { for (let k = 0; k < 20; k++) await Promise.resolve(); };
 
@@ -57,4 +58,17 @@ test("a network that is lost is tried again by and by, and at once after a tap",
   t.mock.timers.tick(1000);
   await turns();
   assert.equal(sent, 4);
+});
+
+test("a season that another program holds is called so, and any other failure a missing network", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout", "Date"] });
+  for (const [body, state, kind] of [['{"error": "held", "cause": "held"}', "held", Held], ['{"error": "away"}', "offline", NotNow], ["<html>", "offline", NotNow]]) {
+    const ask = async () => new Response(body, { status: 503 });
+    await assert.rejects(call(ask, { season: "Gate", key: "k" }, "day"), (error) => error.constructor === kind);
+    const said = [], error = await call(ask, { season: "Gate", key: "k" }, "day").catch((one) => one);
+    new Runner({ send: async () => { throw error; }, stranded: new Map() }, { reread: async () => {}, refresh: async () => {}, day: {} }, (one) => said.push(one)).now();
+    t.mock.timers.tick(0);
+    await turns();
+    assert.equal(said.at(-1), state);
+  }
 });

@@ -12,7 +12,7 @@ import pytest
 from app.api import description, season_api
 from app.api.season_api import application
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Season, photos, scouts, transactions
+from fieldmon.monitoring import Season, photos, scouts
 from tests.app.api.asking import Cut, as_sent, ask, exchange, in_own_loop, of_season, scope_of
 from tests.monitoring.phone import JPEG, a_finding, told
 from tests.monitoring.seasons import BEGINS
@@ -55,10 +55,14 @@ def test_with_a_key_every_way_is_open(served):
 def test_a_file_out_of_reach_for_a_moment_is_no_key_that_ended(served, trouble, monkeypatch):
     path = served.season.path
     if trouble == "held":
-        monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)
+        monkeypatch.setattr(season_api, "_PATIENCE_S", 0.0)
         with closing(sqlite3.connect(path, isolation_level=None)) as other:
-            other.execute("BEGIN EXCLUSIVE")
-            answer = ask("GET", of_season("plot"), key=served.key)
+            for lock in ("EXCLUSIVE", "IMMEDIATE"):
+                other.execute(f"BEGIN {lock}")
+                sent = WAYS["POST", "findings"]
+                answer = ask("POST", of_season("findings"), key=served.key, **sent)
+                assert (answer.status, answer.json["cause"]) == (503, "held"), lock
+                other.execute("ROLLBACK")
     elif trouble == "away":
         assert ask("GET", of_season("plot"), key=served.key).status == 200
         path.rename(path.with_name("away"))

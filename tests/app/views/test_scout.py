@@ -23,6 +23,8 @@ def test_found_plants_and_clean_ones_show_on_the_map(season_app, season):
         shown.of_colour(colours.NEVER)
     )
     assert clean not in shown.of_colour(colours.NEVER)
+    tap(season_app, "scout_skip")
+    assert " · 3 done, " in "".join(one.value for one in season_app.caption)
     assert len(layer(season_app, "finds0")["data"]) == len(shown.of_colour(colours.FOUND))
 
 

@@ -85,7 +85,7 @@ class Obstacles:
             clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
         else:
             clearance_m = clearance.way_m
-        drivable_m = grid.drivable_m
+        drivable_m: shapely.Geometry = grid.drivable_m
         if not shapely.is_valid(drivable_m):  # laid on a plane, parts by a hair may cross
             drivable_m = shapely.make_valid(drivable_m, method="structure", keep_collapsed=False)
         parts = shapely.get_parts(drivable_m)

@@ -255,14 +255,15 @@ def planned_again(
     if part.name and member is None:
         crew = ahead.crew(part)
         (me,) = {*crew} - {*ahead.others(part)}
-        told = {one: work_hours(season, on, Part(name=one)).left_s for one in crew}
-        if seconds_left is not None:
-            told[me] = seconds_left
+        said = {} if seconds_left is None else {me: seconds_left}
+        told = said | {
+            one: work_hours(season, on, Part(name=one)).left_s for one in {*crew} - {*said}
+        }
         named = (ahead.kept_as(part),) if len(crew) == 1 else None
         days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
         return days[crew.index(me)].route
-    who, hours = None if member is None else member.name, work_hours(season, on, part)
-    if seconds_left is None and hours.run:
+    who = None if member is None else member.name
+    if seconds_left is None and (hours := work_hours(season, on, part)).run:
         seconds_left = hours.left_s
     now = None if seconds_left is None else _time(season, on, seconds_left, member)
     return season.plan(on, now, keep=ahead.rows(part) is None, wishes=wishes, who=who).route

@@ -77,12 +77,11 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
     gone = _elsewhere(found.lonlat)
     if gone.any():
-        some = [_at(found.lonlat[k], labels[-1][k]) for k in np.flatnonzero(gone).tolist()]
         said = worded(
             "{n} {n:plant lies|plants lie} in another part of the earth than the others and "
             "{n:was|were} left out: {some}.",
-            n=len(some),
-            some=first_few(some, _NAMED),
+            n=int(gone.sum()),
+            some=_some(found.lonlat[gone], labels[-1][gone]),
         )
         messages.append(dropped(said))
     here = np.flatnonzero(~gone)
@@ -136,7 +135,7 @@ def _strays(
             "left out: {some}.",
             n=len(gone),
             far=distance_figure(float(far_m[gone].min())),
-            some=first_few([_at(lonlat[k], names[k]) for k in gone], _NAMED),
+            some=_some(lonlat[gone], names[gone]),
         )
         messages.append(dropped(said, remedy=Remedy("far", "keep", worded("Keep them"))))
         stray = np.setdiff1d(stray, gone)
@@ -146,10 +145,15 @@ def _strays(
             "{n:it|them} out of the file if {n:it is|they are} mistyped.",
             n=len(stray),
             far=distance_figure(float(far_m[stray].min())),
-            some=first_few([_at(lonlat[k], names[k]) for k in stray], _NAMED),
+            some=_some(lonlat[stray], names[stray]),
         )
         messages.append(doubtful(said))
     return out, messages
+
+
+def _some(lonlat: NDArray[np.float64], names: NDArray[np.str_]) -> str:
+    """Return which plants these are; of many the first few."""
+    return first_few([_at(*one) for one in zip(lonlat, names, strict=True)], _NAMED)
 
 
 def _at(place: NDArray[np.float64], name: str) -> str:

@@ -11,10 +11,16 @@ const isApple = "standalone" in navigator;
 // a disk is waited for so long before it is said, and so long before it is asked for again
 const SLOW_MS = 5000, AGAIN_MS = 1000;
 
+/** What a code says in the address; null if there is none. */
+function codeInAddress() {
+  const said = new URLSearchParams(location.hash.slice(1));
+  return said.get("season") && said.get("key") ? said : null;
+}
+
 /** Who may do what, from the address that the code holds; the key is then out of sight. */
 function accessOfAddress() {
-  const said = new URLSearchParams(location.hash.slice(1));
-  if (!said.get("season") || !said.get("key")) return {};
+  const said = codeInAddress();
+  if (!said) return {};
   // an iPhone's home screen keeps the address, and nothing else of the browser
   if (!isApple) history.replaceState(null, "", location.pathname);
   const access = { season: said.get("season"), key: said.get("key"), on: said.get("on") || null };
@@ -23,8 +29,7 @@ function accessOfAddress() {
 
 /** A code that is opened where the page is open changes no more than the address behind #. */
 function beginAnewWithCode() {
-  const said = new URLSearchParams(location.hash.slice(1));
-  if (said.get("season") && said.get("key")) location.reload();
+  if (codeInAddress()) location.reload();
 }
 
 /** The phone's disk. As long as it cannot be had, as in some private windows, that is said and it is tried again. */

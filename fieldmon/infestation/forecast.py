@@ -12,6 +12,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import counted
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,11 +28,6 @@ if TYPE_CHECKING:
 
 #: how far ahead
 NIGHTS = 14
-# how far the number now may be off beyond what the chance map says of itself, where nobody named
-# the pest and where somebody did; and how far the logarithm of the rate at which it grows (1 sigma;
-# our choice)
-_LEVEL_DOUBT, _OF_A_PEST = 0.3, 0.25
-_RATE_DOUBT = 0.5
 # what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
 # found are not told from others. So it may well be that nothing arrives, or many times as much
 _ARRIVALS_KNOWN, _NOT_TOLD = 0.35, 3.0
@@ -137,15 +133,20 @@ def forecast(
         inside = np.minimum(here.result(), expected)
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
     named = evening.pest is not None
-    tonight = now or estimate_plot(
-        grid, evening.chance, evening.pair_chance, doubt=evening.doubt, named=named
-    )
+    # days without inspections until now are drawn as those to come
+    grown, tonight, watched = 0.0, now, evening
+    if isinstance(evening, TracedPairs) and evening.unwatched.days:
+        grown, tonight, watched = evening.unwatched.grown, None, evening.watched
+    if tonight is None:
+        tonight = estimate_plot(
+            grid, evening.chance, evening.pair_chance, doubt=watched.doubt, named=named
+        )
     if now is not None and expected[0] > 0.0:
         # rounding must not let it be more than all
         inside[0] = min(inside[0] * (now.expected / expected[0]), now.expected)
         expected[0] = now.expected
-    doubts = _deviation(tonight), _OF_A_PEST if named else _LEVEL_DOUBT
-    low, high = _interval(inside, expected - inside, doubts, found)
+    doubts = _deviation(tonight), OF_A_PEST if named else LEVEL_DOUBT
+    low, high = _interval(inside, expected - inside, doubts, found, grown)
     if now is not None:
         # it is never surer than what is known this evening
         grows = expected / max(float(expected[0]), _LEAST)
@@ -190,7 +191,9 @@ def _deviation(made: PlotEstimate) -> float:
     return max((made.high - made.low) / max(made.expected, _LEAST) / _SIGMAS, 0.01)
 
 
-def _interval(inside: Floats, arrived: Floats, doubts: tuple[float, float], found: float) -> Floats:
+def _interval(
+    inside: Floats, arrived: Floats, doubts: tuple[float, float], found: float, grown: float = 0.0
+) -> Floats:
     """Return the interval of 90 % on each morning, ``(2, d)``, from whole numbers that are drawn.
 
     What is on the plot, and what arrives, multiply each by chance, as fast as was expected or as
@@ -204,13 +207,16 @@ def _interval(inside: Floats, arrived: Floats, doubts: tuple[float, float], foun
         How far tonight's number may be off, as a share: as the chance map says, and beyond that.
     found
         How many finds tell what arrives.
+    grown
+        By how much it has grown since somebody inspected last, as a logarithm.
     """
     draws = RandomStreams(0).of("forecast")
     known = _ARRIVALS_KNOWN + max(found - _NOT_TOLD, 0.0)
     doubt, beyond = doubts
     level = draws.gamma(beyond**-2.0, beyond**2.0, _DRAWS)
-    faster = np.exp(draws.normal(0.0, _RATE_DOUBT, _DRAWS))
+    faster = np.exp(draws.normal(0.0, RATE_DOUBT, _DRAWS))
     arrives = draws.gamma(known, 1.0 / known, _DRAWS)
+    level = level * np.exp(grown * (faster - 1.0))
     here = draws.poisson(level * _tonight(inside[0], arrived[0], doubt, draws))
     came = draws.poisson(level * arrives * arrived[0])
     ends = [np.quantile(here + came, (0.05, 0.95))]

@@ -48,6 +48,7 @@ from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.traced_day import KNOWN, KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
+from fieldmon.infestation.unwatched import Unwatched
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -120,6 +121,8 @@ class TracedPairs:
     ancestry
         Who infested whom; None: a pest was named, finds are left where they are, or the plot has
         too many plants.
+    unwatched
+        The days without inspections until now.
     """
 
     grid: PlantGrid
@@ -135,6 +138,7 @@ class TracedPairs:
     latency: Latency | None = None
     slope_sums: Floats = field(default_factory=no_inspections)
     ancestry: Ancestry | None = None
+    unwatched: Unwatched = field(default_factory=Unwatched)
 
     @classmethod
     def of(
@@ -222,7 +226,8 @@ class TracedPairs:
 
         As `doubt_of_rates` has it, but offspring is as doubtful as what it came from: of twice as
         many that were there at the start, there is twice as much. And as far as finds proved what
-        was told of the start too low. Once a night has told who infested whom, it is less.
+        was told of the start too low. Once a night has told who infested whom, it is less; after
+        days without inspections it is more.
         """
         brought = self._brought_so_far
         expected, beside = float(brought.sum()), float(brought[BY_ADJACENT])
@@ -234,7 +239,7 @@ class TracedPairs:
         doubt = float(np.hypot(self._doubt_of(came, expected), _STILL_TOO_FEW * more))
         ancestry = self.ancestry
         told = ancestry is not None and ancestry.knows and len(ancestry.sends) > 0
-        return _LESS_DOUBT * doubt if told else doubt
+        return float(np.hypot(_LESS_DOUBT * doubt if told else doubt, self._since_inspected))
 
     @property
     def doubt_of_rates(self) -> float:
@@ -243,7 +248,18 @@ class TracedPairs:
         As far as what each origin brings is known, and as infestations that jumped come in groups.
         """
         brought = self._brought_so_far
-        return self._doubt_of(brought, float(brought.sum()))
+        doubt = self._doubt_of(brought, float(brought.sum()))
+        return float(np.hypot(doubt, self._since_inspected))
+
+    @property
+    def watched(self) -> TracedPairs:
+        """The same, as if there had been no days without inspections of late."""
+        return replace(self, unwatched=Unwatched(left=self.unwatched.left))
+
+    @property
+    def _since_inspected(self) -> float:
+        """How far the number may be off as nobody inspected for a while."""
+        return float(np.sqrt(self.unwatched.variance(named=self.pest is not None)))
 
     @property
     def _brought_so_far(self) -> Floats:
@@ -269,6 +285,8 @@ class TracedPairs:
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
     ) -> TracedPairs:
         """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
+        if not len(plants):
+            return self
         n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
         none = np.zeros((2, n))
         told = self.counts.detects(learning.detects(len(plants)))
@@ -299,6 +317,9 @@ class TracedPairs:
             else None,
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency and self.latency.inspected(plants, found, told),
+            unwatched=self.unwatched.inspected(
+                self._expected_finds(plants, shown), named=self.pest is not None
+            ),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return _levelled(lowered.counting(self, day))
@@ -326,6 +347,11 @@ class TracedPairs:
                 self.chance if plants is None else self.chance[plants], plants
             )
         return None
+
+    def _expected_finds(self, plants: NDArray[np.int32], shown: Floats) -> float:
+        """Return how many finds are expected among plants ``(k,)`` that were not found yet."""
+        chance = self.chance[plants]
+        return float(shown @ np.where(chance > KNOWN, 0.0, chance))
 
     def _lowered(self, after: TracedPairs, day: TracedDay, beyond: Floats) -> Floats:
         """Return how much less likely plants are as no relatives were found about them, ``(n,)``.
@@ -358,7 +384,11 @@ class TracedPairs:
     def overnight(self, spread: Spread) -> TracedPairs:
         """Return what is believed the next morning."""
         morning = self._overnight(spread, tells_apart=True)
-        return self._with_ancestry(morning, self._sends(spread), spread)
+        morning = self._with_ancestry(morning, self._sends(spread), spread)
+        # of those that were not found yet
+        unknown = self.chance <= KNOWN
+        before, after = (max(float(b.chance[unknown].sum()), LEAST_CHANCE) for b in (self, morning))
+        return replace(morning, unwatched=self.unwatched.overnight(float(np.log(after / before))))
 
     def in_hindsight(self, spread: Spread) -> TracedPairs:
         """Return the same as the ancestry of finds has it by now, before the night of a `spread`.

@@ -20,6 +20,7 @@ from fieldmon.infestation.origins import OriginCounts
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.unwatched import Unwatched
 from fieldmon.monitoring import history as causes_of_a_morning
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import insert
@@ -41,6 +42,7 @@ _EVERY, _IN_FILE = 8, 2
 _LATENCY = "latency_"
 # and that are of who infested whom
 _ANCESTRY = "ancestry_"
+_UNWATCHED = "unwatched"
 
 
 class _KeptMorning(NamedTuple):
@@ -222,6 +224,7 @@ def _arrays(morning: Belief) -> Arrays | None:
         "evidence": morning.evidence,
         "slope_sums": morning.slope_sums,
         "counts": np.array([morning.counts.found, morning.counts.expected]),
+        _UNWATCHED: morning.unwatched.array,
         **{f"{_LATENCY}{name}": values for name, values in latency.items()},
         **{f"{_ANCESTRY}{name}": values for name, values in ancestry.items()},
     }
@@ -248,6 +251,9 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     own: dict[str, object] = {}
     if counts is not None:
         own["counts"] = OriginCounts(*counts)
+    unwatched = arrays.pop(_UNWATCHED, None)
+    if unwatched is not None:
+        own["unwatched"] = Unwatched.of_array(unwatched)
     latency = _taken_out(arrays, _LATENCY)
     if latency:
         own["latency"] = Latency(**latency)

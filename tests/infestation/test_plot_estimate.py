@@ -96,12 +96,14 @@ def test_an_impossible_sureness_is_refused(sure):
         estimate_plot(GRID, np.full(400, 0.05), sure=sure)
 
 
-def test_doubt_widens_the_interval_and_moves_nothing_else():
+def test_doubt_widens_the_interval_and_does_not_move_the_number():
     grid = rectangle(20, 20)
     chance = np.full(400, 0.05)
     sure, doubted = estimate_plot(grid, chance), estimate_plot(grid, chance, doubt=0.5)
     assert doubted.low < sure.low < sure.high < doubted.high
-    assert (doubted.expected, doubted.chance_clean) == (sure.expected, sure.chance_clean)
+    assert doubted.expected == sure.expected
+    # so many may well be none, where the number is in doubt
+    assert sure.chance_clean < doubted.chance_clean < 0.05
 
 
 def test_no_doubt_makes_more_infested_plants_than_there_are():

@@ -1,0 +1,120 @@
+"""Days without inspections make a number more doubtful; inspections tell it again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.forecast import forecast
+from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT, Unwatched
+from fieldmon.plot.layout import rectangle
+
+GRID = rectangle(20, 20)
+NIGHT = Spread(0.05)
+EVERY_PLANT = np.arange(0, 400, 7, dtype=np.int32)
+
+
+def inspected(belief, finds=3):
+    found = np.arange(len(EVERY_PLANT)) < finds
+    return belief.learn(EVERY_PLANT, found, Learning(0.8, treated=True))
+
+
+def told(belief):
+    return estimate_plot(GRID, belief.chance, belief.pair_chance, doubt=belief.doubt)
+
+
+@pytest.fixture(scope="module")
+def evening():
+    return inspected(TracedPairs.of(GRID, np.full(400, 0.05)), 8)
+
+
+def width(interval, night=...):
+    low, high = np.asarray(interval.low)[night], np.asarray(interval.high)[night]
+    return float(np.log((high + 3.0) / (low + 3.0)))
+
+
+def nights(belief, number):
+    for _ in range(number):
+        belief = belief.overnight(NIGHT)
+    return belief
+
+
+def test_a_season_that_is_inspected_daily_is_in_no_more_doubt(evening):
+    belief = evening
+    for _ in range(3):
+        morning = belief.overnight(NIGHT)
+        assert morning.unwatched.variance(named=False) == 0.0
+        assert morning.doubt == morning.watched.doubt
+        belief = inspected(morning)
+
+
+def test_nothing_is_learnt_from_no_inspections(evening):
+    morning = evening.overnight(NIGHT)
+    nobody = np.zeros(0, np.int32), np.zeros(0, np.bool_)
+    assert morning.learn(*nobody, Learning(0.8, treated=True)) is morning
+
+
+def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
+    mornings = [nights(evening, number) for number in range(1, 6)]
+    more = [one.doubt**2 - one.watched.doubt**2 for one in mornings]
+    grown = [np.log(one.chance.sum() / evening.chance.sum()) for one in mornings]
+    assert more[0] == 0.0
+    assert more[1:] == pytest.approx([LEVEL_DOUBT**2 + (RATE_DOUBT * g) ** 2 for g in grown[1:]])
+    rates = [one.doubt_of_rates**2 - one.watched.doubt_of_rates**2 for one in mornings]
+    assert rates == pytest.approx(more)
+
+
+def test_of_a_named_pest_a_little_less():
+    idle = Unwatched(days=1, grown=0.4)
+    less = idle.variance(named=False) - idle.variance(named=True)
+    assert less == pytest.approx(LEVEL_DOUBT**2 - OF_A_PEST**2)
+
+
+@pytest.mark.parametrize(("found", "left"), [(0.0, 1.0), (1 / 0.13, 0.5), (1e9, 0.0)])
+def test_inspections_take_the_doubt_as_far_as_finds_were_to_be_expected(found, left):
+    idle = Unwatched(days=1, grown=0.4)
+    assert idle.variance(named=False) == pytest.approx(0.13)
+    after = idle.inspected(found, named=False)
+    assert after.variance(named=False) == pytest.approx(0.13 * left, abs=1e-6)
+    assert after.overnight(0.3).variance(named=False) == after.left
+
+
+def test_a_look_at_one_plant_hardly_narrows_the_interval_and_a_day_does(evening):
+    morning = nights(evening, 6)
+    one = morning.learn(EVERY_PLANT[:1], np.zeros(1, np.bool_), Learning(0.8, treated=True))
+    day = inspected(morning, 14)
+    wide = [width(told(each)) for each in (morning, one, day)]
+    assert wide[1] > 0.95 * wide[0]
+    assert wide[2] < 0.9 * wide[0]
+
+
+@pytest.mark.parametrize("idle", [3, 7])
+def test_days_without_inspections_come_as_doubtful_as_the_forecast_had_them(evening, idle):
+    ahead = forecast(evening, GRID, [NIGHT] * 10, now=told(evening.in_hindsight(NIGHT)))
+    morning = nights(evening, idle)
+    now = told(morning)
+    assert now.expected == pytest.approx(ahead.expected[idle], rel=1e-3)
+    assert width(now) == pytest.approx(width(ahead, idle), rel=0.2)
+    later = forecast(morning, GRID, [NIGHT] * (10 - idle), now=now)
+    assert width(later, -1) == pytest.approx(width(ahead, -1), rel=0.2)
+
+
+def test_plants_that_are_known_to_be_infested_tell_nothing_of_the_number(evening):
+    known = evening.learn(EVERY_PLANT[:9], np.ones(9, np.bool_), Learning(0.8, treated=False))
+    morning = nights(known, 3)
+    again = morning.learn(EVERY_PLANT[:9], np.ones(9, np.bool_), Learning(0.8, treated=False))
+    before, after = (each.unwatched.variance(named=False) for each in (morning, again))
+    assert after == before > LEVEL_DOUBT**2
+    unknown = known.chance < 0.99
+    grown = np.log(morning.chance[unknown].sum() / known.chance[unknown].sum())
+    assert morning.unwatched.grown == pytest.approx(grown, rel=0.05)
+
+
+def test_it_is_kept_with_a_morning(evening):
+    morning = nights(evening, 3)
+    again = replace(morning, unwatched=Unwatched.of_array(morning.unwatched.array))
+    assert again.doubt == morning.doubt > morning.watched.doubt

@@ -11,6 +11,7 @@ import typer
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import LastDate, SeasonFile
+from fieldmon.cli.season_files import day_meant
 from fieldmon.cli.times import day
 from fieldmon.compute.arguments import RATE_L_HA
 from fieldmon.compute.ranges import MOST_COUNTED, SURE
@@ -241,7 +242,7 @@ def decide(
         *sprayer.idle(),
     )
     kept = Season(asked.season)
-    when = day(asked.on) or kept.last_date()
+    when = day_meant(kept, day(asked.on))
     level = {"level": threshold.level} if of_plants else {}
     advice = kept.advice(
         when,

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_drafts, tell_not_come
+from fieldmon.cli.messages import tell_drafts
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.times import day, day_on
+from fieldmon.cli.season_files import day_meant
+from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,12 +48,11 @@ def status(
     kept = Season(season)
     tell_drafts(kept.drafts)
     with kept.one_moment():
-        _show(kept, kept.status(day(on) or kept.last_date()), batches=batches, rows=rows)
+        _show(kept, kept.status(day_meant(kept, day(on))), batches=batches, rows=rows)
 
 
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
-    _tell_last_day(kept)
     typer.echo(f"  forecast               {kept.forecast(now.on).sentence()}")
     for line in (*_contradicting(kept, now.on), *of_treatments(kept, now)):
         typer.echo(line)
@@ -67,22 +67,6 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
         typer.echo(
             "checked against their digests: the last mornings only; fieldmon log --mornings checks "
             "the rest",
-            err=True,
-        )
-
-
-def _tell_last_day(kept: Season) -> None:
-    """Print that the last day has not come yet, if so: in doubt if it was recorded."""
-    last, history = kept.last_date(), kept.history
-    if last <= kept.settings.begins:
-        return
-    day = kept.settings.day(last)
-    if len(history.on(day)) or any(one.day == day for one in history.treatments):
-        tell_not_come(last, kept.plot.field, "the last day recorded")
-    elif last > (today := day_on(kept.plot.field, None)):
-        typer.echo(
-            f"seen: {last} was planned, and it is {today} on the plot. For another day give --date "
-            "YYYY-MM-DD.",
             err=True,
         )
 

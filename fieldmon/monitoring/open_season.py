@@ -262,6 +262,14 @@ class OpenSeason:
         with self.store.reading() as db:
             return settings_of(db).date(newest_day(db))
 
+    def day_meant(self) -> date:
+        """Return the day that is meant where none is named: the last date, but today at most.
+
+        Where today is before the season it is the last date.
+        """
+        last, today = self.last_date(), local_clock(self.plot.field).today()
+        return last if today < self.settings.begins else min(last, today)
+
     @cached_property
     def label(self) -> RowLabel:
         """Row and number of every plant, as people count."""

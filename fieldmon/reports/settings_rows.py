@@ -215,7 +215,7 @@ def _of_pest(pest_in_weather: PestInWeather, units: Units) -> Iterator[Row]:
         return
     days = weather.local_days()
     first, last = units.day(str(days[0])), units.day(str(days[-1]))
-    yield words.WEATHER, worded(words.WEATHER_DAYS, first=first, last=last), words.FROM_FILE
+    yield words.WEATHER, worded(words.WEATHER_DAYS, first=first, last=last), words.FROM_WEATHER
 
 
 def _from(usual: bool) -> str:  # noqa: FBT001 - one question

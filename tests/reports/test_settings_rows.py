@@ -116,7 +116,7 @@ def test_a_named_pest_and_its_weather_stand_in_the_place_of_the_usual_nights():
     assert "Two-spotted spider mite, by degree-days" in str(
         with_weather["Pest, by which nights go"]
     )
-    assert with_weather["Its weather"][0] == "2026-11-01 to 2026-11-09"
+    assert with_weather["Its weather"] == ("2026-11-01 to 2026-11-09", "of the weather file")
     assert "Spread to a neighbour, a night" not in with_weather
     without = rows(replace(TOLD, pest_in_weather=PestInWeather(mite)))
     assert without["Its weather"][0] == "none: as its figures hold"

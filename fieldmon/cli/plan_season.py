@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from datetime import datetime
 from functools import cache
 from typing import TYPE_CHECKING
@@ -24,21 +25,29 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.settings import MonitoringSettings
 
 # what a plan of a season may be told; all else was chosen when it began
-_OF_A_PLAN = {"plot", "output", "on", "now", "chance_map", "bound"}
+_OF_A_PLAN = {"plot", "output", "on", "now", "as_now", "chance_map", "bound"}
 
 
 def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
     from fieldmon.monitoring import Season
-    from fieldmon.planning.day_bound import with_bound
-    from fieldmon.planning.route import with_forecast
-    from fieldmon.reports.words import DAY_OF_NOBODY
 
     refuse_what_was_chosen(context, _OF_A_PLAN)
     season = Season(file)
     tell_drafts(season.drafts)
-    on, now = day_on(season.plot.field, day(options.on)), options.now
-    settings, field = season.planned_by(on), season.plot.field
+    on = day_on(season.plot.field, day(options.on))
+    with season.as_now(on) if options.as_now else nullcontext():
+        _plan_day(season, options, on)
+
+
+def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
+    """Plan a day for who works alone or for each of a team."""
+    from fieldmon.planning.day_bound import with_bound
+    from fieldmon.planning.route import with_forecast
+    from fieldmon.reports.words import DAY_OF_NOBODY
+
+    now, settings, field = options.now, season.planned_by(on), season.plot.field
+    _tell_settings_of_then(season, on, settings)
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, field)
     tell_past_midnight(datetime.combine(on, settings.starts), hours)
@@ -66,6 +75,18 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
+
+
+def _tell_settings_of_then(season: Season, on: date, settings: MonitoringSettings) -> None:
+    """Print by what a past day is planned, where something else counts now."""
+    from fieldmon.monitoring.settings_words import changed
+
+    if said := changed(settings, season.settings):
+        typer.echo(
+            f"seen: {on} is past and planned by what counted then: {said}. To plan it by what "
+            "counts now, give --as-now.",
+            err=True,
+        )
 
 
 def _tell_detection(season: Season, on: date) -> None:

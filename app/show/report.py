@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.io.import_report import Severity
 from fieldmon.reports.certification import certification_report
-from fieldmon.reports.day import DayFacts, day_report, results_on, who_came
+from fieldmon.reports.day import (
+    DayFacts,
+    day_report,
+    results_on,
+    treated_on,
+    was_missed,
+    who_came,
+)
 from fieldmon.reports.settings_rows import WorkSettings
 
 from ..state import assumptions, cached, chosen_day
@@ -15,6 +23,7 @@ from ..words import language
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fieldmon.monitoring import Season
     from fieldmon.reports.content import Report
 
     from ..state.choices import Choices
@@ -52,9 +61,20 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         None if season is None else season.planned_and_done(choices.on),
         who=choices.who or "",
         team=who_came(season, choices.on) if season and shown.worked and not choices.who else (),
+        missed=season is not None and was_missed(season, choices.on, choices.today),
+        treatments=() if season is None else treated_on(season, choices.on),
+        labels=() if season is None else season.labels(),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
-    return lambda: day_report(facts, units).said_in(of_paper)
+    return lambda: day_report(_with_infested(facts, season), units).said_in(of_paper)
+
+
+def _with_infested(facts: DayFacts, season: Season | None) -> DayFacts:
+    """Return facts that know how many plants of a season's route are infested, where it hides."""
+    if season is None:
+        return facts
+    chance = season.evening_planned_by(facts.begins.date())
+    return replace(facts, infested=float(chance[facts.route.plant].sum()))
 
 
 def _settings(choices: Choices, *, worked: bool) -> WorkSettings:

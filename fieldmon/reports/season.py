@@ -14,7 +14,6 @@ from fieldmon.compute.wording import counted, estimate, figure, joined, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
-from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.day_figures import flagged_said, found_pct
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
@@ -32,7 +31,14 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import NO_ROW, held_in_words, legend_block, map_alt, which
+from fieldmon.reports.day import (
+    NO_ROW,
+    held_in_words,
+    legend_block,
+    map_alt,
+    treatment_table,
+    which,
+)
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
 from fieldmon.reports.settings_rows import (
@@ -350,16 +356,5 @@ def _treatments(facts: _Facts) -> Block:
     kept = [one for one in facts.season.treatments() if one.day <= facts.status.day]
     if not kept:
         return Listing(words.TREATMENTS, (words.TREATMENTS_NONE,))
-    labels = facts.season.labels()
-    rows = []
-    for one in reversed(kept):
-        first = waits(one, label_of(one, labels)).harvest_from
-        rows.append(
-            (facts.units.day(one.on), one.application.product,
-             figure(int(np.count_nonzero(one.place.plants))), figure(one.efficacy, ".0%"),
-             "" if first is None else facts.units.day(first))
-        )  # fmt: skip
-    return Table(
-        words.TREATMENTS, words.TREATMENT_COLUMNS, tuple(rows), (0.18, 0.34, 0.14, 0.14, 0.2),
-        rest=words.TREATMENTS_REST, left=(0, 1),
-    )  # fmt: skip
+    (table,) = treatment_table(kept, facts.season.labels(), facts.units)
+    return table

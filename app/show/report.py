@@ -22,6 +22,7 @@ from ..words import language
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from datetime import date
 
     from fieldmon.monitoring import Season
     from fieldmon.reports.content import Report
@@ -66,22 +67,21 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         labels=() if season is None else season.labels(),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
-    return lambda: day_report(_with_infested(facts, season), units).said_in(of_paper)
+    on = choices.on
+    return lambda: day_report(_with_estimates(facts, season, on), units).said_in(of_paper)
 
 
-def _with_infested(facts: DayFacts, season: Season | None) -> DayFacts:
-    """Return facts that know how many plants of a season's route are infested, where it hides."""
+def _with_estimates(facts: DayFacts, season: Season | None, on: date) -> DayFacts:
+    """Return facts with what takes a while: how many are infested, what inspections detect."""
     if season is None:
         return facts
-    chance = season.evening_planned_by(facts.begins.date())
-    return replace(facts, infested=float(chance[facts.route.plant].sum()))
+    infested = float(season.evening_planned_by(on)[facts.route.plant].sum())
+    return replace(facts, infested=infested, settings=facts.settings.with_learnt(season, on))
 
 
 def _settings(choices: Choices, *, worked: bool) -> WorkSettings:
     if choices.season is not None:
-        return WorkSettings.of_season(
-            choices.season, choices.on, worked=worked, learnt=chosen_day.learnt(choices)
-        )
+        return WorkSettings.of_season(choices.season, choices.on, worked=worked)
     grid, said = choices.plot.grid, (one.message for one in choices.messages)
     return WorkSettings(
         choices.robot, choices.sampler, choices.prior, (grid.row_spacing_m, grid.plant_spacing_m),

@@ -11,7 +11,7 @@ import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_drafts, tell_past_midnight
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
-from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
+from fieldmon.cli.season_files import learnt_of_each, refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
@@ -91,21 +91,13 @@ def _tell_settings_of_then(season: Season, on: date, settings: MonitoringSetting
 
 def _tell_detection(season: Season, on: date) -> None:
     """Print what the season learnt that inspections find, where routes go by another value."""
-    from fieldmon.compute.wording import written
-
-    settings = season.planned_by(on)
-    names: dict[float, list[str]] = {}
-    for member in settings.team:
-        names.setdefault(member.robot.detects, []).append(member.name)
-    for detects, whose in (names or {settings.robot.detects: []}).items():
-        told, by = written(detects, ".0%"), f" by {', '.join(whose)}" * (len(names) > 1)
-        for one in season.learnt(on, detects):
-            if one.name == "detection" and (learnt := written(one.value, ".0%")) != told:
-                typer.echo(
-                    f"seen: Inspections{by} find {learnt} of what is there, as this season learnt. "
-                    f"Chances go by that; routes and their finds go by the {told} of who inspects.",
-                    err=True,
-                )
+    for by, told, learnt in learnt_of_each(season, on):
+        if learnt != told:
+            typer.echo(
+                f"seen: Inspections{by} find {learnt} of what is there, as this season learnt. "
+                f"Chances go by that; routes and their finds go by the {told} of who inspects.",
+                err=True,
+            )
 
 
 def _plan_team(

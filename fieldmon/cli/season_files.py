@@ -16,7 +16,7 @@ from fieldmon.cli.times import day_on
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Iterator
     from datetime import date
     from pathlib import Path
 
@@ -64,6 +64,24 @@ def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
         err=True,
     )
     return meant
+
+
+def learnt_of_each(season: Season, on: date) -> Iterator[tuple[str, str, str]]:
+    """Yield whose inspections find how much by what was told, and as the season learnt.
+
+    Of a team they are those who were told alike; empty: all who inspect on a day.
+    """
+    from fieldmon.compute.wording import written
+
+    settings = season.planned_by(on)
+    names: dict[float, list[str]] = {}
+    for member in settings.team:
+        names.setdefault(member.robot.detects, []).append(member.name)
+    for detects, whose in (names or {settings.robot.detects: []}).items():
+        by = f" by {', '.join(whose)}" * (len(names) > 1)
+        for one in season.learnt(on, detects):
+            if one.name == "detection":
+                yield by, written(detects, ".0%"), written(one.value, ".0%")
 
 
 def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> None:

@@ -9,7 +9,7 @@ import typer
 
 from fieldmon.cli.messages import tell_drafts
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.season_files import day_meant
+from fieldmon.cli.season_files import day_meant, learnt_of_each
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ def _other_days(said: BatchContents, recorded: date) -> str:
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
-    from fieldmon.compute.wording import estimate
+    from fieldmon.compute.wording import estimate, written
     from fieldmon.infestation.learnt import worth_saying
     from fieldmon.monitoring.day_figures import flagged_said
 
@@ -155,6 +155,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     since = "learnt so far" if now.inspected else "believed at first"
     for number, learnt in enumerate(worth_saying(now.learnt)):
         yield f"  {'' if number else since:22} {learnt.sentence()}"
+        if learnt.name == "detection":
+            yield from _of_who_inspects(season, now, written(learnt.value, ".0%"))
     if now.learnt:
         yield f"  {'':22} In brackets: intervals that hold with a chance of 90 %."
     else:
@@ -173,6 +175,17 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
+
+
+def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
+    """Yield what those who inspect on a day find, where they find otherwise than all until then."""
+    by = season.planned_by(now.on)
+    detects = {one.detects for one in [member.robot for member in by.team] or [by.robot]}
+    if detects == {season.history.told(now.day)}:
+        return  # it takes seconds to work out
+    for whose, _, learnt in learnt_of_each(season, now.on):
+        if learnt != of_all:
+            yield f"  {'':22} Inspections{whose or ' of that day'} find {learnt}."
 
 
 def of_treatments(season: Season, now: Status) -> Iterator[str]:

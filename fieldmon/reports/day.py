@@ -137,7 +137,7 @@ class DayFacts:
                 season.plot.field.name, begins,
                 shown, season.evening(on), state,
                 hot_spots(season.plot.grid, state),
-                WorkSettings.of_season(season, on, worked=worked),
+                WorkSettings.of_season(season, on, worked=worked).with_learnt(season, on),
                 len(np.unique(done.plant)), np.unique(done.plant[done.result == FOUND]),
                 worked, results_on(season, on), season.planned_and_done(on),
                 who="" if worked else "".join(names[:1]),

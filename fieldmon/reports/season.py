@@ -91,24 +91,22 @@ class _Facts:
     def name(self) -> str:
         return self.season.plot.field.name
 
-    @property
+    @cached_property
     def goes_by(self) -> WorkSettings:
-        return self.in_force[-1][1]
+        return self.in_force[-1][1].with_learnt(self.season, self.on)
 
     @cached_property
     def in_force(self) -> list[tuple[date, WorkSettings]]:
         """What counted on each day that was worked and, if it lies ahead, on the last one."""
-        season, learnt = self.season, self.status.learnt
+        season = self.season
         worked = [one.on for one in self.days if one.inspected]
         recorded = season.inspections.date
         is_ahead = not len(recorded) or np.datetime64(self.on, "D") > recorded[-1]
         if not season.was_changed:
             worked = []  # the same on all of them
-        by = [
-            (day, WorkSettings.of_season(season, day, worked=True, learnt=learnt)) for day in worked
-        ]
+        by = [(day, WorkSettings.of_season(season, day, worked=True)) for day in worked]
         if is_ahead or not by:
-            by.append((self.on, WorkSettings.of_season(season, self.on, learnt=learnt)))
+            by.append((self.on, WorkSettings.of_season(season, self.on)))
         return by
 
     @property

@@ -105,6 +105,19 @@ def test_a_day_ahead_that_was_only_planned_is_not_to_be_undone(run, season):
     assert "give --date" not in run("status", season, "--date", on)[2]
 
 
+def test_what_inspections_find_is_told_of_who_inspects_too(run, season):
+    kept = Season(season)
+    day = np.datetime64(BEGINS)
+    kept.record(Inspections.of(np.arange(9), np.ones(9, int), day), "x")
+    words = ["status", season, "--date", kept.settings.begins + timedelta(days=1)]
+    assert "Inspections of that day" not in run(*words)[1]
+    assert run("change", season, "--look", "20")[0] == 0
+    now = Season(season)
+    learnt = now.learnt(now.settings.begins, now.settings.robot.detects)
+    (own,) = (one.value for one in learnt if one.name == "detection")
+    assert f"Inspections of that day find {100 * own:.0f} %." in run(*words)[1]
+
+
 def test_nothing_is_told_of_a_day_that_has_not_come_unless_it_is_asked_for(run, season):
     """Of a decision, a report and a record for a certifier, as of the status."""
     kept = Season(season)

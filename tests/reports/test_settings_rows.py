@@ -93,6 +93,15 @@ def test_a_season_s_own_are_taken(worked):
     assert made.spacing_m == (worked.plot.grid.row_spacing_m, worked.plot.grid.plant_spacing_m)
 
 
+def test_what_the_season_learnt_is_of_who_inspects(worked, last):
+    """As `fieldmon plan` says it, not of the average of all who inspected so far."""
+    made = WorkSettings.of_season(worked, last)
+    for detects in (0.5, 0.9):
+        own = replace(made, robot=replace(made.robot, detection=detects))
+        (learnt,) = (one for one in worked.learnt(last, detects) if one.name == "detection")
+        assert own.with_learnt(worked, last).learnt_detection == learnt.value
+
+
 def test_a_detection_that_the_season_learnt_stands_beside_the_one_told_where_they_differ():
     told, name = rows(replace(TOLD, learnt_detection=0.841)), "The same, as the season learnt"
     assert name not in told

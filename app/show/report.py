@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.io.import_report import Severity
 from fieldmon.reports.certification import certification_report
-from fieldmon.reports.day import DayFacts, day_report, results_on, who_came
+from fieldmon.reports.day import (
+    DayFacts,
+    day_report,
+    results_on,
+    treated_on,
+    was_missed,
+    who_came,
+)
 from fieldmon.reports.settings_rows import WorkSettings
 
 from ..state import assumptions, cached, chosen_day
@@ -14,7 +22,9 @@ from ..words import language
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from datetime import date
 
+    from fieldmon.monitoring import Season
     from fieldmon.reports.content import Report
 
     from ..state.choices import Choices
@@ -52,16 +62,26 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         None if season is None else season.planned_and_done(choices.on),
         who=choices.who or "",
         team=who_came(season, choices.on) if season and shown.worked and not choices.who else (),
+        missed=season is not None and was_missed(season, choices.on, choices.today),
+        treatments=() if season is None else treated_on(season, choices.on),
+        labels=() if season is None else season.labels(),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
-    return lambda: day_report(facts, units).said_in(of_paper)
+    on = choices.on
+    return lambda: day_report(_with_estimates(facts, season, on), units).said_in(of_paper)
+
+
+def _with_estimates(facts: DayFacts, season: Season | None, on: date) -> DayFacts:
+    """Return facts with what takes a while: how many are infested, what inspections detect."""
+    if season is None:
+        return facts
+    infested = float(season.evening_planned_by(on)[facts.route.plant].sum())
+    return replace(facts, infested=infested, settings=facts.settings.with_learnt(season, on))
 
 
 def _settings(choices: Choices, *, worked: bool) -> WorkSettings:
     if choices.season is not None:
-        return WorkSettings.of_season(
-            choices.season, choices.on, worked=worked, learnt=chosen_day.learnt(choices)
-        )
+        return WorkSettings.of_season(choices.season, choices.on, worked=worked)
     grid, said = choices.plot.grid, (one.message for one in choices.messages)
     return WorkSettings(
         choices.robot, choices.sampler, choices.prior, (grid.row_spacing_m, grid.plant_spacing_m),

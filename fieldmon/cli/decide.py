@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +11,7 @@ import typer
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import LastDate, SeasonFile
+from fieldmon.cli.season_files import day_meant
 from fieldmon.cli.times import day
 from fieldmon.compute.arguments import RATE_L_HA
 from fieldmon.compute.ranges import MOST_COUNTED, SURE
@@ -192,11 +193,13 @@ class CostOptions:
         ),
     ] = 14.0
     works: Annotated[
-        float,
+        float | None,
         typer.Option(
-            help="Chance that treating cleans a plant, 0 to 1.", callback=within(COSTS["works"])
+            help="Chance that treating cleans a plant, 0 to 1; else as the season learnt it of the "
+            "product, or of the last one used; 0.9 if it learnt nothing.",
+            callback=within(COSTS["works"]),
         ),
-    ] = 0.9
+    ] = None
     reserve: Annotated[
         float,
         typer.Option(
@@ -205,13 +208,15 @@ class CostOptions:
         ),
     ] = 0.0
 
-    def costs(self) -> TreatmentCosts:
-        """Return them as decisions take them."""
+    def costs(self, learnt: float | None) -> TreatmentCosts:
+        """Return them as decisions take them; how well treating works may be `learnt`."""
         from fieldmon.decisions.sprayer import TreatmentCosts
 
-        return TreatmentCosts(
-            self.per_ha, self.per_zone, self.loss, self.days, self.works, self.reserve
+        told = TreatmentCosts(
+            self.per_ha, self.per_zone, self.loss, self.days, reserve=self.reserve
         )
+        works = learnt if self.works is None else self.works
+        return told if works is None else replace(told, works=works)
 
 
 @with_options
@@ -241,15 +246,17 @@ def decide(
         *sprayer.idle(),
     )
     kept = Season(asked.season)
-    when = day(asked.on) or kept.last_date()
+    when = day_meant(kept, day(asked.on))
     level = {"level": threshold.level} if of_plants else {}
+    learnt = kept.learnt_efficacy(when, files.product) if costs.works is None else None
     advice = kept.advice(
         when,
         AdviceSettings(
             sure=asked.sure,
             sprayer=sprayer.sprayer(kept.plot.grid.row_spacing_m),
-            costs=costs.costs(),
+            costs=costs.costs(None if learnt is None else learnt.efficacy),
             rate_l_ha=files.rate,
+            learnt_of="" if learnt is None else learnt.product,
             **level,
         ),
     )

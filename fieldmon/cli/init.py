@@ -40,6 +40,7 @@ from fieldmon.errors import SettingError
 if TYPE_CHECKING:
     from datetime import datetime, time
 
+    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.monitoring import MonitoringSettings
     from fieldmon.monitoring.history import BeliefSettings
@@ -135,6 +136,18 @@ class InitOptions:
         )
 
 
+def _counting(records: Observations, settings: MonitoringSettings) -> str:
+    """Return how many records count, and of how many."""
+    import numpy as np
+
+    from fieldmon.infestation.observations import usable
+
+    n = len(usable(records, np.datetime64(settings.begins, "D")).observations)
+    if n == len(records):
+        return counted(n, "record")
+    return f"{n} of {counted(len(records), 'record')} {'counts' if n == 1 else 'count'}"
+
+
 def _spreading(belief: BeliefSettings, rate: float) -> BeliefSettings:
     from dataclasses import replace
 
@@ -175,7 +188,7 @@ def init(options: InitOptions) -> None:
     season = Season.create(path, known.plot, known.records, settings, messages, known.risk)
     ahead = season.status(settings.begins).estimate
     typer.echo(
-        f"Season begun in {path}: {counted(len(known.records), 'record')}, about "
+        f"Season begun in {path}: {_counting(known.records, settings)}, about "
         f"{estimate(ahead.expected)} plants believed infested ({ahead.low:,} to {ahead.high:,})."
     )
     if (taught := season.taught()) is not None:

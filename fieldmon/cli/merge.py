@@ -49,4 +49,4 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         typer.echo(f"  differs: {sentence}")
     for sentence in done.overlaps:
         typer.echo(f"  codes: {sentence}")
-    typer.echo("\n".join(lines(kept, kept.status(kept.last_date()))))
+    typer.echo("\n".join(lines(kept, kept.status(kept.day_meant()))))

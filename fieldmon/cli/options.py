@@ -261,7 +261,9 @@ WorkDate = Annotated[
 TheDate = Annotated[str | None, typer.Option("--date", help="The day, YYYY-MM-DD; default: today.")]
 LastDate = Annotated[
     str | None,
-    typer.Option("--date", help="The day, YYYY-MM-DD; default: the last one planned or recorded."),
+    typer.Option(
+        "--date", help="The day, YYYY-MM-DD; else the last planned or recorded, today at most."
+    ),
 ]
 WorkingDays = Annotated[int, typer.Option(help="Working days.", callback=within(DAYS))]
 InfestedAtStart = Annotated[

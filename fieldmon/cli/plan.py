@@ -73,6 +73,8 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
         return
     if options.now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
+    if options.as_now:
+        raise SettingError("--as-now needs a season (see fieldmon init), but this is a plot file.")
     if options.passing is not None and options.robots is None:
         raise SettingError("--passing goes with --robots: one alone meets nobody.")
     if options.robots is not None:

@@ -33,6 +33,12 @@ Now = Annotated[
 ]
 
 
+AsNow = Annotated[
+    bool,
+    typer.Option(
+        "--as-now", help="In a season: plan a past day by the settings of now, not of then."
+    ),
+]
 EveryPlot = Annotated[
     bool,
     typer.Option(
@@ -54,6 +60,7 @@ class PlanOptions:
     on: WorkDate = None
     start: StartTime = "06:00"
     now: Now = None
+    as_now: AsNow = False
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from datetime import datetime
 from functools import cache
 from typing import TYPE_CHECKING
@@ -10,7 +11,7 @@ import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_drafts, tell_past_midnight
 from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
-from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
+from fieldmon.cli.season_files import learnt_of_each, refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
@@ -24,21 +25,29 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.settings import MonitoringSettings
 
 # what a plan of a season may be told; all else was chosen when it began
-_OF_A_PLAN = {"plot", "output", "on", "now", "chance_map", "bound"}
+_OF_A_PLAN = {"plot", "output", "on", "now", "as_now", "chance_map", "bound"}
 
 
 def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
     from fieldmon.monitoring import Season
-    from fieldmon.planning.day_bound import with_bound
-    from fieldmon.planning.route import with_forecast
-    from fieldmon.reports.words import DAY_OF_NOBODY
 
     refuse_what_was_chosen(context, _OF_A_PLAN)
     season = Season(file)
     tell_drafts(season.drafts)
-    on, now = day_on(season.plot.field, day(options.on)), options.now
-    settings, field = season.planned_by(on), season.plot.field
+    on = day_on(season.plot.field, day(options.on))
+    with season.as_now(on) if options.as_now else nullcontext():
+        _plan_day(season, options, on)
+
+
+def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
+    """Plan a day for who works alone or for each of a team."""
+    from fieldmon.planning.day_bound import with_bound
+    from fieldmon.planning.route import with_forecast
+    from fieldmon.reports.words import DAY_OF_NOBODY
+
+    now, settings, field = options.now, season.planned_by(on), season.plot.field
+    _tell_settings_of_then(season, on, settings)
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, field)
     tell_past_midnight(datetime.combine(on, settings.starts), hours)
@@ -68,23 +77,27 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     write_chance_map(options.chance_map, season.plot, season.evening(on))
 
 
+def _tell_settings_of_then(season: Season, on: date, settings: MonitoringSettings) -> None:
+    """Print by what a past day is planned, where something else counts now."""
+    from fieldmon.monitoring.settings_words import changed
+
+    if said := changed(settings, season.settings):
+        typer.echo(
+            f"seen: {on} is past and planned by what counted then: {said}. To plan it by what "
+            "counts now, give --as-now.",
+            err=True,
+        )
+
+
 def _tell_detection(season: Season, on: date) -> None:
     """Print what the season learnt that inspections find, where routes go by another value."""
-    from fieldmon.compute.wording import written
-
-    settings = season.planned_by(on)
-    names: dict[float, list[str]] = {}
-    for member in settings.team:
-        names.setdefault(member.robot.detects, []).append(member.name)
-    for detects, whose in (names or {settings.robot.detects: []}).items():
-        told, by = written(detects, ".0%"), f" by {', '.join(whose)}" * (len(names) > 1)
-        for one in season.learnt(on, detects):
-            if one.name == "detection" and (learnt := written(one.value, ".0%")) != told:
-                typer.echo(
-                    f"seen: Inspections{by} find {learnt} of what is there, as this season learnt. "
-                    f"Chances go by that; routes and their finds go by the {told} of who inspects.",
-                    err=True,
-                )
+    for by, told, learnt in learnt_of_each(season, on):
+        if learnt != told:
+            typer.echo(
+                f"seen: Inspections{by} find {learnt} of what is there, as this season learnt. "
+                f"Chances go by that; routes and their finds go by the {told} of who inspects.",
+                err=True,
+            )
 
 
 def _plan_team(

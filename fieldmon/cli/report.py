@@ -11,6 +11,7 @@ import typer
 
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.report_languages import Language, spoken
+from fieldmon.cli.season_files import day_meant
 from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
 
@@ -46,7 +47,9 @@ class ReportOptions:
     ] = None
     until: Annotated[
         str | None,
-        typer.Option("--until", help="Report the season up to this day; else up to its last one."),
+        typer.Option(
+            "--until", help="Report the season up to this day; else its last, today at most."
+        ),
     ] = None
     paper: Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")] = Paper.a4
     certification: Annotated[
@@ -106,7 +109,11 @@ def _certified(seasons: list[Season], until: str | None, units: Units) -> Report
     """Return the record of seasons for a certifier."""
     from fieldmon.reports.certification import certification_report
 
-    return certification_report(seasons, units, day(until, "--until"))
+    told = day(until, "--until")
+    if told is None:
+        for season in seasons:
+            day_meant(season, None, "--until")
+    return certification_report(seasons, units, told)
 
 
 def _made(season: Season, on: str | None, until: str | None, units: Units) -> Report:
@@ -118,5 +125,4 @@ def _made(season: Season, on: str | None, until: str | None, units: Units) -> Re
     if asked is not None:
         today = day_on(season.plot.field, None)
         return day_report(DayFacts.of_season(season, asked, today), units)
-    told = day(until, "--until")
-    return season_report(season, season.last_date() if told is None else told, units)
+    return season_report(season, day_meant(season, day(until, "--until"), "--until"), units)

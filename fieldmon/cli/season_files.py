@@ -9,13 +9,16 @@ from contextlib import closing
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+import typer
+
+from fieldmon.cli.messages import tell_not_come
+from fieldmon.cli.times import day_on
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Iterator
+    from datetime import date
     from pathlib import Path
-
-    import typer
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
@@ -38,6 +41,47 @@ def opened(files: Iterable[Path]) -> list[Season]:
                 f"them together first: fieldmon merge {pasted}"
             )
     return seasons
+
+
+def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
+    """Return the day that was told, else the last one up to today; say where later ones are kept.
+
+    `flag` names the option that tells it. A later day that was recorded is doubted in any case.
+    """
+    last, today = season.last_date(), day_on(season.plot.field, None)
+    if last <= max(today, season.settings.begins):
+        return season.day_meant() if told is None else told
+    history = season.history
+    days = [*history.days[-1:].tolist(), *(one.day for one in history.treatments)]
+    recorded = season.settings.date(max(days, default=0))
+    tell_not_come(recorded, season.plot.field, "the last day recorded")
+    if told is not None:
+        return told
+    meant, was = season.day_meant(), "recorded" if last == recorded else "planned"
+    typer.echo(
+        f"seen: {last} was {was} already, and it is {today} on the plot: this is of {meant}. "
+        f"For another day give {flag} YYYY-MM-DD.",
+        err=True,
+    )
+    return meant
+
+
+def learnt_of_each(season: Season, on: date) -> Iterator[tuple[str, str, str]]:
+    """Yield whose inspections find how much by what was told, and as the season learnt.
+
+    Of a team they are those who were told alike; empty: all who inspect on a day.
+    """
+    from fieldmon.compute.wording import written
+
+    settings = season.planned_by(on)
+    names: dict[float, list[str]] = {}
+    for member in settings.team:
+        names.setdefault(member.robot.detects, []).append(member.name)
+    for detects, whose in (names or {settings.robot.detects: []}).items():
+        by = f" by {', '.join(whose)}" * (len(names) > 1)
+        for one in season.learnt(on, detects):
+            if one.name == "detection":
+                yield by, written(detects, ".0%"), written(one.value, ".0%")
 
 
 def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> None:

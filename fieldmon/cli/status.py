@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_drafts, tell_not_come
+from fieldmon.cli.messages import tell_drafts
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.times import day, day_on
+from fieldmon.cli.season_files import day_meant, learnt_of_each
+from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,12 +48,11 @@ def status(
     kept = Season(season)
     tell_drafts(kept.drafts)
     with kept.one_moment():
-        _show(kept, kept.status(day(on) or kept.last_date()), batches=batches, rows=rows)
+        _show(kept, kept.status(day_meant(kept, day(on))), batches=batches, rows=rows)
 
 
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
-    _tell_last_day(kept)
     typer.echo(f"  forecast               {kept.forecast(now.on).sentence()}")
     for line in (*_contradicting(kept, now.on), *of_treatments(kept, now)):
         typer.echo(line)
@@ -67,22 +67,6 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
         typer.echo(
             "checked against their digests: the last mornings only; fieldmon log --mornings checks "
             "the rest",
-            err=True,
-        )
-
-
-def _tell_last_day(kept: Season) -> None:
-    """Print that the last day has not come yet, if so: in doubt if it was recorded."""
-    last, history = kept.last_date(), kept.history
-    if last <= kept.settings.begins:
-        return
-    day = kept.settings.day(last)
-    if len(history.on(day)) or any(one.day == day for one in history.treatments):
-        tell_not_come(last, kept.plot.field, "the last day recorded")
-    elif last > (today := day_on(kept.plot.field, None)):
-        typer.echo(
-            f"seen: {last} was planned, and it is {today} on the plot. For another day give --date "
-            "YYYY-MM-DD.",
             err=True,
         )
 
@@ -144,7 +128,7 @@ def _other_days(said: BatchContents, recorded: date) -> str:
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
-    from fieldmon.compute.wording import estimate
+    from fieldmon.compute.wording import estimate, written
     from fieldmon.infestation.learnt import worth_saying
     from fieldmon.monitoring.day_figures import flagged_said
 
@@ -171,6 +155,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     since = "learnt so far" if now.inspected else "believed at first"
     for number, learnt in enumerate(worth_saying(now.learnt)):
         yield f"  {'' if number else since:22} {learnt.sentence()}"
+        if learnt.name == "detection":
+            yield from _of_who_inspects(season, now, written(learnt.value, ".0%"))
     if now.learnt:
         yield f"  {'':22} In brackets: intervals that hold with a chance of 90 %."
     else:
@@ -189,6 +175,17 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
+
+
+def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
+    """Yield what those who inspect on a day find, where they find otherwise than all until then."""
+    by = season.planned_by(now.on)
+    detects = {one.detects for one in [member.robot for member in by.team] or [by.robot]}
+    if detects == {season.history.told(now.day)}:
+        return  # it takes seconds to work out
+    for whose, _, learnt in learnt_of_each(season, now.on):
+        if learnt != of_all:
+            yield f"  {'':22} Inspections{whose or ' of that day'} find {learnt}."
 
 
 def of_treatments(season: Season, now: Status) -> Iterator[str]:

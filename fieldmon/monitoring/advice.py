@@ -64,6 +64,8 @@ class AdviceSettings:
         What can be switched, and what it costs.
     rate_l_ha
         Litres a hectare where it is sprayed.
+    learnt_of
+        The product of which the season learnt how well treating works; empty: it was not learnt.
     """
 
     level: float = 0.05
@@ -71,6 +73,7 @@ class AdviceSettings:
     sprayer: Sprayer = field(default_factory=Sprayer)
     costs: TreatmentCosts = field(default_factory=TreatmentCosts)
     rate_l_ha: float = 300.0
+    learnt_of: str = ""
 
     def __post_init__(self) -> None:
         must_be_rate(self.rate_l_ha)
@@ -93,13 +96,18 @@ class AdviceSettings:
             "days": worded("it stays infested for {days:g} days", days=costs.days),
             "works": worded("treating cleans {works:.0%}", works=costs.works),
         }  # fmt: skip
+        learnt = said.pop("works") if self.learnt_of else ""
         left = {name for name in said if getattr(costs, name) == getattr(usual, name)}
         assumed, told = (
             joined(", ", [one for name, one in said.items() if (name in left) == is_left])
             for is_left in (True, False)
         )
         both = [worded("Assumed: {what}.", what=assumed)] * bool(assumed)
-        return joined(" ", [*both, *[worded("As you said: {what}.", what=told)] * bool(told)])
+        both += [worded("As you said: {what}.", what=told)] * bool(told)
+        of = worded(
+            "As this season learnt of {product}: {what}.", product=self.learnt_of, what=learnt
+        )
+        return joined(" ", [*both, *[of] * bool(learnt)])
 
 
 @dataclass(frozen=True)

@@ -132,6 +132,7 @@ class OpenSeason:
         self._prior: _Prior | None = None
         self._aisles: dict[tuple[float, float], Aisles] = {}
         self._gone_then: dict[int, set[str]] = {}
+        self._planned_as_now: date | None = None
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
@@ -206,7 +207,7 @@ class OpenSeason:
 
         A day is an earlier one once something was recorded of a later one or, if anything was of
         itself, once it is past by the plot's clock. If it was neither planned nor recorded itself,
-        it goes by what counted on the day recorded before it.
+        it goes by what counted on the day recorded before it; but see `as_now`.
         """
         return self._planned_by(self._now(), on)
 
@@ -225,12 +226,27 @@ class OpenSeason:
             return settings_log.marks(db)
         return self._chosen_on(db, on, *_recorded_before(contents, on))
 
+    @contextmanager
+    def as_now(self, on: date) -> Iterator[None]:
+        """Let the day `on` be planned by what counts now, though it is an earlier one.
+
+        If nothing is recorded of it yet, it goes on by the plan that is kept of it.
+        """
+        with self._lock:
+            self._planned_as_now = on
+            try:
+                yield
+            finally:
+                self._planned_as_now = None
+
     def is_earlier(self, on: date) -> bool:
         """Return whether the day `on` goes by what counted then, see `planned_by`."""
         return self._is_earlier(self._now(), on)
 
     def _is_earlier(self, contents: SeasonContents, on: date) -> bool:
         recorded, day = contents.history.inspections.date, np.datetime64(on, "D")
+        if on == self._planned_as_now:
+            return False
         if not len(recorded) or day > recorded[-1]:
             return False
         return bool(day < recorded[-1]) or on < local_clock(self.plot.field).today()
@@ -261,6 +277,14 @@ class OpenSeason:
         """Return the last day on which anything was planned or recorded; at first the first."""
         with self.store.reading() as db:
             return settings_of(db).date(newest_day(db))
+
+    def day_meant(self) -> date:
+        """Return the day that is meant where none is named: the last date, but today at most.
+
+        Where today is before the season it is the last date.
+        """
+        last, today = self.last_date(), local_clock(self.plot.field).today()
+        return last if today < self.settings.begins else min(last, today)
 
     @cached_property
     def label(self) -> RowLabel:

@@ -140,7 +140,7 @@ class SeasonTreatments(OpenSeason):
 
     def _efficacy(self, product: str) -> float:
         """Return how well a product works, as the season learnt it."""
-        known = treatment_effect.learnt_efficacy(self.effects(self.last_date()), product)
+        known = self.learnt_efficacy(self.last_date(), product) if product else None
         if known is None:
             raise SettingError(
                 worded(
@@ -151,6 +151,15 @@ class SeasonTreatments(OpenSeason):
                 )
             )
         return known.efficacy
+
+    def learnt_efficacy(self, on: date, product: str = "") -> TreatmentEffect | None:
+        """Return what inspections up to the evening of `on` tell of how well a product works.
+
+        Where none is named, it is the last one of which they tell. None: they tell of none.
+        """
+        found = self.effects(on)
+        told = [one.product for one in found if one.cured_of and one.product]
+        return treatment_effect.learnt_efficacy(found, product or "".join(told[-1:]))
 
     def treatments(self) -> tuple[KeptTreatment, ...]:
         """Return the treatments that count, in the order in which they ended."""

@@ -72,7 +72,7 @@ def telling_anew(
     if all(was.get(name) == now.get(name) for name in _OF_ALL_DAYS):
         yield
         return
-    on = season.last_date()
+    on = season.day_meant()
     told = _still_there(season, on)
     yield
     if (still := _still_there(season, on)) != told:

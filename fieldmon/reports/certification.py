@@ -64,8 +64,7 @@ class _PlotRecord:
 
     @classmethod
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
-        last = season.last_date()
-        on = last if until is None else until
+        on = season.day_meant() if until is None else until
         done = tuple(one for one in season.treatments() if one.on <= on)
         beware, told = season.cautions(on, units), season.effects(on, units)
         try:
@@ -109,7 +108,9 @@ class _PlotRecord:
 def certification_report(
     seasons: Sequence[Season], units: Units, until: date | None = None
 ) -> Report:
-    """Return the record of seasons up to a day (None: the last of each); nothing is kept by it.
+    """Return the record of seasons up to a day; nothing is kept by it.
+
+    None is the last day of each, today at most.
 
     Raises
     ------

@@ -13,6 +13,7 @@ from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
+from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.planning.members import person
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import maps, words
@@ -39,8 +40,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.units import Units
+    from fieldmon.decisions.labels import ProductLabel
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.monitoring import PlannedAndDone, Season
+    from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.planning.route import Route
 
 #: stands where plants have no row, a stop no time, or somebody no name
@@ -84,6 +87,13 @@ class DayFacts:
     team
         Names of those whose results are shown together, of a team or with codes of their own.
         Nobody went from one to the next: no times are said, and no way is drawn.
+    missed
+        Whether the day is past, and no inspection of it was recorded: its route is not shown.
+    treatments, labels
+        What was treated that day, and what labels allow.
+    infested
+        How many plants of the route are believed infested, those where it hides among them; None:
+        nothing is known to hide.
     """
 
     name: str
@@ -100,6 +110,10 @@ class DayFacts:
     held: PlannedAndDone | None = None
     who: str = ""
     team: tuple[str, ...] = ()
+    missed: bool = False
+    treatments: tuple[KeptTreatment, ...] = ()
+    labels: tuple[ProductLabel, ...] = ()
+    infested: float | None = None
 
     @classmethod
     def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
@@ -123,12 +137,29 @@ class DayFacts:
                 season.plot.field.name, begins,
                 shown, season.evening(on), state,
                 hot_spots(season.plot.grid, state),
-                WorkSettings.of_season(season, on, worked=worked),
+                WorkSettings.of_season(season, on, worked=worked).with_learnt(season, on),
                 len(np.unique(done.plant)), np.unique(done.plant[done.result == FOUND]),
                 worked, results_on(season, on), season.planned_and_done(on),
                 who="" if worked else "".join(names[:1]),
                 team=who_came(season, on, names) if worked else (),
+                missed=was_missed(season, on, today),
+                treatments=treated_on(season, on), labels=season.labels(),
+                infested=float(season.evening_planned_by(on)[shown.plant].sum()),
             )  # fmt: skip
+
+
+def was_missed(season: Season, on: date, today: date | None) -> bool:
+    """Return whether a day is past and no inspection of it was recorded; `today` None: it is not.
+
+    What is past is told by the plot's calendar.
+    """
+    passed = today is not None and on < today
+    return passed and not len(season.history.on(season.settings.day(on)))
+
+
+def treated_on(season: Season, on: date) -> tuple[KeptTreatment, ...]:
+    """Return the treatments of a day."""
+    return tuple(one for one in season.treatments() if one.on == on)
 
 
 def who_came(season: Season, on: date, team: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -155,16 +186,18 @@ def day_report(facts: DayFacts, units: Units) -> Report:
     """Return the report of a day."""
     blocks: list[Block] = [
         *(Paragraph(said, lead=True) for said in _leads(facts, units)),
-        _figures(facts, units),
+        *([] if facts.missed else [_figures(facts, units)]),
         *(Paragraph(said) for said in [assumed_sentence(facts.settings, units)] if said),
+        *treatment_table(facts.treatments, facts.labels, units),
         *_map(facts, units),
     ]
-    if len(facts.route):
+    has_route = len(facts.route) and not facts.missed
+    if has_route:
         blocks.append(_stops(facts))
     if len(facts.found):
         blocks.append(_found(facts))
     blocks += [*settings_blocks(facts.settings, units), NoteLines(words.NOTES)]
-    if len(facts.route):
+    if has_route:
         blocks.append(_every_stop(facts))
     on = facts.begins.date()
     title = worded(words.DAY_TITLE, day=units.day(on))
@@ -173,6 +206,10 @@ def day_report(facts: DayFacts, units: Units) -> Report:
 
 def _leads(facts: DayFacts, units: Units) -> list[str]:
     day = units.day(facts.begins.date())
+    if facts.missed:
+        planned = 0 if facts.held is None else facts.held.planned
+        of_plan = [worded(words.MISSED_PLAN, planned=planned)] * bool(planned)
+        return [worded(words.MISSED, day=day), *of_plan]
     said: list[str] = []
     if facts.inspected:
         numbers = {"inspected": facts.inspected, "found": len(facts.found)}
@@ -203,8 +240,7 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     )  # fmt: skip
     hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
     ahead = KeyFigure(
-        words.FINDS, estimate(route.expected_found),
-        worded(words.OF_INFESTED, n=estimate(route.expected_finds)),
+        words.FINDS, estimate(route.expected_found), _of_infested(facts),
     )  # fmt: skip
     done = KeyFigure(
         words.FOUND_TODAY, figure(len(facts.found)), worded(words.OF_INSPECTED, n=facts.inspected)
@@ -223,12 +259,19 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     )  # fmt: skip
 
 
+def _of_infested(facts: DayFacts) -> str:
+    """Return of how many infested plants the finds are; where it hides in some, how many show."""
+    seen = estimate(facts.route.expected_finds)
+    n = seen if facts.infested is None else estimate(facts.infested)
+    return worded(words.OF_INFESTED if n == seen else words.OF_HIDDEN, n=n, seen=seen)
+
+
 def _map(facts: DayFacts, units: Units) -> list[Block]:
     grid = facts.route.aisles.grid
-    way = None if facts.team else facts.route
+    way = None if facts.team or facts.missed else facts.route
     what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
                    way)  # fmt: skip
-    alt = map_alt(facts.name, facts.state, len(facts.route))
+    alt = map_alt(facts.name, facts.state, 0 if facts.missed else len(facts.route))
     return [
         Illustration("", alt, what.draw, what.heights(80.0, 190.0)),
         legend_block(route=way is not None),
@@ -281,6 +324,29 @@ def which(numbers: list[int], letters: int) -> str:
     if len(said) <= letters:
         return said
     return worded(words.WHICH_MANY, n=len(numbers), low=min(numbers), high=max(numbers))
+
+
+def treatment_table(
+    treatments: Sequence[KeptTreatment], labels: Sequence[ProductLabel], units: Units
+) -> list[Table]:
+    """Return what was treated, the last first, as a table; none of nothing."""
+    rows = []
+    for one in reversed(treatments):
+        first = waits(one, label_of(one, labels)).harvest_from
+        rows.append(
+            (
+                units.day(one.on),
+                one.application.product,
+                figure(int(np.count_nonzero(one.place.plants))),
+                figure(one.efficacy, ".0%"),
+                "" if first is None else units.day(first),
+            )
+        )
+    table = Table(
+        words.TREATMENTS, words.TREATMENT_COLUMNS, tuple(rows), (0.18, 0.34, 0.14, 0.14, 0.2),
+        rest=words.TREATMENTS_REST, left=(0, 1),
+    )  # fmt: skip
+    return [table] if rows else []
 
 
 def _found(facts: DayFacts) -> Table:

@@ -14,7 +14,6 @@ from fieldmon.compute.wording import counted, estimate, figure, joined, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
-from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.day_figures import flagged_said, found_pct
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
@@ -32,7 +31,14 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import NO_ROW, held_in_words, legend_block, map_alt, which
+from fieldmon.reports.day import (
+    NO_ROW,
+    held_in_words,
+    legend_block,
+    map_alt,
+    treatment_table,
+    which,
+)
 from fieldmon.reports.maps import PlotMap
 from fieldmon.reports.sentences import hot_spot_meanings, runs
 from fieldmon.reports.settings_rows import (
@@ -85,24 +91,22 @@ class _Facts:
     def name(self) -> str:
         return self.season.plot.field.name
 
-    @property
+    @cached_property
     def goes_by(self) -> WorkSettings:
-        return self.in_force[-1][1]
+        return self.in_force[-1][1].with_learnt(self.season, self.on)
 
     @cached_property
     def in_force(self) -> list[tuple[date, WorkSettings]]:
         """What counted on each day that was worked and, if it lies ahead, on the last one."""
-        season, learnt = self.season, self.status.learnt
+        season = self.season
         worked = [one.on for one in self.days if one.inspected]
         recorded = season.inspections.date
         is_ahead = not len(recorded) or np.datetime64(self.on, "D") > recorded[-1]
         if not season.was_changed:
             worked = []  # the same on all of them
-        by = [
-            (day, WorkSettings.of_season(season, day, worked=True, learnt=learnt)) for day in worked
-        ]
+        by = [(day, WorkSettings.of_season(season, day, worked=True)) for day in worked]
         if is_ahead or not by:
-            by.append((self.on, WorkSettings.of_season(season, self.on, learnt=learnt)))
+            by.append((self.on, WorkSettings.of_season(season, self.on)))
         return by
 
     @property
@@ -350,16 +354,5 @@ def _treatments(facts: _Facts) -> Block:
     kept = [one for one in facts.season.treatments() if one.day <= facts.status.day]
     if not kept:
         return Listing(words.TREATMENTS, (words.TREATMENTS_NONE,))
-    labels = facts.season.labels()
-    rows = []
-    for one in reversed(kept):
-        first = waits(one, label_of(one, labels)).harvest_from
-        rows.append(
-            (facts.units.day(one.on), one.application.product,
-             figure(int(np.count_nonzero(one.place.plants))), figure(one.efficacy, ".0%"),
-             "" if first is None else facts.units.day(first))
-        )  # fmt: skip
-    return Table(
-        words.TREATMENTS, words.TREATMENT_COLUMNS, tuple(rows), (0.18, 0.34, 0.14, 0.14, 0.2),
-        rest=words.TREATMENTS_REST, left=(0, 1),
-    )  # fmt: skip
+    (table,) = treatment_table(kept, facts.season.labels(), facts.units)
+    return table

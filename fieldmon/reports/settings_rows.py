@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import Worded, figure, joined, worded
@@ -14,11 +14,10 @@ from fieldmon.reports.content import Listing, Table
 from fieldmon.samplers import USUAL, kind_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
     from datetime import date
 
     from fieldmon.compute.units import Units
-    from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.spread import Spread
@@ -53,7 +52,7 @@ class WorkSettings:
     pest_in_weather
         The pest in its weather, by which nights go; None: as `belief` has them.
     learnt_detection
-        What inspections detect, as the season learnt; None: it learnt nothing.
+        What inspections of `robot` detect, as the season learnt; None: it learnt nothing.
     chosen
         Which spacings somebody said by hand, by name (`Plot.chosen`).
     team
@@ -73,31 +72,27 @@ class WorkSettings:
     team: tuple[TeamMember, ...] = ()
 
     @classmethod
-    def of_season(
-        cls,
-        season: Season,
-        on: date,
-        *,
-        worked: bool = False,
-        learnt: Sequence[Learnt] | None = None,
-    ) -> WorkSettings:
+    def of_season(cls, season: Season, on: date, *, worked: bool = False) -> WorkSettings:
         """Return what a season goes by on a day, and what had to be guessed when it began.
 
-        Of a day that was `worked` it is what counted then. `learnt` is what is known already of
-        what the season learnt until then; None: nothing.
+        Of a day that was `worked` it is what counted then. See also `with_learnt`.
         """
         settings, grid = (season.settings_on if worked else season.planned_by)(on), season.plot.grid
-        if learnt is None:
-            learnt = season.learnt(on)
         guessed = (one for one in season.messages() if one.severity == Severity.GUESSED)
         return cls(
             settings.robot, settings.sampler, settings.prior,
             (grid.row_spacing_m, grid.plant_spacing_m), season.assumed(settings),
             settings.belief, tuple(one.sentence for one in guessed), settings.pest_in_weather(),
-            next((one.value for one in learnt if one.name == "detection"), None),
-            season.plot.chosen,
+            chosen=season.plot.chosen,
             team=settings.team,
         )  # fmt: skip
+
+    def with_learnt(self, season: Season, on: date) -> WorkSettings:
+        """Return these with what the season learnt up to the evening of `on`, of who inspects."""
+        if self.team:
+            return self
+        learnt = {one.name: one.value for one in season.learnt(on, self.robot.detects)}
+        return replace(self, learnt_detection=learnt.get("detection"))
 
     def origin(self, setting: str) -> str:
         """Return where the value of a setting comes from, by its name in `Assumed`."""
@@ -215,7 +210,7 @@ def _of_pest(pest_in_weather: PestInWeather, units: Units) -> Iterator[Row]:
         return
     days = weather.local_days()
     first, last = units.day(str(days[0])), units.day(str(days[-1]))
-    yield words.WEATHER, worded(words.WEATHER_DAYS, first=first, last=last), words.FROM_FILE
+    yield words.WEATHER, worded(words.WEATHER_DAYS, first=first, last=last), words.FROM_WEATHER
 
 
 def _from(usual: bool) -> str:  # noqa: FBT001 - one question

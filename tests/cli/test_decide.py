@@ -1,10 +1,12 @@
 """`fieldmon decide`: spray or not, and where."""
 
-from datetime import date
+from datetime import date, timedelta
 
 import geopandas as gpd
+import numpy as np
 import pytest
 
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.advice import AdviceSettings
 from tests.cli.estate import BEGINS
@@ -51,6 +53,29 @@ def test_the_zones_are_written_for_the_sprayer(run, season):
     assert set(zones["RATE"]) <= {0.0, 250.0}
     assert (zones["PRODUCT"] == "soap").all()
     assert "Zones written to z.xml.zip" in out
+
+
+def test_a_treatment_is_taken_to_work_as_the_season_learnt(run, season):
+    """As `fieldmon treat` takes it; of no product it is the last one of which anything is told."""
+    kept, on = Season(season), date.fromisoformat(BEGINS)
+    plants = np.arange(60)
+    for day in (0, 4):  # found again, all of them
+        seen = np.datetime64(on + timedelta(days=day))
+        kept.record(Inspections.of(plants, np.full(60, FOUND), seen), "x")
+    kept.treat(on + timedelta(days=1), 0.8, product="Soap")
+    words = ["decide", season, "--threshold", "5%", "--date", on + timedelta(days=4)]
+    works = kept.learnt_efficacy(on + timedelta(days=4), "soap").efficacy
+    assert works < 0.1
+    learnt = f"As this season learnt of Soap: treating cleans {works:.0%}.".replace("%.", " %.")
+    for more in ([], ["--product", "soap"]):
+        assert learnt in run(*words, *more)[1]
+    for more, said in ((["--product", "oil"], "treating cleans 90 %."),
+                       (["--works", "0.8"], "As you said: treating cleans 80 %.")):  # fmt: skip
+        out = run(*words, *more)[1]
+        assert said in out
+        assert "season learnt" not in out
+    words[-1] = on
+    assert "treating cleans 90 %." in run(*words)[1], "it had not learnt it then"
 
 
 def test_a_threshold_of_leaves_asks_for_leaves_and_then_answers(run, season):

@@ -10,7 +10,7 @@ from fieldmon.compute.wording import written
 from fieldmon.errors import ImportDoubt
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
-from tests.cli.estate import BEGINS, filled_in
+from tests.cli.estate import BEGINS, ZIP, filled_in
 
 
 def test_a_day_from_plan_to_status(run, season, tmp_path):
@@ -32,6 +32,20 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
     assert "10 findings by Ann  r.csv  2 found" in out
     assert "never" in out
     assert "chance it is clean" in out
+
+
+def test_it_is_said_by_what_a_past_day_is_planned_and_how_to_plan_it_otherwise(run, season):
+    kept, first = Season(season), date.fromisoformat(BEGINS)
+    for day, hours in ((0, 2), (2, 1)):
+        run("change", season, "--hours", hours)
+        seen = np.datetime64(first + timedelta(days=day))
+        kept.record(Inspections.of(np.array([day]), np.array([0]), seen), "x")
+    words = ["plan", season, "--date", first + timedelta(days=1), "-o", "r.csv"]
+    said = f"{words[3]} is past and planned by what counted then: hours 2. To plan it by what"
+    assert said in run(*words)[2]
+    assert "counted then" not in run(*words, "--as-now")[2]
+    assert "counted then" not in run(*words)[2]
+    assert "--as-now needs a season" in run("plan", ZIP, "--feature", "Nursery", "--as-now")[2]
 
 
 def test_half_way_the_rest_of_the_day_is_planned(run, season, tmp_path):

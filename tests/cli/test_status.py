@@ -11,7 +11,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
-from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.local_clock import LocalClock, local_clock
 from tests.cli.estate import BEGINS
 from tests.monitoring.seasons import a_season
 
@@ -86,17 +86,58 @@ def test_a_day_recorded_that_has_not_come_is_doubted(run, season, ahead, doubted
     kept.record(Inspections.of(np.array([1]), np.array([1]), on), "typed in")
     code, out, err, _ = run("status", season)
     assert code == 0
-    assert out.startswith(f"Nursery, {on} ")
+    assert out.startswith(f"Nursery, {today} ")
     assert (f"the last day recorded, {on}, has not come" in err) == doubted
+    assert (f"seen: {on} was recorded already, and it is {today}" in err) == doubted
 
 
 def test_a_day_ahead_that_was_only_planned_is_not_to_be_undone(run, season):
     kept = Season(season)
-    on = max(local_clock(kept.plot.field).today(), kept.settings.begins) + timedelta(days=40)
+    today = max(local_clock(kept.plot.field).today(), kept.settings.begins)
+    on = today + timedelta(days=40)
     kept.plan(on)
     code, out, err, _ = run("status", season)
     assert code == 0, err
-    assert out.startswith(f"Nursery, {on} ")
-    assert f"seen: {on} was planned, and it is " in err
+    assert out.startswith(f"Nursery, {today} ")
+    assert f"seen: {on} was planned already, and it is {today}" in err
     assert "fieldmon undo" not in err
     assert run("undo", season)[0] == 2
+    assert "give --date" not in run("status", season, "--date", on)[2]
+
+
+def test_what_inspections_find_is_told_of_who_inspects_too(run, season):
+    kept = Season(season)
+    day = np.datetime64(BEGINS)
+    kept.record(Inspections.of(np.arange(9), np.ones(9, int), day), "x")
+    words = ["status", season, "--date", kept.settings.begins + timedelta(days=1)]
+    assert "Inspections of that day" not in run(*words)[1]
+    assert run("change", season, "--look", "20")[0] == 0
+    now = Season(season)
+    learnt = now.learnt(now.settings.begins, now.settings.robot.detects)
+    (own,) = (one.value for one in learnt if one.name == "detection")
+    assert f"Inspections of that day find {100 * own:.0f} %." in run(*words)[1]
+
+
+def test_nothing_is_told_of_a_day_that_has_not_come_unless_it_is_asked_for(run, season):
+    """Of a decision, a report and a record for a certifier, as of the status."""
+    kept = Season(season)
+    today = max(local_clock(kept.plot.field).today(), kept.settings.begins)
+    kept.plan(today + timedelta(days=40))
+    _, out, err, _ = run("decide", season, "--threshold", "5%")
+    assert out.startswith(f"{today}, after the day's work.")
+    assert f"this is of {today}. For another day give --date" in err
+    for words in ([], ["--certification"]):
+        _, _, err, (made,) = run("report", season, "-o", f"r{len(words)}.html", *words)
+        assert f"this is of {today}. For another day give --until" in err
+        assert f" to {today}" in made.read_text(encoding="utf-8")
+        assert str(today + timedelta(days=40)) not in made.read_text(encoding="utf-8")
+
+
+def test_a_season_all_of_which_lies_ahead_is_told_as_of_its_last_day(season, monkeypatch):
+    kept = Season(season)
+    ahead = kept.settings.begins + timedelta(days=2)
+    kept.plan(ahead)
+    for before, meant in ((1, ahead), (-1, ahead - timedelta(days=1)), (-9, ahead)):
+        today = kept.settings.begins - timedelta(days=before)
+        monkeypatch.setattr(LocalClock, "today", lambda _, today=today: today)
+        assert kept.day_meant() == meant

@@ -196,6 +196,9 @@ def test_what_was_set_is_not_called_assumed():
         "Assumed: a zone costs 0.5, an infested plant loses 0.1 a day, treating cleans 90 %. "
         "As you said: to treat 1 ha costs 50, it stays infested for 10 days."
     )
+    learnt = AdviceSettings(costs=TreatmentCosts(works=0.15), learnt_of="soap").assumed()
+    assert "As you said" not in learnt
+    assert learnt.endswith("14 days. As this season learnt of soap: treating cleans 15 %.")
     dear = AdviceSettings(costs=TreatmentCosts(per_ha=120_000.0)).assumed()
     assert "to treat 1 ha costs 120,000" in dear
     everything = TreatmentCosts(50.0, 1.0, 0.2, 10.0, 0.8)

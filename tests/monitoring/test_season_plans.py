@@ -105,6 +105,20 @@ def test_an_earlier_day_is_planned_by_what_counted_then(season, monkeypatch):
     assert season.plan(on(2), keep=False).scene.robot.hours == 3.0
 
 
+def test_a_forgotten_day_is_planned_by_what_counts_now_if_that_is_asked_for(season):
+    first, team = season.settings, team_of(2)
+    season.change(replace(first, team=team), first)
+    season.record(some_results(season, n=3))
+    season.change(first, season.settings)
+    season.record(some_results(season, day=2, n=3))
+    assert season.planned_by(on(1)).team == team
+    with season.as_now(on(1)):
+        assert season.planned_by(on(1)) == first
+        assert season.planned_by(on(0)).team == team
+        season.plan(on(1))
+    assert season.planned_by(on(1)) == first, "it goes on by the plan that is kept"
+
+
 def test_the_last_worked_day_is_an_earlier_one_once_it_is_past(season, monkeypatch):
     first = season.settings
     season.record(some_results(season, n=3))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.units import Units
+from fieldmon.compute.wording import estimate
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import PlannedAndDone
 from fieldmon.planning.members import TeamMember
@@ -19,6 +20,7 @@ from fieldmon.reports.content import (
     Listing,
     NoteLines,
     Paragraph,
+    Table,
     TickList,
 )
 from fieldmon.reports.day import DayFacts, day_report, which
@@ -68,6 +70,40 @@ def test_a_day_that_is_over_says_what_was_done(worked, last, done, of_worked_day
     label = row_label(worked.plot.grid, found)
     lines = [row[0] for row in table(of_worked_day, "Found that day, by row").rows]
     assert lines == [f"{line}" for line in np.unique(label.line)]
+
+
+def test_a_past_day_with_nothing_recorded_gives_no_orders(worked, last):
+    day = BEGINS + timedelta(days=3)
+    past = DayFacts.of_season(worked, day, last)
+    assert len(past.route)
+    said = day_report(past, Units())
+    assert paragraphs(said)[0] == f"{day} is past, and no inspection of it was recorded."
+    kinds = [type(block) for block in said.sheets[0].blocks]
+    assert not {KeyFigures, TickList} & {*kinds}
+    assert kinds.count(Table) == 1, "that of the settings"
+    kept = day_report(replace(past, held=PlannedAndDone(5, 0, 0, 1.0)), Units())
+    assert paragraphs(kept)[1] == "Stops planned: 5."
+    assert not DayFacts.of_season(worked, day, day).missed, "somebody may still go"
+
+
+def test_a_day_tells_what_was_treated(worked, last, done):
+    day = BEGINS + timedelta(days=2)
+    treated = day_report(DayFacts.of_season(worked, day, last), Units())
+    n = f"{len(worked.plot.grid):,}"
+    assert table(treated, "Treatments").rows == ((f"{day}", "Oil", n, "70 %", ""),)
+    assert not done.treatments
+
+
+def test_where_it_hides_a_day_tells_how_many_of_the_infested_can_be_seen(worked, last, ahead):
+    def note(infested):
+        made = day_report(replace(ahead, infested=infested), Units())
+        return figures(made)["Expected finds"].note
+
+    chance = worked.evening_planned_by(last + timedelta(days=1))
+    assert ahead.infested == pytest.approx(chance[ahead.route.plant].sum())
+    seen = estimate(ahead.route.expected_finds)
+    assert note(500.0) == f"of 500 infested on the route, {seen} so that it can be seen"
+    assert note(None) == note(ahead.route.expected_finds) == f"of {seen} infested on the route"
 
 
 def test_half_a_day_says_both_what_was_done_and_what_is_left(tmp_path):

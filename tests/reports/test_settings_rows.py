@@ -93,6 +93,15 @@ def test_a_season_s_own_are_taken(worked):
     assert made.spacing_m == (worked.plot.grid.row_spacing_m, worked.plot.grid.plant_spacing_m)
 
 
+def test_what_the_season_learnt_is_of_who_inspects(worked, last):
+    """As `fieldmon plan` says it, not of the average of all who inspected so far."""
+    made = WorkSettings.of_season(worked, last)
+    for detects in (0.5, 0.9):
+        own = replace(made, robot=replace(made.robot, detection=detects))
+        (learnt,) = (one for one in worked.learnt(last, detects) if one.name == "detection")
+        assert own.with_learnt(worked, last).learnt_detection == learnt.value
+
+
 def test_a_detection_that_the_season_learnt_stands_beside_the_one_told_where_they_differ():
     told, name = rows(replace(TOLD, learnt_detection=0.841)), "The same, as the season learnt"
     assert name not in told
@@ -116,7 +125,7 @@ def test_a_named_pest_and_its_weather_stand_in_the_place_of_the_usual_nights():
     assert "Two-spotted spider mite, by degree-days" in str(
         with_weather["Pest, by which nights go"]
     )
-    assert with_weather["Its weather"][0] == "2026-11-01 to 2026-11-09"
+    assert with_weather["Its weather"] == ("2026-11-01 to 2026-11-09", "of the weather file")
     assert "Spread to a neighbour, a night" not in with_weather
     without = rows(replace(TOLD, pest_in_weather=PestInWeather(mite)))
     assert without["Its weather"][0] == "none: as its figures hold"

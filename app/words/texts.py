@@ -364,7 +364,8 @@ WISHES_DROP = "As planned before"
 PLOTS_TITLE = Plural("{n} plot", "{n} plots")
 PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days", "expected": "infested"}
-PLOTS_HELP = {"days_since": "days since seen", "expected": "expected infested"}
+PLOTS_HELP = {"days_since": "days since seen",
+              "expected": "expected infested, found and only flagged ones too"}  # fmt: skip
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"

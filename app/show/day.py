@@ -25,11 +25,15 @@ from ..words.units import hours
 from .assumed import mark
 
 if TYPE_CHECKING:
+    from datetime import date
+
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
 
     from ..state.choices import Choices
     from ..state.chosen_day import DayRoute
+
+_WEEK = 7
 
 
 def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
@@ -193,11 +197,26 @@ def reasons(choices: Choices, plan: DayPlan) -> list[str]:
     season = choices.season
     if season is None or not len(plan.route):
         return []
-    done, now = season.history.inspections, np.datetime64(choices.on)
-    lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
-    finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
-    on = [texts.WHY_TODAY if day == choices.on else weekday(day) for day in finds.values()]
+    finds = _found_lately(choices)
+    on = [_said_find(choices, day) for day in finds.values()]
     recorded = season.history.recorded
     seen = None if recorded is None else recorded >= 0
     told = explain(plan.scene, plan.work, np.array([*finds], np.int32), on, seen)
     return [in_words(one) for one in told]
+
+
+def _found_lately(choices: Choices) -> dict[int, date]:
+    """Return the plants found in the week up to the last visit, and when each was found last."""
+    last = chosen_day.last_visit(choices, choices.on)
+    if last is None:
+        return {}
+    done, until = choices.season.history.inspections, np.datetime64(last, "D")
+    lately = (done.result == FOUND) & (done.date <= until) & (done.date > until - _WEEK)
+    return dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
+
+
+def _said_find(choices: Choices, day: date) -> str:
+    """Return the day of a find: by its weekday where that is one of the last seven days."""
+    if not choices.is_today or (choices.on - day).days >= _WEEK:
+        return choices.units.said_day(day, choices.on)
+    return texts.WHY_TODAY if day == choices.on else weekday(day)

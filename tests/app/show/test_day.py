@@ -1,6 +1,7 @@
 """A day in figures and words."""
 
 import re
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
@@ -84,6 +85,22 @@ def test_what_changed_is_the_difference_of_two_days(worked):
     assert day.changes(on(worked, 0)) == [texts.CHANGED_FIRST]
     assert "Nothing was recorded" in day.changes(on(worked, 3))[0]
     assert day.changes(chosen(a_plot())) == []
+
+
+def test_finds_of_the_last_visit_are_the_reason_however_long_ago_it_was(worked):
+    """By their weekday only where no other day is meant by it."""
+    finds = r"around (\w+(?: \d+ Apr)?)'s find"
+
+    def days(choices):
+        return {*re.findall(finds, "\n".join(day.reasons(choices, choices.plan())))}
+
+    assert days(on(worked, 2)) == {"Monday", "Tuesday"}
+    assert days(on(worked, 7)) <= {"Mon 6 Apr", "Tuesday"}
+    later = days(on(worked, 20))
+    assert later
+    assert later <= {"Mon 6 Apr", "Tue 7 Apr"}
+    elsewhere = replace(on(worked, 2), today=BEGINS)
+    assert days(elsewhere) == {"Mon 6 Apr", "Tue 7 Apr"}
 
 
 def test_plants_only_flagged_are_said_beside_those_not_found(tmp_path):

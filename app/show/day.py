@@ -155,36 +155,43 @@ def beside_figures(choices: Choices) -> None:
         st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
 
-def changes(choices: Choices) -> list[str]:
-    """Return sentences on what changed since yesterday."""
-    if choices.season is None:
-        return []
-    if choices.on == choices.season.settings.begins:
-        return [texts.CHANGED_FIRST]
-    yesterday = str(choices.on - timedelta(days=1))
-    before, now = (chosen_day.figures(choices, day) for day in (yesterday, choices.day))
-    on = choices.units.said_day(yesterday)
-    said = []
-    if before.inspected:
-        said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
-    if treated := chosen_day.treated(choices, yesterday):
-        said.append(texts.CHANGED_TREATED.format(n=treated, day=on))
-    said = said or [texts.CHANGED_NONE.format(day=on)]
+def changes(choices: Choices) -> tuple[str, list[str]]:
+    """Return what changed since the last visit before the day: a title, and sentences."""
+    season = choices.season
+    if season is None:
+        return "", []
+    begins, said_day = season.settings.begins, choices.units.said_day
+    visit = chosen_day.last_visit(choices, choices.on - timedelta(days=1))
+    is_past = choices.today is not None and choices.on < choices.today
+    kind = "begun" if visit is None else "before" if is_past else "visit"
+    since = begins if visit is None else visit
+    title = texts.CHANGED[kind].format(day=said_day(since, choices.on))
+    if choices.on == begins:
+        return title, [texts.CHANGED_FIRST]
+    before, now = (chosen_day.figures(choices, day) for day in (str(since), choices.day))
+    found = {"found": before.found, "inspected": before.inspected, "day": said_day(since)}
+    said = [texts.CHANGED_NONE if visit is None else texts.CHANGED_FINDS.format(**found)]
+    treated = {one.on for one in season.treatments() if since <= one.on <= choices.on}
+    said += [
+        texts.CHANGED_TREATED.format(n=chosen_day.treated(choices, str(day)), day=said_day(day))
+        for day in sorted(treated)
+    ]
     expected = {"now": about(now.expected), "before": about(before.expected)}
-    said.append(texts.CHANGED_OUT.format(**expected))
+    said.append(texts.CHANGED_OUT.format(day=said_day(since), **expected))
     said += map(in_words, flagged_said(chosen_day.flagged(choices))[:1])
-    spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (yesterday, choices.day)]
+    spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (str(since), choices.day)]
     if spots[0] != spots[1]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
-    rows = _risen(choices, yesterday)
-    return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
+    if rows := _risen(choices, str(since)):
+        said.append(texts.CHANGED_ROWS.format(rows=rows))
+    return title, said
 
 
-def _risen(choices: Choices, yesterday: str) -> str:
-    """Return the three rows whose mean chance rose most over the night, in words."""
+def _risen(choices: Choices, since: str) -> str:
+    """Return the three rows whose mean chance rose most since an evening, in words."""
     grid = choices.plot.grid
     line = grid.row_line[grid.row]
-    chances = [chosen_day.morning(choices, day) for day in (yesterday, choices.day)]
+    chances = [chosen_day.evening(choices, day) for day in (since, choices.day)]
     total = [np.bincount(line, chance) for chance in chances]
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]

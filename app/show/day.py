@@ -155,6 +155,13 @@ def beside_figures(choices: Choices) -> None:
         st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
 
+def planned_only(choices: Choices) -> None:
+    """Say which days up to the one shown were planned, and nothing is recorded of them."""
+    if missing := chosen_day.unrecorded(choices, choices.on):
+        days = listed(choices.units.said_day(day, choices.on) for day in missing)
+        st.caption(texts.UNRECORDED.format(days=days))
+
+
 def changes(choices: Choices) -> tuple[str, list[str]]:
     """Return what changed since the last visit before the day: a title, and sentences."""
     season = choices.season

@@ -422,13 +422,15 @@ EARLIER_HELP = (
 )
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
-YESTERDAY = "Yesterday"
-STEPS = {"look_back": "Day before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
+STEPS = {"look_back": "Visit before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
          "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
 STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
                 "send": "Send to phone", "record": "Record finds", "report": "Print (PDF)",
                 "next_day": "Plan the next day"}  # fmt: skip
-STEP_NOTHING = "nothing recorded"
+STEP_NOTHING, STEP_NO_VISIT = "nothing recorded", "none recorded"
+STEP_PLANNED_FOR = "Planned for {day}"
+STEP_UNRECORDED = "nothing recorded; if nobody went, record one stop as *could not inspect*"
+UNRECORDED = "Planned, and nothing recorded: {days}."
 STEP_FOUND = Plural(
     "{found:,} found on {inspected:,} plant",
     "{found:,} found on {inspected:,} plants",

@@ -329,6 +329,11 @@ EARLIER_SETTINGS = (
     "This day goes by what counted then: {strategy}, from {starts}. Who works, and how long, is "
     "changed on a later day."
 )
+EARLIER_TEAM = (
+    "This day goes by what counted then, for each of the team. Who works, and how long, is changed "
+    "on a later day."
+)
+EARLIER_MEMBER = "{name}: {strategy}, from {starts}"
 TEAM_SETTINGS = (
     "{name}: {strategy}, from {starts}. How each of a team works stands in its table, which is "
     "changed with `fieldmon change --robots`."
@@ -422,6 +427,7 @@ EARLIER_HELP = (
 )
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
+LAST_VISIT, VISIT_ON = "Last visit", "{day}: {what}"
 STEPS = {"look_back": "Visit before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
          "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
 STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
@@ -463,9 +469,7 @@ CHANGED_FINDS = Plural(
 )  # fmt: skip
 CHANGED_NONE = "No inspection of the days before is recorded."
 CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were treated on {day}.")
-CHANGED_OUT = (
-    "Plants expected to be still infested: {now}; on the evening of {day} it was {before}."
-)
+CHANGED_OUT = "Plants expected to be still infested: {now}; on the evening of {day}: {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most, in percentage points: {rows}."
 DAY_DONE = Plural(

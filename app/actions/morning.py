@@ -62,6 +62,8 @@ def _said(choices: Choices, plan: DayPlan, step: Step) -> str:
     if step.name == LOOK_BACK and (left := morning.left_unsaid(choices)) is not None:
         name = texts.STEP_PLANNED_FOR.format(day=choices.units.said_day(left, choices.on))
         return f"**{name}** {texts.STEP_UNRECORDED}"
+    if step.name == LOOK_BACK and not choices.is_past:
+        name = texts.LAST_VISIT
     return f"**{name}** {_HOW_FAR.get(step.name, _nothing)(choices, plan)}"
 
 
@@ -71,7 +73,8 @@ def _visit(choices: Choices, _: DayPlan) -> str:
         return texts.STEP_NO_VISIT
     was = chosen_day.figures(choices, str(on))
     said = choices.units.said_day(on, choices.on)
-    return listed([said, _recorded(choices, str(on), was.found, was.inspected)])
+    what = _recorded(choices, str(on), was.found, was.inspected)
+    return texts.VISIT_ON.format(day=said, what=what)
 
 
 def _planned(choices: Choices, plan: DayPlan) -> str:

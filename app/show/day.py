@@ -169,8 +169,7 @@ def changes(choices: Choices) -> tuple[str, list[str]]:
         return "", []
     begins, said_day = season.settings.begins, choices.units.said_day
     visit = chosen_day.last_visit(choices, choices.on - timedelta(days=1))
-    is_past = choices.today is not None and choices.on < choices.today
-    kind = "begun" if visit is None else "before" if is_past else "visit"
+    kind = "begun" if visit is None else "before" if choices.is_past else "visit"
     since = begins if visit is None else visit
     title = texts.CHANGED[kind].format(day=said_day(since, choices.on))
     if choices.on == begins:

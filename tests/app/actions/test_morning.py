@@ -103,14 +103,13 @@ def test_a_ticked_plan_is_the_one_kept_with_what_is_left_of_it(season_app, seaso
     assert f"; {n - 5:,} left" in plan()
 
 
-def test_a_treatment_the_day_before_is_said_and_not_that_nothing_was_recorded(season_app, season):
+def test_a_treatment_is_said_where_nothing_was_inspected_yet(season_app, season):
     season().treat(date(2026, 11, 16), 0.8)
     n = len(season().plot.grid)
     season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
     said = texts_of(season_app)
     assert f"{n:,} plants were treated on Mon 16 Nov." in said
-    (before,) = [one.value for one in season_app.markdown if texts.STEPS["look_back"] in one.value]
-    assert before.endswith(texts.STEP_NO_VISIT)
+    assert f"{texts.LAST_VISIT}** {texts.STEP_NO_VISIT}" in said
 
 
 def test_a_planned_day_that_was_forgotten_is_recorded_from_any_later_day(

@@ -83,7 +83,7 @@ def test_what_changed_is_the_difference_of_two_days(worked):
     before, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (0, 1))
     assert title == "Since the last visit, Mon 6 Apr"
     assert f"{before.found} found on 40 plants inspected on Mon 6 Apr." in said
-    assert f"still infested: {now.expected:.0f}; on the evening of Mon 6 Apr it was" in said
+    assert f"still infested: {now.expected:.0f}; on the evening of Mon 6 Apr: " in said
     assert f"{before.expected:.0f}." in said
     assert day.changes(on(worked, 0))[1] == [texts.CHANGED_FIRST]
     assert day.changes(chosen(a_plot())) == ("", [])

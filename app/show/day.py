@@ -157,7 +157,7 @@ def beside_figures(choices: Choices) -> None:
 
 def planned_only(choices: Choices) -> None:
     """Say which days up to the one shown were planned, and nothing is recorded of them."""
-    if missing := chosen_day.unrecorded(choices, choices.on):
+    if missing := chosen_day.planned_only(choices, choices.on):
         days = listed(choices.units.said_day(day, choices.on) for day in missing)
         st.caption(texts.UNRECORDED.format(days=days))
 

@@ -164,9 +164,9 @@ def kept_route(
 
 
 @st.cache_resource(max_entries=_DAYS)
-def unrecorded(path: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
+def planned_only(path: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
     """Return the planned days up to a day of which nothing is recorded."""
-    return _season.unrecorded(np.datetime64(day).item())
+    return _season.planned_only(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=FEW)

@@ -192,11 +192,11 @@ def last_visit(choices: Choices, until: date) -> date | None:
     return days[-1].item() if len(days) else None
 
 
-def unrecorded(choices: Choices, until: date) -> tuple[date, ...]:
+def planned_only(choices: Choices, until: date) -> tuple[date, ...]:
     """Return the planned days up to a date of which nothing is recorded."""
     if choices.today is not None:  # a day that is not over yet will be
         until = min(until, choices.today - timedelta(days=1))
-    return cached.unrecorded(choices.key, choices.revision, str(until), choices.season)
+    return cached.planned_only(choices.key, choices.revision, str(until), choices.season)
 
 
 def n_done(choices: Choices) -> int:

@@ -75,7 +75,7 @@ def last_visit(choices: Choices) -> date | None:
 def left_unsaid(choices: Choices) -> date | None:
     """Return the last planned day of which nothing is recorded, if nothing is of a later one."""
     before = _day_before(choices)
-    missing = chosen_day.unrecorded(choices, before)
+    missing = chosen_day.planned_only(choices, before)
     recorded = choices.season.history.inspections.date
     recorded = recorded[recorded <= np.datetime64(before, "D")]
     is_last = missing and (not len(recorded) or missing[-1] > recorded[-1].item())

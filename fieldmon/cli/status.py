@@ -23,7 +23,7 @@ _DETAILED = 100
 #: plants of which it is listed how results contradict
 _CONTRADICTING = 5
 #: planned days that are listed, the last ones
-_UNRECORDED = 3
+_PLANNED_ONLY = 3
 
 ListBatches = Annotated[
     bool,
@@ -158,7 +158,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"({100 * now.inspected / now.plants:.0f} %), {now.found:,} found infested"
         + (f" ({now.finds:,} finds: some again)" if now.finds > now.found else "")
     )
-    yield from _unrecorded(season, now.on)
+    yield from _planned_only(season, now.on)
     yield (
         f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low:,} to {ahead.high:,} "
         "with a chance of 90 %)"
@@ -194,11 +194,11 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     )
 
 
-def _unrecorded(season: Season, until: date) -> Iterator[str]:
+def _planned_only(season: Season, until: date) -> Iterator[str]:
     """Yield which planned days nothing is recorded of."""
-    if missing := season.unrecorded(until):
-        some = ", ".join(map(str, missing[-_UNRECORDED:]))
-        more = f"{len(missing) - _UNRECORDED} days and " if len(missing) > _UNRECORDED else ""
+    if missing := season.planned_only(until):
+        some = ", ".join(map(str, missing[-_PLANNED_ONLY:]))
+        more = f"{len(missing) - _PLANNED_ONLY} days and " if len(missing) > _PLANNED_ONLY else ""
         yield f"  planned, not recorded  {more}{some}"
         yield f"  {'':22} Record it; if nobody went, record one stop as skipped."
 

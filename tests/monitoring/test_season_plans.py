@@ -173,12 +173,12 @@ def test_planned_days_that_are_over_and_of_which_nothing_is_recorded_are_told(se
         season.plan(on(day))
     season.record(some_results(season, n=1, day=2))
     closed = Inspections.of(np.array([3]), np.array([SKIPPED], np.int8), np.datetime64(on(3)))
-    assert season.unrecorded(on(6)) == (on(0), on(3), on(6))
+    assert season.planned_only(on(6)) == (on(0), on(3), on(6))
     season.record(closed)
-    assert season.unrecorded(on(6)) == (on(0), on(6))
-    assert season.unrecorded(on(5)) == (on(0),)
+    assert season.planned_only(on(6)) == (on(0), on(6))
+    assert season.planned_only(on(5)) == (on(0),)
     clock_on(monkeypatch, 6)
-    assert season.unrecorded(on(6)) == (on(0),), "the last one is not over"
+    assert season.planned_only(on(6)) == (on(0),), "the last one is not over"
 
 
 @pytest.mark.parametrize(("name", "off_s"), [("", 4200.0), ("", -3600.0), ("Ann", 4200.0)])

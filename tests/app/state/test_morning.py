@@ -83,4 +83,4 @@ def test_a_planned_day_is_asked_for_until_a_later_one_or_that_nobody_went_is_rec
     kept.record(closed, "nobody went")
     assert morning.left_unsaid(in_season(kept, on)) is None
     assert morning.last_visit(in_season(kept, on)) is None
-    assert chosen_day.unrecorded(in_season(kept, on), on) == (BEGINS,), "it is told all the same"
+    assert chosen_day.planned_only(in_season(kept, on), on) == (BEGINS,), "it is told all the same"

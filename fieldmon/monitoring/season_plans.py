@@ -164,7 +164,7 @@ class SeasonPlans(OpenSeason):
             return routes.plants(db, last.get(person(who if named is None else named.name)))
 
     def planned_only(self, until: date) -> tuple[date, ...]:
-        """Return the planned days up to a date of which nothing is recorded, in order.
+        """Return the planned days `until` a date of which nothing is recorded, in order.
 
         Each is over on the plot. That a plant could not be inspected is a record, too.
         """

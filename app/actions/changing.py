@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import streamlit as st
@@ -19,6 +20,7 @@ from . import robot_boxes
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
+    from datetime import date
 
     from streamlit.delta_generator import DeltaGenerator
 
@@ -71,8 +73,7 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
     with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         settings = season.settings
         if by != settings:
-            was = strategy_name(by.sampler, by.robot.hours, by.robot.look_s)
-            st.caption(texts.EARLIER_SETTINGS.format(strategy=was, starts=f"{by.starts:%H:%M}"))
+            st.caption(_earlier(by, choices.on))
             return
         wanted, hours = (
             _wanted(name, settings, work) if choices.who is None else _wanted_of_team(name, choices)
@@ -86,6 +87,23 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
                     season.change(wanted, settings)
                     st.rerun()
         _offer_undo(choices)
+
+
+def _earlier(by: MonitoringSettings, on: date) -> str:
+    """Return by what an earlier day goes, of each who worked."""
+    if not by.team:
+        was = strategy_name(by.sampler, by.robot.hours, by.robot.look_s)
+        return texts.EARLIER_SETTINGS.format(strategy=was, starts=f"{by.starts:%H:%M}")
+    begins = datetime.combine(on, by.starts)
+    each = [
+        texts.EARLIER_MEMBER.format(
+            name=texts.isolated(one.name),
+            strategy=strategy_name(by.sampler, one.robot.hours, one.robot.look_s),
+            starts=f"{begins + timedelta(seconds=one.starts_s):%H:%M}",
+        )
+        for one in by.team
+    ]
+    return "\n- ".join([f"{texts.EARLIER_TEAM}\n", *each])
 
 
 def _wanted_of_team(

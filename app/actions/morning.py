@@ -21,13 +21,13 @@ from ..state import (
     work_day,
 )
 from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
-from ..state.work_day import Calendar
 from ..words import texts
 from ..words.language import listed
 from . import acting, beginning, handing_out
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from datetime import date
 
     from fieldmon.planning.plan import DayPlan
 
@@ -59,14 +59,22 @@ def _sign(step: Step) -> str:
 
 def _said(choices: Choices, plan: DayPlan, step: Step) -> str:
     name = texts.STEPS[step.name]
-    if step.name == LOOK_BACK and choices.is_today:
-        name = texts.YESTERDAY
+    if step.name == LOOK_BACK and (left := morning.left_unsaid(choices)) is not None:
+        name = texts.STEP_PLANNED_FOR.format(day=choices.units.said_day(left, choices.on))
+        return f"**{name}** {texts.STEP_UNRECORDED}"
+    if step.name == LOOK_BACK and not choices.is_past:
+        name = texts.LAST_VISIT
     return f"**{name}** {_HOW_FAR.get(step.name, _nothing)(choices, plan)}"
 
 
-def _day_before(choices: Choices, _: DayPlan) -> str:
-    before = morning.day_before(choices)
-    return _recorded(choices, str(before.on), before.found, before.inspected)
+def _visit(choices: Choices, _: DayPlan) -> str:
+    on = morning.last_visit(choices)
+    if on is None:
+        return texts.STEP_NO_VISIT
+    was = chosen_day.figures(choices, str(on))
+    said = choices.units.said_day(on, choices.on)
+    what = _recorded(choices, str(on), was.found, was.inspected)
+    return texts.VISIT_ON.format(day=said, what=what)
 
 
 def _planned(choices: Choices, plan: DayPlan) -> str:
@@ -102,7 +110,7 @@ def _nothing(*_: object) -> str:
 
 
 _HOW_FAR: dict[str, Callable[[Choices, DayPlan], str]] = {
-    LOOK_BACK: _day_before, PLAN: _planned, RECORD: _today,
+    LOOK_BACK: _visit, PLAN: _planned, RECORD: _today,
 }  # fmt: skip
 
 
@@ -120,16 +128,14 @@ def _pressed(step: Step, label: str) -> bool:
 
 
 def _look_back(choices: Choices, _: DayPlan, step: Step) -> None:
-    if step.next:
-        _button(step, texts.STEP_BUTTONS[RECORD], _record_day_before, choices)
+    if (left := morning.left_unsaid(choices)) is not None:
+        _button(step, texts.STEP_BUTTONS[RECORD], _record_of, left)
     else:
         _button(step, texts.STEP_BUTTONS[LOOK_BACK], rooms.turn_to, "season")
 
 
-def _record_day_before(choices: Choices) -> None:
-    source = plot_source.chosen()
-    on = work_day.of(source, Calendar(choices.today or choices.on))
-    work_day.choose(source, on - timedelta(days=1))
+def _record_of(on: date) -> None:
+    work_day.choose(plot_source.chosen(), on)
     rooms.open_part("record")
 
 

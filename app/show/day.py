@@ -25,11 +25,15 @@ from ..words.units import hours
 from .assumed import mark
 
 if TYPE_CHECKING:
+    from datetime import date
+
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
 
     from ..state.choices import Choices
     from ..state.chosen_day import DayRoute
+
+_WEEK = 7
 
 
 def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
@@ -151,36 +155,49 @@ def beside_figures(choices: Choices) -> None:
         st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
 
-def changes(choices: Choices) -> list[str]:
-    """Return sentences on what changed since yesterday."""
-    if choices.season is None:
-        return []
-    if choices.on == choices.season.settings.begins:
-        return [texts.CHANGED_FIRST]
-    yesterday = str(choices.on - timedelta(days=1))
-    before, now = (chosen_day.figures(choices, day) for day in (yesterday, choices.day))
-    on = choices.units.said_day(yesterday)
-    said = []
-    if before.inspected:
-        said = [texts.CHANGED_FINDS.format(found=before.found, inspected=before.inspected, day=on)]
-    if treated := chosen_day.treated(choices, yesterday):
-        said.append(texts.CHANGED_TREATED.format(n=treated, day=on))
-    said = said or [texts.CHANGED_NONE.format(day=on)]
+def planned_only(choices: Choices) -> None:
+    """Say which days up to the one shown were planned, and nothing is recorded of them."""
+    if missing := chosen_day.planned_only(choices, choices.on):
+        days = listed(choices.units.said_day(day, choices.on) for day in missing)
+        st.caption(texts.UNRECORDED.format(days=days))
+
+
+def changes(choices: Choices) -> tuple[str, list[str]]:
+    """Return what changed since the last visit before the day: a title, and sentences."""
+    season = choices.season
+    if season is None:
+        return "", []
+    begins, said_day = season.settings.begins, choices.units.said_day
+    visit = chosen_day.last_visit(choices, choices.on - timedelta(days=1))
+    kind = "begun" if visit is None else "before" if choices.is_past else "visit"
+    since = begins if visit is None else visit
+    title = texts.CHANGED[kind].format(day=said_day(since, choices.on))
+    if choices.on == begins:
+        return title, [texts.CHANGED_FIRST]
+    before, now = (chosen_day.figures(choices, day) for day in (str(since), choices.day))
+    found = {"found": before.found, "inspected": before.inspected, "day": said_day(since)}
+    said = [texts.CHANGED_NONE if visit is None else texts.CHANGED_FINDS.format(**found)]
+    treated = {one.on for one in season.treatments() if since <= one.on <= choices.on}
+    said += [
+        texts.CHANGED_TREATED.format(n=chosen_day.treated(choices, str(day)), day=said_day(day))
+        for day in sorted(treated)
+    ]
     expected = {"now": about(now.expected), "before": about(before.expected)}
-    said.append(texts.CHANGED_OUT.format(**expected))
+    said.append(texts.CHANGED_OUT.format(day=said_day(since), **expected))
     said += map(in_words, flagged_said(chosen_day.flagged(choices))[:1])
-    spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (yesterday, choices.day)]
+    spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (str(since), choices.day)]
     if spots[0] != spots[1]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
-    rows = _risen(choices, yesterday)
-    return [*said, texts.CHANGED_ROWS.format(rows=rows)] if rows else said
+    if rows := _risen(choices, str(since)):
+        said.append(texts.CHANGED_ROWS.format(rows=rows))
+    return title, said
 
 
-def _risen(choices: Choices, yesterday: str) -> str:
-    """Return the three rows whose mean chance rose most over the night, in words."""
+def _risen(choices: Choices, since: str) -> str:
+    """Return the three rows whose mean chance rose most since an evening, in words."""
     grid = choices.plot.grid
     line = grid.row_line[grid.row]
-    chances = [chosen_day.morning(choices, day) for day in (yesterday, choices.day)]
+    chances = [chosen_day.evening(choices, day) for day in (since, choices.day)]
     total = [np.bincount(line, chance) for chance in chances]
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
@@ -193,11 +210,26 @@ def reasons(choices: Choices, plan: DayPlan) -> list[str]:
     season = choices.season
     if season is None or not len(plan.route):
         return []
-    done, now = season.history.inspections, np.datetime64(choices.on)
-    lately = (done.result == FOUND) & (done.date <= now) & (done.date > now - 7)
-    finds = dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
-    on = [texts.WHY_TODAY if day == choices.on else weekday(day) for day in finds.values()]
+    finds = _found_lately(choices)
+    on = [_said_find(choices, day) for day in finds.values()]
     recorded = season.history.recorded
     seen = None if recorded is None else recorded >= 0
     told = explain(plan.scene, plan.work, np.array([*finds], np.int32), on, seen)
     return [in_words(one) for one in told]
+
+
+def _found_lately(choices: Choices) -> dict[int, date]:
+    """Return the plants found in the week up to the last visit, and when each was found last."""
+    last = chosen_day.last_visit(choices, choices.on)
+    if last is None:
+        return {}
+    done, until = choices.season.history.inspections, np.datetime64(last, "D")
+    lately = (done.result == FOUND) & (done.date <= until) & (done.date > until - _WEEK)
+    return dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
+
+
+def _said_find(choices: Choices, day: date) -> str:
+    """Return the day of a find: by its weekday where that is one of the last seven days."""
+    if not choices.is_today or (choices.on - day).days >= _WEEK:
+        return choices.units.said_day(day, choices.on)
+    return texts.WHY_TODAY if day == choices.on else weekday(day)

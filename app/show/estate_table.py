@@ -6,19 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
-import shapely
 import streamlit as st
 
 from fieldmon.compute.units import AREAS_M2
 from fieldmon.compute.wording import digits_of_estimate
-from fieldmon.io.rasters.pixels import M_PER_DEGREE
+from fieldmon.io.parse.geometry import areas_m2
 
 from ..state.chosen_units import units
 from ..words import texts
 
 if TYPE_CHECKING:
-    from shapely import MultiPolygon
-
     from ..state.estate import PlotState
     from ..state.shared_plots import PlannedTurn
 
@@ -49,7 +46,7 @@ def of(
             how[more[k]] = st.column_config.TextColumn(width=_PLANNED_PX[k])
         how[more["finds"]] = written(format="localized", width=_PLANNED_PX["finds"])
         return pd.DataFrame(columns), how
-    columns[area] = [_area(plot.outline) for plot in plots]
+    columns[area] = _areas(plots)
     how[area] = written(format="localized", width=_PX["area"], help=texts.AREA_IS)
     if any(plot.expected is not None for plot in plots):
         columns[names["days_since"]] = [plot.days_since for plot in plots]
@@ -73,11 +70,10 @@ def shortened(name: str) -> str:
     return name if len(name) <= _LETTERS + 1 else f"{name[:half]}…{name[-half:]}"
 
 
-def _area(outline: MultiPolygon) -> float:
-    """Return an area in the chosen unit, as a number of three digits."""
-    lat = outline.centroid.y
-    m2 = shapely.area(outline) * M_PER_DEGREE**2 * np.cos(np.deg2rad(lat))
-    return float(f"{m2 / AREAS_M2[units().area]:.3g}")
+def _areas(plots: list[PlotState]) -> list[float]:
+    """Return the areas of plots in the chosen unit, as numbers of three digits."""
+    of_each = areas_m2(np.array([plot.outline for plot in plots], dtype=object))
+    return [float(f"{m2 / AREAS_M2[units().area]:.3g}") for m2 in of_each.tolist()]
 
 
 def _rounded(value: float | None) -> float | None:

@@ -28,6 +28,7 @@ from . import opened_seasons
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from datetime import date
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -160,6 +161,12 @@ def kept_route(
     """Return the plants of the route that was given out for a day; empty if none was."""
     day, who = of
     return _season.kept_route(np.datetime64(day).item(), who or "")
+
+
+@st.cache_resource(max_entries=_DAYS)
+def planned_only(path: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
+    """Return the planned days up to a day of which nothing is recorded."""
+    return _season.planned_only(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=FEW)

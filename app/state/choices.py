@@ -93,6 +93,11 @@ class Choices:
         return self.today is None or self.on == self.today
 
     @property
+    def is_past(self) -> bool:
+        """Return whether the day is over on the plot."""
+        return self.today is not None and self.on < self.today
+
+    @property
     def clock(self) -> LocalClock:
         """Return the clock of the plot's time zone."""
         return local_clock(self.plot.field)
@@ -117,7 +122,7 @@ class Choices:
     def wishes(self) -> Wishes:
         """Return what people want of the day besides, the plants to be photographed among it."""
         picked = wishes.of(self.place, self.day)
-        if self.season is None or (self.today is not None and self.on < self.today):
+        if self.season is None or self.is_past:
             return picked
         asked = {one.plant for one in photos_asked.photos_asked(self.season)}
         return Wishes(tuple(sorted({*picked.wanted, *asked} - {*picked.unwanted})), picked.unwanted)

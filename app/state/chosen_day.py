@@ -112,7 +112,12 @@ def chance(choices: Choices) -> cached.Array:
     """Return ``(n,)`` what is believed on the day, after what was recorded of it."""
     if choices.season is None:
         return choices.plan().chance
-    return cached.evening(choices.key, choices.revision, choices.day, choices.season)
+    return evening(choices, choices.day)
+
+
+def evening(choices: Choices, day: str) -> cached.Array:
+    """Return ``(n,)`` what a season believes on the evening of a day (ISO)."""
+    return cached.evening(choices.key, choices.revision, day, choices.season)
 
 
 def level_range(choices: Choices) -> LevelRange:
@@ -178,6 +183,20 @@ def counts(choices: Choices) -> tuple[cached.Array, cached.Array]:
 def progress(choices: Choices) -> Progress:
     """Return how far a season's inspections are."""
     return cached.progress(choices.key, choices.revision, choices.day, choices.season)
+
+
+def last_visit(choices: Choices, until: date) -> date | None:
+    """Return the last day up to a date on which any plant was inspected; None: there is none."""
+    days = choices.season.history.inspections.inspected.date
+    days = days[days <= np.datetime64(until, "D")]
+    return days[-1].item() if len(days) else None
+
+
+def planned_only(choices: Choices, until: date) -> tuple[date, ...]:
+    """Return the planned days up to a date of which nothing is recorded."""
+    if choices.today is not None:  # a day that is not over yet will be
+        until = min(until, choices.today - timedelta(days=1))
+    return cached.planned_only(choices.key, choices.revision, str(until), choices.season)
 
 
 def n_done(choices: Choices) -> int:

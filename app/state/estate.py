@@ -43,7 +43,8 @@ class PlotState:
     days_since
         Days since a plant of it was inspected; None: never.
     expected
-        Plants still infested, as expected; None: nobody asked yet.
+        Plants still infested, as expected, with those found and only flagged; None: nobody asked
+        yet.
     """
 
     name: str
@@ -112,14 +113,15 @@ def _of_season(name: str, season: Season) -> PlotState:
     today = local_clock(season.plot.field).today()
     # nothing is known of a season before its first day
     on = max(today, season.settings.begins)
-    figures = cached.day_figures(str(season.path), season.revision, str(on), season)
+    of = str(season.path), season.revision, str(on), season
+    expected = cached.day_figures(*of).expected + cached.flagged(*of)
     dates = season.history.inspections.date
     seen = None
     if len(dates):
         seen = int((np.datetime64(today) - dates.max()) / np.timedelta64(1, "D"))
     return PlotState(
         name, name, season.plot.field.boundary, None,
-        None if seen is None else max(seen, 0), figures.expected,
+        None if seen is None else max(seen, 0), expected,
     )  # fmt: skip
 
 

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
+import numpy as np
 import streamlit as st
 
-from . import cached, chosen_day
+from . import chosen_day
 
 if TYPE_CHECKING:
-    from fieldmon.monitoring import DayFigures
+    from datetime import date
+
     from fieldmon.planning.plan import DayPlan
 
     from .choices import Choices
@@ -39,7 +41,7 @@ def steps(choices: Choices, plan: DayPlan) -> list[Step]:
     done = _in_season(choices, plan) if choices.season is not None else _without(choices, plan)
     first = next((name for name, is_done in done.items() if not is_done), None)
     return [
-        Step(name, is_done, name == first, name == LOOK_BACK and not day_before(choices).inspected)
+        Step(name, is_done, name == first, name == LOOK_BACK and last_visit(choices) is None)
         for name, is_done in done.items()
     ]
 
@@ -57,7 +59,7 @@ def _in_season(choices: Choices, plan: DayPlan) -> dict[str, bool]:
     over = not len(plan.route)
     done = {}
     if choices.on > choices.season.settings.begins:
-        done[LOOK_BACK] = not left_unsaid(choices)
+        done[LOOK_BACK] = left_unsaid(choices) is None
     done[PLAN] = worked or chosen_day.is_given_out(choices, plan)
     if not over:
         done[SEND] = worked or did(choices, SEND)
@@ -65,16 +67,23 @@ def _in_season(choices: Choices, plan: DayPlan) -> dict[str, bool]:
     return done | {NEXT_DAY: False} if worked and over else done
 
 
-def day_before(choices: Choices) -> DayFigures:
-    """Return the day before in figures."""
-    return chosen_day.figures(choices, str(choices.on - timedelta(days=1)))
+def last_visit(choices: Choices) -> date | None:
+    """Return the last day before the one shown on which any plant was inspected."""
+    return chosen_day.last_visit(choices, _day_before(choices))
 
 
-def left_unsaid(choices: Choices) -> bool:
-    """Return whether a route was kept for the day before, and nothing recorded of it."""
-    before = str(choices.on - timedelta(days=1))
-    kept = cached.kept_route(choices.key, choices.revision, (before, choices.who), choices.season)
-    return bool(len(kept)) and not day_before(choices).inspected
+def left_unsaid(choices: Choices) -> date | None:
+    """Return the last planned day of which nothing is recorded, if nothing is of a later one."""
+    before = _day_before(choices)
+    missing = chosen_day.planned_only(choices, before)
+    recorded = choices.season.history.inspections.date
+    recorded = recorded[recorded <= np.datetime64(before, "D")]
+    is_last = missing and (not len(recorded) or missing[-1] > recorded[-1].item())
+    return missing[-1] if is_last else None
+
+
+def _day_before(choices: Choices) -> date:
+    return choices.on - timedelta(days=1)
 
 
 def did(choices: Choices, name: str) -> bool:

@@ -32,6 +32,7 @@ def show(choices: Choices) -> None:
     days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
     _figures(choices, days[-1], progress)
     show_day.beside_figures(choices)
+    show_day.planned_only(choices)
     cautions.show(choices)
     cautions.show_treatments(choices)
     assuming.show(choices)

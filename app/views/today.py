@@ -44,8 +44,7 @@ def show(choices: Choices) -> None:
     if choices.season is None:
         beginning.show(choices)
     else:
-        for title, said in ((texts.WHY, day.reasons(choices, plan)),
-                            (texts.CHANGED, day.changes(choices))):  # fmt: skip
+        for title, said in ((texts.WHY, day.reasons(choices, plan)), day.changes(choices)):
             if said:
                 st.markdown(f"### {title}")
                 st.markdown("\n".join(f"- {sentence}" for sentence in said))

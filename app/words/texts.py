@@ -329,6 +329,11 @@ EARLIER_SETTINGS = (
     "This day goes by what counted then: {strategy}, from {starts}. Who works, and how long, is "
     "changed on a later day."
 )
+EARLIER_TEAM = (
+    "This day goes by what counted then, for each of the team. Who works, and how long, is changed "
+    "on a later day."
+)
+EARLIER_MEMBER = "{name}: {strategy}, from {starts}"
 TEAM_SETTINGS = (
     "{name}: {strategy}, from {starts}. How each of a team works stands in its table, which is "
     "changed with `fieldmon change --robots`."
@@ -364,7 +369,8 @@ WISHES_DROP = "As planned before"
 PLOTS_TITLE = Plural("{n} plot", "{n} plots")
 PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days", "expected": "infested"}
-PLOTS_HELP = {"days_since": "days since seen", "expected": "expected infested"}
+PLOTS_HELP = {"days_since": "days since seen",
+              "expected": "expected infested, found and only flagged ones too"}  # fmt: skip
 PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
                 "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
@@ -421,13 +427,16 @@ EARLIER_HELP = (
 )
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
-YESTERDAY = "Yesterday"
-STEPS = {"look_back": "Day before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
+LAST_VISIT, VISIT_ON = "Last visit", "{day}: {what}"
+STEPS = {"look_back": "Visit before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
          "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
 STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
                 "send": "Send to phone", "record": "Record finds", "report": "Print (PDF)",
                 "next_day": "Plan the next day"}  # fmt: skip
-STEP_NOTHING = "nothing recorded"
+STEP_NOTHING, STEP_NO_VISIT = "nothing recorded", "none recorded"
+STEP_PLANNED_FOR = "Planned for {day}"
+STEP_UNRECORDED = "nothing recorded; if nobody went, record one stop as *could not inspect*"
+UNRECORDED = "Planned, and nothing recorded: {days}."
 STEP_FOUND = Plural(
     "{found:,} found on {inspected:,} plant",
     "{found:,} found on {inspected:,} plants",
@@ -451,15 +460,16 @@ SEND_ALONE = (
 )
 SEND_FILE = "**Or as a file**, for phones, robots and paper:"
 WHY, WHY_TODAY = "Why there", "today"
-CHANGED = "Since yesterday"
-CHANGED_FIRST = "This is the first day of the season; from tomorrow, changes stand here."
+CHANGED = {"visit": "Since the last visit, {day}", "before": "Since the visit before, {day}",
+           "begun": "Since the season began, {day}"}  # fmt: skip
+CHANGED_FIRST = "This is the first day of the season; from the next day on, changes stand here."
 CHANGED_FINDS = Plural(
     "{found:,} found on {inspected:,} plant inspected on {day}.",
     "{found:,} found on {inspected:,} plants inspected on {day}.", by="inspected",
 )  # fmt: skip
-CHANGED_NONE = "Nothing was recorded on {day}."
+CHANGED_NONE = "No inspection of the days before is recorded."
 CHANGED_TREATED = Plural("{n:,} plant was treated on {day}.", "{n:,} plants were treated on {day}.")
-CHANGED_OUT = "Plants expected to be still infested: {now}, the day before {before}."
+CHANGED_OUT = "Plants expected to be still infested: {now}; on the evening of {day}: {before}."
 CHANGED_HOT = "Hot spots: {now} after {before}."
 CHANGED_ROWS = "Rows whose chance rose most, in percentage points: {rows}."
 DAY_DONE = Plural(

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _DETAILED = 100
 #: plants of which it is listed how results contradict
 _CONTRADICTING = 5
+#: planned days that are listed, the last ones
+_PLANNED_ONLY = 3
 
 ListBatches = Annotated[
     bool,
@@ -140,6 +142,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"({100 * now.inspected / now.plants:.0f} %), {now.found:,} found infested"
         + (f" ({now.finds:,} finds: some again)" if now.finds > now.found else "")
     )
+    yield from _planned_only(season, now.on)
     yield (
         f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low:,} to {ahead.high:,} "
         "with a chance of 90 %)"
@@ -186,6 +189,15 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
     for whose, _, learnt in learnt_of_each(season, now.on):
         if learnt != of_all:
             yield f"  {'':22} Inspections{whose or ' of that day'} find {learnt}."
+
+
+def _planned_only(season: Season, until: date) -> Iterator[str]:
+    """Yield which planned days nothing is recorded of."""
+    if missing := season.planned_only(until):
+        some = ", ".join(map(str, missing[-_PLANNED_ONLY:]))
+        more = f"{len(missing) - _PLANNED_ONLY} days and " if len(missing) > _PLANNED_ONLY else ""
+        yield f"  planned, not recorded  {more}{some}"
+        yield f"  {'':22} Record it; if nobody went, record one stop as skipped."
 
 
 def of_treatments(season: Season, now: Status) -> Iterator[str]:

@@ -110,6 +110,12 @@ def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
     return last is not None and last.digest == _digest(today)
 
 
+def days(db: sqlite3.Connection) -> NDArray[np.int64]:
+    """Return the days ``(k,)`` of which a route is kept, in order."""
+    rows = db.execute("SELECT DISTINCT day FROM routes ORDER BY day")
+    return np.array([day for (day,) in rows], np.int64)
+
+
 class KeptRoute(NamedTuple):
     """A route that is kept: its number in the file, which of its day it is, its digest, its begin.
 

@@ -163,6 +163,19 @@ class SeasonPlans(OpenSeason):
             last = routes.kept_last(db, settings.day(on))
             return routes.plants(db, last.get(person(who if named is None else named.name)))
 
+    def planned_only(self, until: date) -> tuple[date, ...]:
+        """Return the planned days `until` a date of which nothing is recorded, in order.
+
+        Each is over on the plot. That a plant could not be inspected is a record, too.
+        """
+        today = local_clock(self.plot.field).today()
+        with self._lock, self.store.reading() as db:  # both of one moment
+            contents = self._read(db)
+            planned = routes.days(db)
+        missing = planned[~np.isin(planned, contents.history.days)]
+        dates = map(contents.settings.date, missing.tolist())
+        return tuple(day for day in dates if day <= until and day < today)
+
     def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
         """Return who has a code for work on the day `on` now, by name, and of which rows."""
         with self.store.reading() as db:

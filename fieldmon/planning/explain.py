@@ -129,12 +129,13 @@ def _block(
     if never == len(plants):
         return worded("{plants} {where}: never inspected yet.", plants=plants_said, where=where)
     said = [worded("{n} known from records only", n=known)] if known else []
-    if not unseen.all():
-        days = round(float(np.median(scene.day - last[~unseen])))
-        said = [worded("not inspected for {days}", days=counted(days, "day")), *said]
-    if never and known:
+    if seen := len(plants) - never - known:
+        days = counted(round(float(np.median(scene.day - last[~unseen]))), "day")
+        since = worded("not inspected for {days}", days=days)
+        if seen < len(plants):
+            since = worded("{n} not inspected for {days}", n=seen, days=days)
+        said = [since, *said]
+    if never:
         said.append(worded("{n} never inspected yet", n=never))
-    elif never:
-        said.append(worded("{n} of them never inspected yet", n=never))
     all_said = joined(", ", said)
     return worded("{plants} {where}: {said}.", plants=plants_said, where=where, said=all_said)

@@ -250,6 +250,9 @@ def _went(facts: _Facts) -> Iterator[Block]:
         days = counted(len(held), "day")
         said = worded(words.PLANNED_DONE, **held_in_words(held))
         yield Paragraph(joined(" ", (worded(words.PLANNED_DAYS, days=days), said)))
+    if missing := facts.season.planned_only(facts.on):
+        listed = ", ".join(map(facts.units.day, missing))
+        yield Paragraph(worded(words.PLANNED_UNRECORDED, days=listed))
     yield _days(facts)
 
 

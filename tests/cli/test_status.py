@@ -55,6 +55,19 @@ def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
     assert "About 10 more plants, which were found and only flagged, are still" in treated
 
 
+def test_planned_days_of_which_nothing_is_recorded_are_told_the_last_three(tmp_path):
+    kept = a_season(tmp_path / "s.gpkg")
+    days = [kept.settings.begins + timedelta(days=k) for k in range(5)]
+    for n, day in enumerate(days[:2]):
+        kept.plan(day)
+        told = [one for one in lines(kept, kept.status(day)) if "not recorded" in one]
+        assert told == [f"  planned, not recorded  {', '.join(map(str, days[: n + 1]))}"]
+    for day in days[2:]:
+        kept.plan(day)
+    said = "\n".join(lines(kept, kept.status(days[-1])))
+    assert f"planned, not recorded  2 days and {days[2]}, {days[3]}, {days[4]}\n" in said
+
+
 def test_contradictions_and_days_and_people_of_batches_are_told(run, season):
     """The day before's work is recorded late, by two people, and a third says otherwise."""
     kept, day = Season(season), np.datetime64(BEGINS)

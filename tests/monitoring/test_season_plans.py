@@ -182,6 +182,19 @@ def test_a_kept_plan_is_held_to_what_was_done_be_it_that_a_plant_could_not_be_in
     assert Season(season.path).planned_and_done(on(1)) is None
 
 
+def test_planned_days_that_are_over_and_of_which_nothing_is_recorded_are_told(season, monkeypatch):
+    for day in (0, 2, 3, 6):
+        season.plan(on(day))
+    season.record(some_results(season, n=1, day=2))
+    closed = Inspections.of(np.array([3]), np.array([SKIPPED], np.int8), np.datetime64(on(3)))
+    assert season.planned_only(on(6)) == (on(0), on(3), on(6))
+    season.record(closed)
+    assert season.planned_only(on(6)) == (on(0), on(6))
+    assert season.planned_only(on(5)) == (on(0),)
+    clock_on(monkeypatch, 6)
+    assert season.planned_only(on(6)) == (on(0),), "the last one is not over"
+
+
 @pytest.mark.parametrize(("name", "off_s"), [("", 4200.0), ("", -3600.0), ("Ann", 4200.0)])
 def test_the_hours_of_a_day_that_began_late_or_early_are_those_of_its_work(season, name, off_s):
     if name:

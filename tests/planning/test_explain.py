@@ -114,11 +114,10 @@ def test_a_block_says_for_how_long_and_how_many_never_by_counting_plant_by_plant
     known = sum(last[p] == NEVER and recorded[p] for p in plants)
     never = sum(last[p] == NEVER and not recorded[p] for p in plants)
     parts = [f"not inspected for {round(np.median(since))} days"]
+    if known or never:
+        parts = [f"{len(since)} {parts[0]}"]
     parts += [f"{known} known from records only"] if known else []
-    if never:
-        parts.append(
-            f"{never} never inspected yet" if known else f"{never} of them never inspected yet"
-        )
+    parts += [f"{never} never inspected yet"] if never else []
     rows = plants // 30 + 1
     where = f"in row {rows[0]}" if row else f"in rows {rows.min()} to {rows.max()}"
     expected = f"25 plants {where}: {', '.join(parts)}."

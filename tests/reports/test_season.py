@@ -171,6 +171,14 @@ def test_all_days_are_held_to_their_plans(of_season, worked):
     )
 
 
+def test_a_planned_day_of_which_nothing_is_recorded_is_told_beside_them(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    season.plan(BEGINS)
+    report = season_report(season, BEGINS + timedelta(days=4), Units())
+    (said,) = on_sheet(report, 1, Paragraph)
+    assert said.text == f"Planned, and nothing recorded: {Units().day(BEGINS)}."
+
+
 def test_a_period_goes_by_what_was_in_force_in_it_and_tells_of_a_change(tmp_path):
     season = a_season(tmp_path / "s.gpkg")
     first = season.settings

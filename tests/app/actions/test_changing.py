@@ -169,6 +169,21 @@ def test_an_earlier_day_goes_by_what_counted_then_and_says_so(season):
     assert metric(app, texts.PLANTS_TO_INSPECT) != few
 
 
+@pytest.mark.usefixtures("season_app")
+def test_an_earlier_day_of_a_team_says_how_each_worked(season):
+    kept = season()
+    alone, days = kept.settings, [kept.settings.begins + timedelta(days=k) for k in range(2)]
+    walks = scout().with_hours(3)
+    team = (TeamMember("Ann", alone.robot), TeamMember("Dan", walks, None, 7200.0))
+    for day, settings in zip(days, (replace(alone, team=team), alone), strict=True):
+        kept.change(settings, kept.settings)
+        kept.record(Inspections.of(np.arange(3), np.zeros(3, np.int8), np.datetime64(day)))
+    said = texts_of(opened("Gate 2026", day=str(days[0])))
+    assert texts.EARLIER_TEAM in said
+    assert "Ann\u2069: Adaptive · 12 h · 40 s, from 06:00" in said
+    assert f"Dan\u2069: Adaptive · 3 h · {walks.look_s:g} s, from 08:00" in said
+
+
 def test_of_a_team_the_one_chosen_is_said_and_what_the_app_cannot_change_is_not_offered(
     season_app, season
 ):

@@ -1,7 +1,7 @@
 """The morning's buttons: the plan is kept, the route goes along, the report is there."""
 
 from dataclasses import replace
-from datetime import date
+from datetime import UTC, date, datetime
 
 import numpy as np
 import pytest
@@ -9,6 +9,7 @@ import pytest
 from app.actions import handing_out
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.plot import local_clock
 from tests.app.chosen import in_season
 from tests.app.driving import boxed, go, headline, opened, press, tap, texts_of
 
@@ -102,12 +103,27 @@ def test_a_ticked_plan_is_the_one_kept_with_what_is_left_of_it(season_app, seaso
     assert f"; {n - 5:,} left" in plan()
 
 
-def test_a_treatment_the_day_before_is_said_and_not_that_nothing_was_recorded(season_app, season):
+def test_a_treatment_is_said_where_nothing_was_inspected_yet(season_app, season):
     season().treat(date(2026, 11, 16), 0.8)
     n = len(season().plot.grid)
     season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 17)).run()
     said = texts_of(season_app)
     assert f"{n:,} plants were treated on Mon 16 Nov." in said
-    (before,) = [one.value for one in season_app.markdown if texts.STEPS["look_back"] in one.value]
-    assert before.endswith(f" {n:,} plants treated")
-    assert texts.CHANGED_NONE.format(day="Mon 16 Nov") not in said
+    assert f"{texts.LAST_VISIT}** {texts.STEP_NO_VISIT}" in said
+
+
+def test_a_planned_day_that_was_forgotten_is_recorded_from_any_later_day(
+    season_app, season, monkeypatch
+):
+    first = date(2026, 11, 16)
+    season().plan(first)
+    monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 20, 4, tzinfo=UTC))
+    season_app.run()
+    (said,) = [one.value for one in season_app.markdown if texts.STEP_UNRECORDED in one.value]
+    assert texts.STEP_PLANNED_FOR.format(day="Mon 16 Nov") in said
+    tap(season_app, "do_look_back")
+    assert season_app.date_input(key="day Gate 2026").value == first
+    assert boxed(season_app.number_input, "one_row")
+    go(season_app, "season")
+    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
+    assert texts.UNRECORDED.format(days="Mon 16 Nov") in [one.value for one in season_app.caption]

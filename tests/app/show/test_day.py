@@ -1,6 +1,7 @@
 """A day in figures and words."""
 
 import re
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
@@ -77,29 +78,66 @@ def test_stops_of_a_day_that_was_worked_say_what_was_found_there(worked):
 
 
 def test_what_changed_is_the_difference_of_two_days(worked):
-    said = "\n".join(day.changes(on(worked, 1)))
+    title, told = day.changes(on(worked, 1))
+    said = "\n".join(told)
     before, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (0, 1))
+    assert title == "Since the last visit, Mon 6 Apr"
     assert f"{before.found} found on 40 plants inspected on Mon 6 Apr." in said
-    assert f"still infested: {now.expected:.0f}, the day before {before.expected:.0f}." in said
-    assert day.changes(on(worked, 0)) == [texts.CHANGED_FIRST]
-    assert "Nothing was recorded" in day.changes(on(worked, 3))[0]
-    assert day.changes(chosen(a_plot())) == []
+    assert f"still infested: {now.expected:.0f}; on the evening of Mon 6 Apr: " in said
+    assert f"{before.expected:.0f}." in said
+    assert day.changes(on(worked, 0))[1] == [texts.CHANGED_FIRST]
+    assert day.changes(chosen(a_plot())) == ("", [])
+
+
+def test_what_changed_is_told_since_the_last_visit_whenever_that_was(worked):
+    visited, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (1, 9))
+    title, said = day.changes(on(worked, 9))
+    assert title == "Since the last visit, Tue 7 Apr"
+    assert f"{visited.found} found on 40 plants inspected on Tue 7 Apr." in said
+    assert any(f"infested: {now.expected:.0f}; on the evening of Tue 7 Apr" in one for one in said)
+    past = replace(on(worked, 9), today=BEGINS + timedelta(days=30))
+    assert day.changes(past) == ("Since the visit before, Tue 7 Apr", said)
+    ahead = replace(on(worked, 9), today=BEGINS + timedelta(days=2))
+    assert day.changes(ahead) == (title, said)
+
+
+def test_before_any_visit_it_is_told_since_the_season_began(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    title, said = day.changes(on(season, 3))
+    assert title == "Since the season began, Mon 6 Apr"
+    assert said[0] == texts.CHANGED_NONE
+
+
+def test_finds_of_the_last_visit_are_the_reason_however_long_ago_it_was(worked):
+    """By their weekday only where no other day is meant by it."""
+    finds = r"around (\w+(?: \d+ Apr)?)'s find"
+
+    def days(choices):
+        return {*re.findall(finds, "\n".join(day.reasons(choices, choices.plan())))}
+
+    assert days(on(worked, 2)) == {"Monday", "Tuesday"}
+    assert days(on(worked, 7)) <= {"Mon 6 Apr", "Tuesday"}
+    later = days(on(worked, 20))
+    assert later
+    assert later <= {"Mon 6 Apr", "Tue 7 Apr"}
+    elsewhere = replace(on(worked, 2), today=BEGINS)
+    assert days(elsewhere) == {"Mon 6 Apr", "Tue 7 Apr"}
 
 
 def test_plants_only_flagged_are_said_beside_those_not_found(tmp_path):
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
     looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
     season.record(looked, "finds")
-    said = "\n".join(day.changes(on(season, 1)))
+    said = "\n".join(day.changes(on(season, 1))[1])
     assert "About 20 more plants, which were found and only flagged, are still infested." in said
 
 
 def test_rows_that_rose_most_come_first(worked):
-    said = day.changes(on(worked, 1))[-1]
+    said = day.changes(on(worked, 1))[1][-1]
     grid = worked.plot.grid
     line = grid.row_line[grid.row]
-    mornings = [worked.morning(BEGINS + timedelta(days=n)) for n in (0, 1)]
-    rise = [np.mean((mornings[1] - mornings[0])[line == k]) for k in range(line.max() + 1)]
+    evenings = [worked.evening(BEGINS + timedelta(days=n)) for n in (0, 1)]
+    rise = [np.mean((evenings[1] - evenings[0])[line == k]) for k in range(line.max() + 1)]
     best = int(np.argmax(rise))
     if rise[best] > 0.001:
         # the sign belongs to its number in a sentence from the right, too

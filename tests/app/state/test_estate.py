@@ -10,7 +10,11 @@ from app.show import estate_map
 from app.state import estate, rooms, seasons_folder
 from app.state.estate import PlotState
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.local_clock import local_clock
+from tests.app.chosen import a_plot
 from tests.app.driving import broken, go, map_of
 
 
@@ -39,6 +43,21 @@ def test_a_season_says_when_it_was_seen_and_what_is_expected(season_app, season)
     assert (f"seen {days} days ago" if days else "seen today") in area["t"]
     left, _ = estate.plots()
     assert left[0].expected > 0
+
+
+@pytest.mark.usefixtures("session")
+def test_plants_that_were_only_flagged_are_infested_too(tmp_path, monkeypatch):
+    monkeypatch.setenv(seasons_folder.FOLDER, str(tmp_path))
+    here = a_plot()
+    today = local_clock(here.field).today()
+    flags = BeliefSettings(treated=False)
+    settings = MonitoringSettings(today, belief=flags)
+    kept = Season.create(tmp_path / "s.gpkg", here, Observations.none(), settings)
+    kept.record(Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(today)))
+    (left,), _ = estate.plots()
+    not_found = kept.day_figures(today).expected
+    assert left.expected == pytest.approx(not_found + kept.flagged(today))
+    assert kept.flagged(today) > 10
 
 
 def test_a_season_that_cannot_be_opened_is_said_and_hides_no_other(season_app):

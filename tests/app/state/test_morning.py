@@ -2,9 +2,11 @@
 
 from datetime import timedelta
 
+import numpy as np
 import pytest
 
-from app.state import morning
+from app.state import chosen_day, morning
+from fieldmon.infestation.inspections import SKIPPED, Inspections
 from tests.app.chosen import DAY, a_plot, chosen, in_season
 from tests.monitoring.seasons import BEGINS, Insects, a_season
 
@@ -60,9 +62,25 @@ def test_a_day_that_is_over_asks_for_its_report_then_for_the_next_day(kept):
 def test_a_plan_that_was_kept_but_not_recorded_comes_first_on_the_day_after(kept):
     kept.plan(BEGINS)
     after = in_season(kept, BEGINS + timedelta(days=1))
-    assert morning.left_unsaid(after)
+    assert morning.left_unsaid(after) == BEGINS
     assert next_of(after) == morning.LOOK_BACK
+    later = in_season(kept, BEGINS + timedelta(days=9))
+    assert morning.left_unsaid(later) == BEGINS, "it is asked for until it is recorded"
+    assert morning.left_unsaid(in_season(kept, BEGINS)) is None, "that day is not over"
     kept.record(Insects(kept).look(0, kept.kept_route(BEGINS)[:3]), "three of it")
     after = in_season(kept, BEGINS + timedelta(days=1))
     assert steps_of(after)[morning.LOOK_BACK].done
-    assert morning.day_before(after).inspected == 3
+    assert morning.last_visit(after) == BEGINS
+
+
+@pytest.mark.usefixtures("session")
+def test_a_planned_day_is_asked_for_until_a_later_one_or_that_nobody_went_is_recorded(kept):
+    kept.plan(BEGINS)
+    kept.plan(BEGINS + timedelta(days=3))
+    on = BEGINS + timedelta(days=9)
+    assert morning.left_unsaid(in_season(kept, on)) == BEGINS + timedelta(days=3)
+    closed = Inspections.of(np.array([5]), np.array([SKIPPED]), np.datetime64(BEGINS) + 3)
+    kept.record(closed, "nobody went")
+    assert morning.left_unsaid(in_season(kept, on)) is None
+    assert morning.last_visit(in_season(kept, on)) is None
+    assert chosen_day.planned_only(in_season(kept, on), on) == (BEGINS,), "it is told all the same"

@@ -67,19 +67,21 @@ def assumed(advice: Advice) -> None:
         st.markdown(f"**{texts.DECIDE_COSTS}**")
         for key in deciding.BEGINS:
             if key not in (*_ASKED, *_SPRAYER):
-                _box(key)
+                _box(key, advice.asked.costs.works if key == deciding.WORKS else None)
 
 
-def _box(key: str) -> None:
+def _box(key: str, learnt: float | None = None) -> None:
+    """Show a box; one whose number may be learnt is empty until somebody says otherwise."""
     low, high, step = _LIMITS[key]
     now = units()
     label = texts.DECIDE_BOXES[key.partition(" ")[2]].format(
         length=texts.UNITS[now.length], area=texts.UNITS[now.area], one_area=in_words(now.one_area)
     )
+    begins = type(step)(deciding.shown(key, deciding.BEGINS[key])) if learnt is None else None
     widget_memory.show(
         st.number_input, label, type(step)(deciding.shown(key, low)),
-        type(step)(deciding.shown(key, high)), step=step, key=key,
-        default=type(step)(deciding.shown(key, deciding.BEGINS[key])),
+        type(step)(deciding.shown(key, high)), step=step, key=key, default=begins,
+        placeholder=None if learnt is None else f"{100 * learnt:.3g}",
     )  # fmt: skip
 
 

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice import Advice, AdviceSettings
+    from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
@@ -221,6 +222,14 @@ def flagged(path: str, revision: str, day: str, _season: Season) -> float:
 def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=FEW, show_spinner=WORKING)
+def learnt_efficacy(
+    path: str, revision: str, day: str, product: str, _season: Season
+) -> TreatmentEffect | None:
+    """Return what a season learnt until a day of how well a product works."""
+    return _season.learnt_efficacy(np.datetime64(day).item(), product)
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)

@@ -17,6 +17,7 @@ from .unit_boxes import DECIDE_BY_AREA, DECIDE_LENGTHS
 if TYPE_CHECKING:
     from fieldmon.decisions.thresholds import Threshold
     from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.treatment_effect import TreatmentEffect
 
     from .choices import Choices
 
@@ -41,6 +42,8 @@ BEGINS: dict[str, float] = {
 PRODUCT = "decide product"
 #: the box of the share from which treating pays, in percent
 LEVEL = "decide level"
+#: that of how well treating works, in percent; it is empty until somebody says
+WORKS = "decide works"
 _OWN = "own thresholds"
 
 
@@ -57,12 +60,22 @@ def _meant(key: str, now: float) -> float:
     return units().by_hectare(now) if key in DECIDE_BY_AREA else now
 
 
-def asked() -> AdviceSettings:
-    """Return what the boxes say; an empty one says what it began with."""
+def learnt(choices: Choices) -> TreatmentEffect | None:
+    """Return what the season learnt of how well the product works; None: nothing yet."""
+    return cached.learnt_efficacy(
+        choices.key, choices.revision, choices.day, product(), choices.season
+    )
+
+
+def asked(known: TreatmentEffect | None = None) -> AdviceSettings:
+    """Return what the boxes say; an empty one says what it began with, or what is `known`."""
+    known = known if widget_memory.value(WORKS) is None else None
     said = {
         key: begins if (now := widget_memory.value(key)) is None else _meant(key, float(now))
         for key, begins in BEGINS.items()
     }
+    if known is not None:
+        said[WORKS] = 100 * known.efficacy
     box = {key.partition(" ")[2]: value for key, value in said.items()}
     return AdviceSettings(
         box["level"] / 100, box["sure"] / 100,
@@ -70,6 +83,7 @@ def asked() -> AdviceSettings:
         TreatmentCosts(box["per_ha"], box["per_zone"], box["loss"], box["days"],
                        box["works"] / 100, box["reserve"] / 100),
         box["rate"],
+        learnt_of="" if known is None else known.product,
     )  # fmt: skip
 
 
@@ -91,4 +105,6 @@ def product() -> str:
 
 def advice(choices: Choices) -> Advice:
     """Return what the season advises on the chosen day."""
-    return cached.advice(choices.key, choices.revision, choices.day, asked(), choices.season)
+    return cached.advice(
+        choices.key, choices.revision, choices.day, asked(learnt(choices)), choices.season
+    )

@@ -1,11 +1,13 @@
 """The page Decide: the answer in one sentence at its top, and what follows from it."""
 
+import shutil
+
 import numpy as np
 import pytest
 
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from tests.app.driving import go, map_of, metric, texts_of
+from tests.app.driving import go, map_of, metric, opened, texts_of
 
 
 @pytest.fixture
@@ -66,3 +68,26 @@ def test_costs_are_changed_there_and_the_answer_follows(recorded):
     recorded.number_input(key="decide level").set_value(0.1).run()
     assert "Treat" in texts_of(recorded)
     assert not recorded.exception
+
+
+def test_how_well_treating_works_is_as_learnt_until_somebody_says(
+    begun_file, seasons_folder, season
+):
+    shutil.copy(begun_file, seasons_folder)
+    of, plants = season(), np.arange(60)
+    for day, result in (("2026-11-16", 1), ("2026-11-17", 1)):
+        of.record(Inspections.of(plants, np.full(60, result), np.datetime64(day)), day)
+        if day == "2026-11-16":
+            of.treat(np.datetime64(day).item(), 0.6, product="soap")
+    told = of.learnt_efficacy(np.datetime64("2026-11-17").item())
+    assert told.efficacy < 0.1
+    app = opened("Gate 2026", day="2026-11-17")
+    go(app, "decide")
+    box = app.number_input(key="decide works")
+    assert (box.value, box.placeholder) == (None, f"{100 * told.efficacy:.3g}")
+    learnt = f"As this season learnt of soap: treating cleans 4\u00a0%."
+    assert learnt in texts_of(app)
+    box.set_value(70.0).run()
+    assert not app.exception
+    assert learnt not in texts_of(app)
+    assert "As you said: treating cleans 70\u00a0%" in texts_of(app)

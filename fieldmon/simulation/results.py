@@ -94,7 +94,8 @@ class StudyFolder:
             there = manifest.read_text(encoding="utf-8") if manifest.exists() else None
         except OSError as error:
             raise FileProblem(
-                f"{self.folder} must be a folder to write to, but it is not ({error})."
+                f"{self.folder} must be a folder to write to, but it is not "
+                f"({error.strerror or error}). Choose another one with -o."
             ) from error
         if there is None:
             write_whole(manifest, text.encode())

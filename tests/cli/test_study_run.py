@@ -6,6 +6,7 @@ import pytest
 from shapely import box
 
 from fieldmon.cli.study_run import StudyOptions, _tell, _tell_charged
+from fieldmon.errors import FileProblem
 from fieldmon.simulation import results
 from fieldmon.simulation.design import study_of
 from tests.cli.estate import ZIP, square
@@ -85,6 +86,12 @@ def test_times_are_charged_as_they_were_chosen_and_other_studies_go_on(tmp_path)
     assert keys[0] != keys[1]
     assert "robot_times" not in usual.design().content
     assert thesis.design().content["robot_times"] == "thesis"
+
+
+def test_a_folder_that_cannot_be_made_is_told_in_words(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(FileProblem, match=r"but it is not \(Not a directory\)\. Choose another"):
+        results.StudyFolder(tmp_path / "file" / "study", (), StudyOptions(tmp_path).design())
 
 
 def test_how_much_more_a_sampler_loses_is_told_season_by_season(capsys):

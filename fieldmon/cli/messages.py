@@ -57,12 +57,12 @@ class Terminal:
     ----------
     flags
         Options of the command that take what is left open.
-    shows_plot
-        Whether the plot is described, and what had to be assumed for it.
+    takes_rows
+        Whether the command has options that say how the plot is planted.
     """
 
     flags: Mapping[str, str] = field(default_factory=lambda: FLAGS)
-    shows_plot: bool = True
+    takes_rows: bool = True
 
     def message(self, said: SourceMessage) -> None:
         """Print what an import has to say, with the option that answers."""
@@ -70,15 +70,20 @@ class Terminal:
 
     def laid(self, laid: Laid) -> None:
         """Print how the plot is planted."""
-        if not self.shows_plot:
-            return
         describe(laid.plot)
-        for assumed in laid.assumed:
-            option = assumed.setting.removesuffix("_m").replace("_", "-")
-            typer.echo(f"{assumed} [--{option}]", err=True)
+        self.assumed(laid.assumed)
         for one in () if laid.plot.rows is None else laid.plot.rows.directions:
-            bearing = f"[--bearing {one.bearing_deg:.1f}]"
-            typer.echo(f"could be: {one}, {one.row_spacing_m:.2f} m apart {bearing}", err=True)
+            could_be = f"could be: {one}, {one.row_spacing_m:.2f} m apart"
+            typer.echo(self._with_row_option(could_be, f"bearing {one.bearing_deg:.1f}"), err=True)
+
+    def assumed(self, assumed: Iterable[Assumed]) -> None:
+        """Print what was taken for rows because nobody said it."""
+        for one in assumed:
+            option = one.setting.removesuffix("_m").replace("_", "-")
+            typer.echo(self._with_row_option(str(one), option), err=True)
+
+    def _with_row_option(self, sentence: str, option: str) -> str:
+        return f"{sentence} [--{option}]" if self.takes_rows else sentence
 
     @contextmanager
     def answering(self) -> Iterator[None]:

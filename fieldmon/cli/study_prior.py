@@ -163,7 +163,7 @@ def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
 
     sources = PlotSources(file, PlotOptions(feature=feature))
     asked = None if observations is None else RecordSource(observations)
-    known = prepared(PlotRequest(sources, records=asked), Terminal(flags={}, shows_plot=False))
+    known = prepared(PlotRequest(sources, records=asked), Terminal(flags={}, takes_rows=False))
     plot, records = known.plot, known.records
     if observations is None:
         return Site(plot.field.name, plot.aisles, plot.field)

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fieldmon.cli.messages import Terminal
+from fieldmon.cli.messages import Terminal, tell_assumed
 from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import (
+    Bearing,
+    BothFaces,
+    Headland,
+    PlantSpacing,
+    RobotTimesName,
+    RowSpacing,
+)
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
 from fieldmon.cli.times import day, day_on
@@ -18,9 +26,14 @@ from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pandas as pd
     import pyarrow as pa
 
+    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.plot.assumed import Assumed
+    from fieldmon.plot.field import Field
     from fieldmon.simulation.design import Design
     from fieldmon.simulation.study_plot import StudyPlot
 
@@ -80,6 +93,12 @@ class StudyOptions:
     scheduler: Annotated[
         str | None, typer.Option(help="Scheduler of a Dask cluster: tcp://host:8786.")
     ] = None
+    bearing: Bearing = None
+    row_spacing: RowSpacing = None
+    plant_spacing: PlantSpacing = None
+    headland: Headland = None
+    both_faces: BothFaces = False
+    robot_times: RobotTimesName = None
     pest_options: PestOptions = field(default_factory=PestOptions)
 
     def design(self) -> Design:
@@ -95,7 +114,16 @@ class StudyOptions:
             "spread": self.spread,
         }
         chosen: dict[str, Any] = {name: tuple(values) for name, values in told.items() if values}
+        if self.robot_times is not None:
+            chosen["robot_times"] = self.robot_times
         return Design(**chosen, n_days=self.days, n_seeds=self.seeds, first_seed=self.first_seed)
+
+    def planting(self) -> PlantingChoices:
+        """Return what was said of the rows."""
+        from fieldmon.io.sources import PlantingChoices
+
+        spacings = self.row_spacing, self.plant_spacing, self.headland
+        return PlantingChoices(self.bearing, *spacings, 2 if self.both_faces else None)
 
     def plots(self) -> tuple[StudyPlot, ...]:
         """Return the plots with their records."""
@@ -109,12 +137,16 @@ class StudyOptions:
         told = day(self.on)
         records = None if self.observations is None else RecordSource(self.observations)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
-        known = estate(PlotRequest(sources, records=records), Terminal(flags={}))
+        choices, terminal = self.planting(), Terminal(flags={})
+        known = estate(PlotRequest(sources, choices, records), terminal)
+        _tell_laid(known.fields, choices, terminal)
         begins = day_on(known.fields[0], told)
         on = np.datetime64(begins, "D")
         pest_in_weather = self.pest_options.in_weather(known.fields[0], begins)
         return tuple(
-            StudyPlot(one, planting_of(one), known.records.on(one), on, pest_in_weather)
+            StudyPlot(
+                one, planting_of(one, **choices.given()), known.records.on(one), on, pest_in_weather
+            )
             for one in known.fields
         )
 
@@ -142,6 +174,7 @@ def study_run(options: StudyOptions) -> None:
     for levels in design.combinations:
         if is_own(levels.sampler):  # what it answers wrongly is said before many work on it
             simulate_chunk((plots[0], levels), range(design.first_seed, design.first_seed + 1), 1)
+    _tell_charged(design.robot_times)
     with executor.cluster(options.scheduler, options.workers) as workers:
         typer.echo(f"Dashboard: {workers.dashboard}", err=True)
         folder = results.StudyFolder(output, plots, design)
@@ -154,6 +187,37 @@ def study_run(options: StudyOptions) -> None:
         typer.echo(f"Seasons are in {output}")
 
 
+def _tell_laid(fields: Sequence[Field], choices: PlantingChoices, terminal: Terminal) -> None:
+    """Print how a plot is planted; of several, what had to be assumed of which."""
+    from fieldmon.compute.wording import first_few
+    from fieldmon.io.plot_records import MOST_NAMED
+    from fieldmon.io.prepare import assumed_of, lay
+
+    if len(fields) == 1:
+        terminal.laid(lay(fields[0], choices))
+        return
+    names: dict[Assumed, list[str]] = {}
+    for one in fields:
+        for assumed in assumed_of(one, choices):
+            names.setdefault(assumed, []).append(one.name)
+    terminal.assumed(
+        one if len(whose) == len(fields) else replace(one, of=first_few(whose, MOST_NAMED))
+        for one, whose in names.items()
+    )
+
+
+def _tell_charged(robot_times: str) -> None:
+    """Print what the robot's time rests on though nobody said it."""
+    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.planning.assumptions import assumed_by
+    from fieldmon.plot.robot import Robot
+
+    assumed = assumed_by((), PriorSettings(), Robot().with_times(robot_times))
+    tell_assumed(one for one in assumed if one.setting in _CHARGED)
+
+
+# of what is assumed of a robot: the rest are a study's levels
+_CHARGED = ("speed_m_s", "row_change_s", "stop_s")
 # of one season there is no interval
 _FEW = 2
 #: what seasons have in common whose samplers meet the same insects

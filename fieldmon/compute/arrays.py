@@ -18,6 +18,11 @@ def read_only(array: A) -> A:
     return array
 
 
+def as_seen(array: A) -> A:
+    """Return the same numbers, which nobody can change through what is returned."""
+    return read_only(array.view())
+
+
 def as_compiled(array: A) -> A:
     """Return the array, or a copy, as loops are compiled for it: without gaps, to be written to.
 

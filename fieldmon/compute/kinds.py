@@ -6,6 +6,7 @@ Annotations are read as text: a kind need not be imported to be known by its nam
 from __future__ import annotations
 
 import ast
+from contextlib import suppress
 from dataclasses import fields
 from datetime import date, datetime
 from functools import lru_cache, wraps
@@ -44,6 +45,8 @@ _INSTEAD = {
     "Viewpoints": "Give Viewpoints(steps, longer).",
     "str": "Put it in quotes.",
 }
+#: annotations of arguments that may be a day's text
+_DAYS = frozenset({"date", "date | None"})
 #: names of protocols, and of what a function looks at itself
 _LEFT = frozenset(
     {"Any", "object", "ArrayLike", "Belief", "Cutoff", "KernelName", "Sampler", "Source", "generic"}
@@ -136,7 +139,7 @@ def must_hold_kinds(settings: Any, whose: str) -> None:  # noqa: ANN401 - any da
 def checked(public: F) -> F:
     """Let a function refuse arguments that are not what it is annotated with; for decorators.
 
-    Of a class: all its public methods.
+    Of a class: all its public methods. A day may be a text, ``"2026-11-18"``.
 
     Examples
     --------
@@ -169,9 +172,15 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
         elif one.kind is not Parameter.VAR_KEYWORD:
             named[name] = str(one.annotation)
     in_order = list(named)
+    days = {name for name, annotation in named.items() if annotation in _DAYS}
 
     @wraps(function)
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
+        if days:
+            told = zip(in_order, args, strict=False)
+            in_place = [_day(given) if name in days else given for name, given in told]
+            args = (*in_place, *args[len(in_place) :])
+            keywords = {k: _day(given) if k in days else given for k, given in keywords.items()}
         for name, given in chain(zip(in_order, args, strict=False), keywords.items()):
             annotation = named.get(name, "")
             if annotation and not kind_of(annotation).fits(given):
@@ -179,6 +188,13 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
         return function(*args, **keywords)
 
     return wrapper
+
+
+def _day(given: Any) -> Any:  # noqa: ANN401 - anything but a day's text is left as it is
+    if isinstance(given, str):
+        with suppress(ValueError):
+            return date.fromisoformat(given)
+    return given
 
 
 def _called(function: Any, args: tuple[Any, ...]) -> str:  # noqa: ANN401 - any function

@@ -98,7 +98,7 @@ def pair_chances(
     that a plant beside an infested one is infested too, where few are.
     """
     pair_chance = np.empty(len(grid.adjacent.plant))
-    _pair_chances(np.ascontiguousarray(chance), grid.adjacent, clustering, pair_chance)
+    _pair_chances(as_compiled(chance), grid.adjacent, clustering, pair_chance)
     return pair_chance
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled, as_seen
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.cells import Cells
@@ -63,10 +64,17 @@ class Traces(NamedTuple):
         nothing = np.zeros(n), np.zeros(n), no_evidence(), no_inspections()
         return cls(Cells.none(), np.zeros((1, 1)), *nothing)
 
+    def seen(self) -> Traces:
+        """Return the same, whose numbers cannot be written to."""
+        numbers = self._asdict()
+        cells = numbers.pop("cells")
+        return Traces(cells, **{name: as_seen(value) for name, value in numbers.items()})
+
     def own(self) -> Traces:
         """Return the same with arrays that may be changed."""
         changing = {k: getattr(self, k).copy() for k in ("unseen", "from_afar", "slope_sums")}
-        return self._replace(**changing)
+        fixed = {k: as_compiled(getattr(self, k)) for k in ("kernel", "evidence")}
+        return self._replace(**changing, **fixed)
 
 
 class Raised(NamedTuple):

@@ -209,6 +209,13 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     if not choices.in_rows:
         return Laid(Plot.of(replace(field, in_rows=False)))
     given = choices.given()
+    plot = Plot.of(field, planting_of(field, **given))
+    return Laid(replace(plot, assumed=assumed_of(field, choices)))
+
+
+def assumed_of(field: Field, choices: PlantingChoices) -> tuple[Assumed, ...]:
+    """Return what is assumed of a field's rows, where plants are laid as said, stated or usual."""
+    given = choices.given()
     planting = planting_of(field, **given)
     missing = [name for name in _SPACINGS if name not in given and getattr(field, name) is None]
     if field.blocks:
@@ -216,9 +223,9 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
         missing = [name for name, each in zip(missing, told, strict=True) if None in each]
     if len(field.row_lines.geoms) > 1:  # rows are as far apart as they were drawn
         missing = [name for name in missing if name != "row_spacing_m"]
-    assumed = tuple(Assumed(name, getattr(planting, name)) for name in missing)
-    plot = Plot.of(field, planting)
-    return Laid(plot if field.plants is not None else replace(plot, assumed=assumed))
+    if field.plants is not None:
+        missing = []
+    return tuple(Assumed(name, getattr(planting, name)) for name in missing)
 
 
 def lay_around(

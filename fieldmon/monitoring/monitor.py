@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from fieldmon.compute.arguments import (
     must_be_shaped,
     shown,
 )
+from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
@@ -162,12 +163,12 @@ class Monitor:
     @property
     def chance(self) -> NDArray[np.float64]:
         """Believed chance of infestation now, ``(n,)``; it cannot be written to."""
-        return _read_only(self._belief.chance)
+        return as_seen(self._belief.chance)
 
     @property
     def last_inspected(self) -> NDArray[np.int32]:
         """Day of each plant's last inspection, from 0; -1: never, ``(n,)``; read-only."""
-        return _read_only(self._last_inspected)
+        return as_seen(self._last_inspected)
 
     def plan(self) -> DayPlan:
         """Return the day ahead as it goes if nothing is found."""
@@ -427,13 +428,6 @@ class MonitorDay:
             inspect_s=float(self._times.stop_s[level]),
             detects=float(self._times.detects[level]),
         )
-
-
-def _read_only(values: NDArray[Any]) -> NDArray[Any]:
-    """Return the same values, which nobody can write to."""
-    kept = values.view()
-    kept.setflags(write=False)
-    return kept
 
 
 def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.float64]:

@@ -52,7 +52,7 @@ class SeasonPlans(OpenSeason):
         Parameters
         ----------
         on
-            The day.
+            The day; ``"2026-11-18"`` will do, here and wherever a season asks for one.
         now
             Local time; None: the start of the work or, once something of the day was recorded,
             the time of the last of it.

@@ -39,7 +39,8 @@ def cut_blocks(field: Field, line: LineString | MultiLineString) -> tuple[Block,
     """Return the blocks of a plot, those that a line ``(lon, lat)`` passes through in two.
 
     A plot without blocks is one that is cut. Both parts keep what was stated of the block, but
-    its direction: each has the rows that suit it.
+    its direction: each has the rows that suit it. What was said of rows by hand is no part of a
+    field: say it again, as below.
 
     Raises
     ------
@@ -51,11 +52,12 @@ def cut_blocks(field: Field, line: LineString | MultiLineString) -> tuple[Block,
     >>> import fieldmon as fm, shapely
     >>> from dataclasses import replace
     >>> field = fm.read_plot("sample_data/paran_estate.zip", feature="Gate").field
+    >>> by_hand = fm.Planting(row_spacing_m=2.5, plant_spacing_m=1.5)
     >>> west, south, east, north = field.boundary.bounds
     >>> across = shapely.LineString([(west, south), (east, north)])
-    >>> plot = fm.Plot.of(replace(field, blocks=fm.cut_blocks(field, across)))
-    >>> plot.grid.n_blocks
-    2
+    >>> plot = fm.Plot.of(replace(field, blocks=fm.cut_blocks(field, across)), by_hand)
+    >>> plot.grid.n_blocks, plot.grid.row_spacing_m
+    (2, 2.5)
     """
     frame = field.frame()
     knives = [_longer(part) for part in shapely.get_parts(frame.geometry_m(line))]

@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.arguments import shown
+from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.jit import loop
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import GATE, travel_s
 from fieldmon.samplers.base import InspectionTimes, Sampler, Stops
+from fieldmon.samplers.own import asked
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -52,7 +54,7 @@ class Checked(Sampler):
 
     def inspection_times(self, robot: Robot) -> InspectionTimes:
         """Return its times; raise `SettingError` if no inspection can be so."""
-        times = self.own.inspection_times(robot)
+        times = asked(self._who, self.own.inspection_times, robot)
         stop_s, detects = np.asarray(times.stop_s, float), np.asarray(times.detects, float)
         if not (np.isfinite(stop_s) & (stop_s > 0)).all() or stop_s.size != detects.size:
             raise SettingError(
@@ -72,7 +74,7 @@ class Checked(Sampler):
         SettingError
             If no robot can do that, or it knows what it has not seen.
         """
-        stops = _as_stops(self._who, self.own.walk(scene, would_find))
+        stops = self._stops(scene, would_find)
         _must_be_plants(self._who, stops, scene)
         _must_be_driven(self._who, stops, scene, self.inspection_times(scene.robot))
         found = np.flatnonzero(would_find[stops.plant])
@@ -80,9 +82,14 @@ class Checked(Sampler):
             self._must_not_peek(scene, would_find, stops.plant[: int(found[0]) + 1])
         return stops
 
+    def _stops(self, scene: Scene, would_find: WouldFind) -> Stops:
+        """Return what it answers; it cannot write to what others read."""
+        answer = asked(self._who, self.own.walk, scene.seen(), as_seen(would_find))
+        return _as_stops(self._who, answer)
+
     def _must_not_peek(self, scene: Scene, would_find: WouldFind, first: NDArray[np.int32]) -> None:
         """Raise unless plants ``(k,)`` up to the first find are those of a day without finds."""
-        nothing = _as_stops(self._who, self.own.walk(scene, np.zeros_like(would_find)))
+        nothing = self._stops(scene, np.zeros_like(would_find))
         if not np.array_equal(nothing.plant[: len(first)], first):
             raise SettingError(
                 f"{self._who} must choose plants up to the first find as if nothing were found, "

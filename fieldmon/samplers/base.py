@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.wording import counted
 from fieldmon.plot.travel import GATE, robot_clock, travel_s
 
@@ -81,6 +83,8 @@ def resting_place(robot: Robot, trail: NDArray[np.int32]) -> int:
 @dataclass(frozen=True, eq=False)
 class Scene:
     """A moment of a working day, as whoever plans it can know it; never the truth.
+
+    A sampler of one's own cannot write to its arrays: it changes copies.
 
     Parameters
     ----------
@@ -161,6 +165,16 @@ class Scene:
         if self.at >= 0:
             return self.at
         return int(self.trail[-1]) if len(self.trail) else NEVER
+
+    def seen(self) -> Scene:
+        """Return the same scene, whose arrays cannot be written to."""
+        same = copy(self)
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray):
+                object.__setattr__(same, name, as_seen(value))
+        if self.traces is not None:
+            object.__setattr__(same, "traces", self.traces.seen())
+        return same
 
     @cached_property
     def clock(self) -> Clock:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
 from fieldmon.compute.jit import loop, part
 from fieldmon.compute.random_streams import coin
 from fieldmon.errors import SettingError
@@ -91,7 +92,7 @@ class Decide(Sampler):
         pairs = pair_chances(scene.chance, grid) if pairs is None else pairs.copy()
         return scene.walked(
             _walk,
-            (grid.linked, grid.snake, would_find.view(np.uint8)),
+            (grid.linked, grid.snake, as_compiled(would_find.view(np.uint8))),
             (
                 _Believed(chance, pairs, chance.copy(), Neighbourhood.of(n)),
                 _Pass(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
 from fieldmon.compute.jit import inlined, loop, part
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
@@ -90,10 +91,11 @@ class Dynamic(Sampler):
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""
         steps = round(-_OCTAVE * math.log2(self.suspicious))
-        grid, chance_bits = scene.grid, scene.chance.view(np.int64)
+        grid, chance_bits = scene.grid, as_compiled(scene.chance.view(np.int64))
+        finds = as_compiled(would_find.view(np.uint8))
         return scene.walked(
             _walk,
-            (grid.adjacent, scene.aisles.onward_m, chance_bits, would_find.view(np.uint8)),
+            (grid.adjacent, scene.aisles.onward_m, chance_bits, finds),
             (scene.last_inspected == scene.day, _Open.on(grid, steps)),
             (scene.at, steps, self.at_once),
         )

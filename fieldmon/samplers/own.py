@@ -6,16 +6,21 @@ Only who asks for it by hand gets it: the name of a sampler in a season's file r
 from __future__ import annotations
 
 import sys
+import traceback
 from hashlib import blake2b
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import shown
-from fieldmon.errors import SettingError
+from fieldmon.errors import FieldmonError, SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fieldmon.samplers.base import Sampler
+
+# of what an error says
+_LONGEST = 200
 
 
 def is_own(name: str) -> bool:
@@ -57,6 +62,40 @@ def label_of(name: str) -> str:
     return name.rpartition(":")[2] if is_own(name) else name
 
 
+def asked(who: str, own: Callable[..., Any], *given: object) -> Any:  # noqa: ANN401 - its answer
+    """Return what code of somebody's own answers.
+
+    Raise `SettingError` where it ends in an error, with its file and line.
+    """
+    try:
+        return own(*given)
+    except FieldmonError:
+        raise
+    except Exception as error:
+        called = error.__traceback__ and error.__traceback__.tb_next
+        frame = called and called.tb_frame
+        if frame and str(frame.f_globals.get("__name__")).startswith("fieldmon."):
+            raise  # it has that method from here
+        file = Path(frame.f_code.co_filename) if frame else None
+        raise _must_run(who, error, file) from error
+
+
+def _must_run(who: str, error: Exception, file: Path | None) -> SettingError:
+    """Return what is said of code that ends in an error, and where in its `file`."""
+    lines = [
+        line
+        for frame, line in traceback.walk_tb(error.__traceback__)
+        if file is not None and frame.f_code.co_filename == str(file)
+    ]
+    where = f" ({file.name}, line {lines[-1]})" if file is not None and lines else ""
+    said = " ".join(str(error).split()).rstrip(".")[:_LONGEST]
+    kind = type(error).__name__
+    said = f"{kind}: {said}" if said else kind
+    written = kind == "ValueError" and "read-only" in said
+    change = " What it is given cannot be written to: change a copy." if written else ""
+    return SettingError(f"{who} must run, but it ends in {said}{where}.{change}")
+
+
 def own_text(name: str) -> bytes:
     """Return what is in the file of an own sampler: another text is another sampler.
 
@@ -89,7 +128,5 @@ def _module(file: Path) -> Any:  # noqa: ANN401 - any module
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        raise SettingError(
-            f"{file} must run, but it ends in {type(error).__name__}: {shown(str(error))}."
-        ) from error
+        raise _must_run(str(file), error, file) from error
     return module

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from inspect import signature
 from numbers import Integral
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from fieldmon.compute.arguments import must_be, must_be_known, shown
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.errors import SettingError
-from fieldmon.samplers.own import is_own, own_class
+from fieldmon.samplers.own import asked, is_own, own_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -154,7 +154,8 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
     if isinstance(given, str):
         if not is_own(given):
             return sampler(given)
-        given = own_class(given)()
+        own_kind = own_class(given)
+        given = cast("Sampler", asked(own_kind.__name__, own_kind))
     own = all(callable(getattr(given, name, None)) for name in ("walk", "inspection_times"))
     if isinstance(given, type) or not own:
         raise SettingError(

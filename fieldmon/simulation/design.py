@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
+from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import COMPARED, kind_of, sampler_or_name
 from fieldmon.samplers.own import is_own, label_of, own_text
 from fieldmon.simulation.experiment import Experiment
@@ -44,6 +45,8 @@ class Design:
         Working days of a season.
     n_seeds, first_seed
         Seasons of each combination; season k starts from seed ``first_seed + k`` in all of them.
+    robot_times
+        What the robot is charged besides driving and inspecting, see `Robot.with_times`.
     """
 
     samplers: tuple[str, ...] = COMPARED
@@ -54,10 +57,12 @@ class Design:
     n_days: int = 25
     n_seeds: int = 100
     first_seed: int = 1
+    robot_times: str = USUAL_TIMES
 
     def __post_init__(self) -> None:
         for name in self.samplers:
             sampler_or_name(name)
+        Robot().with_times(self.robot_times)
         labels = [label_of(name) for name in self.samplers]
         if len(set(labels)) < len(labels):
             raise SettingError(
@@ -82,6 +87,17 @@ class Design:
                 )
 
     @property
+    def content(self) -> dict[str, Any]:
+        """Return what it says, as folders of studies keep it.
+
+        What later versions added counts only where it is said: studies of before can go on.
+        """
+        said = asdict(self)
+        if self.robot_times == USUAL_TIMES:
+            del said["robot_times"]
+        return said
+
+    @property
     def combinations(self) -> tuple[Combination, ...]:
         """Return every level of each factor with every level of the others."""
         values = (self.samplers, self.hours, self.look_s, self.infested, self.spread)
@@ -93,7 +109,8 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
 
     Its keys are a sampler and a digest of all that its seasons depend on, and of nothing else.
     """
-    n_days = design.n_days
+    n_days, times = design.n_days, design.robot_times
+    unusual = () if times == USUAL_TIMES else (times,)
     # an own sampler's seasons hang on its text, read once for all chunks
     own = {name: (own_text(name),) if is_own(name) else () for name in design.samplers}
 
@@ -101,13 +118,20 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
         plot, levels = setting
         label = label_of(levels.sampler)
         written = as_written(replace(levels, sampler=label))
-        parts = (plot.digest, written, (seeds.start, seeds.stop), n_days, *own[levels.sampler])
+        parts = (
+            plot.digest,
+            written,
+            (seeds.start, seeds.stop),
+            n_days,
+            *own[levels.sampler],
+            *unusual,
+        )
         return label, digest(_VERSION, *parts, length=DIGITS)
 
     return Experiment(
         settings=list(product(plots, design.combinations)),
         seeds=range(design.first_seed, design.first_seed + design.n_seeds),
-        simulate=partial(simulate_chunk, n_days=n_days),
+        simulate=partial(simulate_chunk, n_days=n_days, robot_times=times),
         chunk_size=lambda setting: _seasons(setting[1].sampler, setting[0].about_plants, n_days),
         key=key,
     )

@@ -6,8 +6,10 @@ All of them are `concurrent.futures` executors, so that nothing else needs to kn
 from __future__ import annotations
 
 import logging
+import signal
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.cores import cores
@@ -109,11 +111,29 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[Client]:
         with client:
             yield client
         return
-    local = LocalCluster(
-        n_workers=workers or cores(),
-        threads_per_worker=1,
-        host="127.0.0.1",
-        dashboard_address="127.0.0.1:0",
-    )
+    with _ctrl_c_waits():
+        local = LocalCluster(
+            n_workers=workers or cores(),
+            threads_per_worker=1,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+        )
     with local, Client(local) as client:
         yield client
+
+
+@contextmanager
+def _ctrl_c_waits() -> Iterator[None]:
+    """Let Ctrl-C wait until workers have started; they themselves, who inherit this, never hear it.
+
+    Whoever started them ends them.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    resource_tracker.ensure_running()  # it would lift what is held when it is started later
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -7,7 +7,6 @@ stopped, in whatever way, knows what it has.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from io import BytesIO
 from typing import TYPE_CHECKING, cast
 
@@ -63,7 +62,7 @@ class StudyFolder:
     def __init__(self, folder: Path, plots: Sequence[StudyPlot], design: Design) -> None:
         self.folder = folder
         self.refused: dict[str, str] = {}
-        said = asdict(design) | {"plots": [f"{plot.field.name} {plot.digest}" for plot in plots]}
+        said = design.content | {"plots": [f"{plot.field.name} {plot.digest}" for plot in plots]}
         self._begin(json.dumps(said, ensure_ascii=False, indent=1))
 
     def holds(self, key: Hashable) -> bool:
@@ -95,7 +94,8 @@ class StudyFolder:
             there = manifest.read_text(encoding="utf-8") if manifest.exists() else None
         except OSError as error:
             raise FileProblem(
-                f"{self.folder} must be a folder to write to, but it is not ({error})."
+                f"{self.folder} must be a folder to write to, but it is not "
+                f"({error.strerror or error}). Choose another one with -o."
             ) from error
         if there is None:
             write_whole(manifest, text.encode())

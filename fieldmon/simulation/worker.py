@@ -13,7 +13,7 @@ from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.plot import Plot
-from fieldmon.plot.robot import Robot
+from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.own import label_of
 from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT, season_metrics
@@ -66,7 +66,9 @@ ChunkSeasons = list[dict[str, Any]] | RefusedPlot
 """A row a season, see `results.SCHEMA`."""
 
 
-def simulate_chunk(setting: Setting, seeds: range, n_days: int) -> ChunkSeasons:
+def simulate_chunk(
+    setting: Setting, seeds: range, n_days: int, robot_times: str = USUAL_TIMES
+) -> ChunkSeasons:
     """Simulate a combination on a plot; return a season's measures for each seed.
 
     It depends on its arguments alone: all samplers meet the same insects of a seed. A plot that
@@ -77,10 +79,10 @@ def simulate_chunk(setting: Setting, seeds: range, n_days: int) -> ChunkSeasons:
         laid = _laid(of.digest, _Unhashed(of))
     except FieldmonError as error:
         return RefusedPlot(of.field.name, str(error))
-    rows, plot = [], laid.plot
+    rows, plot, robot = [], laid.plot, Robot().with_times(robot_times)
     named = replace(levels, sampler=label_of(levels.sampler))
     for seed in seeds:
-        season = simulated_season(laid, Robot(), levels, seed, n_days)
+        season = simulated_season(laid, robot, levels, seed, n_days)
         about = {"plot": plot.field.name, **vars(named), "seed": seed, "days": n_days}
         rows.append(about | {"plants": len(plot.grid)} | _measures(season))
     return rows

@@ -38,8 +38,8 @@ def test_a_plot_is_described_with_what_was_assumed_for_it(capsys):
     grid = rectangle(3, 4)
     field = Field("Gate", grid.frame.geometry_lonlat(grid.drivable_m))
     laid = Laid(Plot(field, Aisles.of(grid), (Assumed("row_spacing_m", 4.0),)))
-    Terminal(shows_plot=False).laid(laid)
-    assert capsys.readouterr() == ("", "")
+    Terminal(takes_rows=False).laid(laid)
+    assert capsys.readouterr().err == "guessed: row spacing 4 m\n"
     Terminal().laid(laid)
     out, err = capsys.readouterr()
     assert out.startswith("Gate: 12 plants in 3 rows, bearing 90.0 degrees, rows 4.00 m and")

@@ -1,11 +1,15 @@
 """`fieldmon study run`: a study of one's own plots."""
 
+import pandas as pd
 import pyarrow as pa
 import pytest
+from shapely import box
 
-from fieldmon.cli.study_run import _tell
+from fieldmon.cli.study_run import StudyOptions, _tell, _tell_charged
+from fieldmon.errors import FileProblem
 from fieldmon.simulation import results
-from tests.cli.estate import ZIP
+from fieldmon.simulation.design import study_of
+from tests.cli.estate import ZIP, square
 from tests.paths import ROOT
 
 FEW = ["--seeds", 3, "--days", 2, "--workers", 1, "--date", "2026-11-02"]
@@ -38,6 +42,56 @@ def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", "run", ZIP, *words)
     assert (code, made) == (2, set())
     assert says in err
+
+
+def test_a_study_says_how_plots_are_planted_and_which_times_are_charged(tmp_path, capsys):
+    file = tmp_path / "plots.gpkg"
+    square().to_file(file)
+    usual = StudyOptions(file)
+    _tell_charged(usual.design().robot_times)
+    (few,) = usual.plots()
+    out, err = capsys.readouterr()
+    assert "rows 4.00 m and plants 3.00 m apart" in out
+    assert "guessed: row spacing 4 m [--row-spacing]" in err
+    assert "time added for a row change, as in simulated drives: 9 s" in err
+    told = StudyOptions(file, row_spacing=2.5, plant_spacing=1.5, robot_times="thesis")
+    _tell_charged(told.design().robot_times)
+    (many,) = told.plots()
+    out, err = capsys.readouterr()
+    assert "rows 2.50 m and plants 1.50 m apart" in out
+    assert not {"guessed:", "simulated"} & {*err.split()}
+    assert many.about_plants > 3 * few.about_plants
+    farther = square(name="told", row_m=2.5, geometry=box(35.2, 30.36, 35.201, 30.361))
+    pd.concat([square(), farther]).to_file(file)
+    usual.plots()
+    _, err = capsys.readouterr()
+    assert "guessed: row spacing 4 m (plot) [--row-spacing]" in err
+    assert "guessed: plant spacing 3 m [--plant-spacing]" in err
+
+
+def test_times_are_charged_as_they_were_chosen_and_other_studies_go_on(tmp_path):
+    file = tmp_path / "plots.gpkg"
+    square().to_file(file)
+    usual, thesis = (
+        StudyOptions(file, hours=[1.0], sampler=["snake"], seeds=1, days=1, robot_times=times)
+        for times in (None, "thesis")
+    )
+    (plot,), seasons, keys = usual.plots(), [], []
+    for asked in (usual.design(), thesis.design()):
+        study = study_of((plot,), asked)
+        (chunk,) = study.chunks()
+        keys.append(chunk.key)
+        seasons += study.simulate(chunk.setting, chunk.seeds)
+    assert seasons[0]["visited_pct"] != seasons[1]["visited_pct"]
+    assert keys[0] != keys[1]
+    assert "robot_times" not in usual.design().content
+    assert thesis.design().content["robot_times"] == "thesis"
+
+
+def test_a_folder_that_cannot_be_made_is_told_in_words(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(FileProblem, match=r"but it is not \(Not a directory\)\. Choose another"):
+        results.StudyFolder(tmp_path / "file" / "study", (), StudyOptions(tmp_path).design())
 
 
 def test_how_much_more_a_sampler_loses_is_told_season_by_season(capsys):

@@ -116,6 +116,7 @@ class _LongSeason(_Season):
 def test_methods_refuse_what_they_are_not_annotated_with_and_stay_what_they_were():
     season = _LongSeason()
     assert season.plan(TODAY) == season.plan(on=TODAY, keep=True) == "2026-11-18 True"
+    assert season.plan("2026-11-18") == season.plan(on="2026-11-18") == season.plan(TODAY)
     assert (season.days, season.hours(3), next(_Season.create("ab"))) == (3, 3, 2)
     assert (_Season.plan.__doc__, _Season.plan.__qualname__) == ("Plan a day.", "_Season.plan")
     for call, said in (

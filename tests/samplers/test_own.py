@@ -2,11 +2,12 @@
 
 import re
 
+import numpy as np
 import pytest
 
 import fieldmon as fm
 from fieldmon.errors import SettingError
-from fieldmon.samplers import kind_of, sampler
+from fieldmon.samplers import SAMPLERS, kind_of, sampler
 from fieldmon.samplers.own import is_own, label_of, own_class, own_text
 from fieldmon.simulation.design import Design
 from tests.paths import ROOT
@@ -49,6 +50,55 @@ def test_the_world_of_the_page_runs_a_season(plot):
     assert season.new[1:].sum() > 0
 
 
+def on_each_way(plot, sampler):
+    """Yield what hands a sampler a scene: a plan, a season, a robot's day."""
+    start = fm.draw_start(plot, np.full(plot.n_plants, 0.1), 0.05)
+    yield lambda: fm.plan_day(plot, on="2026-11-18", sampler=sampler)
+    yield lambda: fm.simulate(plot, start, sampler)
+    yield lambda: fm.Monitor(plot, sampler).day().ask()
+
+
+@pytest.mark.parametrize(
+    ("walk", "said"),
+    [
+        ("scene.chances", "AttributeError: 'Scene' object has no attribute 'chances'"),
+        ("1 / 0", "ZeroDivisionError: division by zero"),
+        *(
+            (f"{array}[:] = 0", "ValueError: assignment destination is read-only")
+            for array in (
+                "scene.chance",
+                "scene.last_inspected",
+                "scene.trail",
+                "would_find",
+                "scene.traces.unseen",
+            )
+        ),
+    ],
+)
+def test_a_mistake_in_it_is_told_with_its_line(tmp_path, plot, walk, said):
+    file = tmp_path / "boom.py"
+    file.write_text(
+        "import fieldmon as fm\nclass Boom(fm.Sampler):\n"
+        f"    def walk(self, scene, would_find):\n        {walk}\n",
+        encoding="utf-8",
+    )
+    told = re.escape(f"Boom must run, but it ends in {said} (boom.py, line 4).")
+    for way in on_each_way(plot, f"{file}:Boom"):
+        with pytest.raises(SettingError, match=f"^{told}"):
+            way()
+
+
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_it_may_ask_one_of_this_package(plot, name):
+    class Asks(fm.Sampler):
+        inspection_times = staticmethod(sampler(name).inspection_times)
+        walk = staticmethod(sampler(name).walk)
+
+    day = fm.plan_day(plot, on="2026-11-18", sampler=Asks(), robot=fm.Robot(hours=1))
+    same = fm.plan_day(plot, on="2026-11-18", sampler=sampler(name), robot=fm.Robot(hours=1))
+    assert day.route.plant.tolist() == same.route.plant.tolist()
+
+
 def test_a_name_in_a_file_of_settings_runs_no_code(file):
     for take in (kind_of, sampler):
         with pytest.raises(SettingError, match="must be one of naive"):
@@ -83,7 +133,7 @@ def test_files_are_told_from_names():
         (None, "cannot be read"),
         ("x = 1\n", "must have a class Mine with a method walk"),
         ("class Mine: pass\n", "must have a class Mine with a method walk"),
-        ("1 / 0\n", "must run, but it ends in ZeroDivisionError"),
+        ("1 / 0\n", r"must run, but it ends in ZeroDivisionError: .* \(my_sampler.py, line 1\)"),
         ("def (\n", "must run, but it ends in SyntaxError"),
     ],
 )

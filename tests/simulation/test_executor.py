@@ -76,6 +76,17 @@ def test_a_cluster_works_in_processes_of_its_own(two_workers):
     assert len(set(made.values())) == 2
 
 
+def _holds_ctrl_c(setting, seeds):  # noqa: ARG001
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
+def test_ctrl_c_is_heard_here_and_by_no_worker(two_workers):
+    made = Memory()
+    run(Experiment(tuple(range(4)), range(1), _holds_ctrl_c), two_workers, made)
+    assert all(made.values())
+    assert not _holds_ctrl_c(None, None)
+
+
 def test_threads_make_the_same_files(undisturbed, tmp_path):
     with executor.threads(2) as workers:
         simulated(tmp_path, [plot()], SMALL, workers)

@@ -80,9 +80,15 @@ class Member:
 @contextmanager
 def opened(entry: FileEntry) -> Iterator[IO[bytes]]:
     """Open an entry; whatever reading it may raise becomes a `FileProblem`."""
+    with reading(entry), entry.open() as file:
+        yield file
+
+
+@contextmanager
+def reading(entry: FileEntry) -> Iterator[None]:
+    """Make a `FileProblem` of whatever reading an entry may raise."""
     try:
-        with entry.open() as file:
-            yield file
+        yield
     except DAMAGE as bad:
         raise FileProblem(
             worded(

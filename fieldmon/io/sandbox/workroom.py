@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import re
 import sqlite3
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.signatures import FileKind
 from fieldmon.io.sandbox import limits
-from fieldmon.io.sandbox.file_entries import opened
+from fieldmon.io.sandbox.file_entries import opened, reading
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from fieldmon.io.sandbox.file_entries import FileEntry, Member
@@ -72,19 +73,41 @@ class Workroom:
         return path
 
     def _copy(self, entry: FileEntry, to: Path) -> None:
-        with opened(entry) as source, to.open("wb") as target:
-            while piece := source.read(1 << 20):
-                self.bytes_left -= len(piece)
-                if self.bytes_left < 0:
-                    raise FileProblem(
-                        worded(
-                            "A file may unpack to {size} at most, but {name} "
-                            "brings it to more. Pack less into it.",
-                            size=limits.size(limits.UNPACKED_BYTES),
-                            name=entry.name,
-                        )
-                    )
+        with opened(entry) as source, self._kept(to) as target:
+            while piece := self._piece(entry, source):
                 target.write(piece)
+
+    def _piece(self, entry: FileEntry, source: IO[bytes]) -> bytes:
+        """Return what comes next of a file; raise `FileProblem` where it is too much."""
+        with reading(entry):
+            piece = source.read(1 << 20)
+        self.bytes_left -= len(piece)
+        if self.bytes_left < 0:
+            raise FileProblem(
+                worded(
+                    "A file may unpack to {size} at most, but {name} "
+                    "brings it to more. Pack less into it.",
+                    size=limits.size(limits.UNPACKED_BYTES),
+                    name=entry.name,
+                )
+            )
+        return piece
+
+    @contextmanager
+    def _kept(self, copy: Path) -> Iterator[IO[bytes]]:
+        """Open a copy to write to; raise `FileProblem` where there is no room for it."""
+        try:
+            with copy.open("wb") as file:
+                yield file
+        except OSError as bad:
+            raise FileProblem(
+                worded(
+                    "A file is copied before it is read, but the temporary folder {folder} takes "
+                    "no copy ({value}). Make room there, or name another folder in TMPDIR.",
+                    folder=self.folder,
+                    value=bad.strerror or bad,
+                )
+            ) from bad
 
 
 def _is_geopackage(path: Path) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
 from fieldmon.errors import SettingError
 from fieldmon.infestation.clustering import ClusterEstimate, chance_apart, leaning
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
@@ -116,7 +117,7 @@ class Adaptive(Sampler):
         k = drive_day(
             scene.aisles.travel,
             scene.clock,
-            (scene.grid.linked, belief, would_find.view(np.uint8)),
+            (scene.grid.linked, belief, as_compiled(would_find.view(np.uint8))),
             (RowTours.of(n, n_rows, times.stop_s.size), tours, times, OwnRow.blank()),
             (scene.at, self.spares, scene.last_inspected == scene.day),
             (stops.plant, stops.arrive_s, taken),

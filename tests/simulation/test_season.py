@@ -267,3 +267,15 @@ def test_what_is_believed_between_visits_is_what_nights_make_of_it():
 def test_a_visit_every_no_days_is_refused():
     with pytest.raises(SettingError, match="visit_every must be 1 or more"):
         SeasonSettings(visit_every=0)
+
+
+@pytest.mark.parametrize(
+    ("name", "left", "found"),
+    [("naive", [2, 1, 0, 0, 0, 0], [4, 3, 2, 0, 0, 0]),
+     ("adaptive", [4, 3, 3, 2, 1, 0], [2, 4, 3, 3, 2, 1])],
+)  # fmt: skip
+def test_a_visit_a_day_is_what_it_was_before_visits_could_be_apart(name, left, found):
+    days = season(name)
+    assert [day.left for day in days] == left
+    assert [day.found for day in days] == found
+    assert [day.visit for day in days] == [*range(6)]

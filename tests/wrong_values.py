@@ -293,7 +293,7 @@ def _of_records(plot: fm.Plot) -> Iterator[Case]:
 def _of_settings() -> Iterator[Case]:
     pest, metrics = fm.read_pest("spider-mite"), [np.zeros(2) for _ in range(9)]
     metrics[3:6] = [np.zeros(2, int) for _ in range(3)]
-    known = fm.SeasonMetrics(*metrics)
+    known = fm.SeasonMetrics(*metrics, visit=np.ones(2, bool))
     for made in (fm.Application(), fm.Dose(0.5, "l/ha"), fm.ProductLabel("a"), fm.rover(), pest,
                  fm.Spread(), fm.Viewpoints(), fm.SeasonSettings(), known,
                  fm.MonitoringSettings(TODAY)):  # fmt: skip

@@ -11,9 +11,12 @@ from ..show import pest_figures
 from ..state import chosen_day, widget_memory
 from ..state.comparison import ComparisonSettings, Strategy
 from ..words import texts
+from ..words.language import listed
 from ..words.strategies import sampler_name
 
 MOST_ROBOTS = 5
+# so many days of visits are named
+_SOME = 6
 
 if TYPE_CHECKING:
     from fieldmon.infestation.pest_in_weather import PestInWeather
@@ -45,32 +48,45 @@ def settings(choices: Choices, pest: PestInWeather | None = None) -> ComparisonS
         Strategy(name, float(h), float(s), k)
         for name, h, s, k in product(samplers, hours, seconds, sorted(robots))
     )
-    first, *others = st.columns(4, vertical_alignment="bottom")
+    first, *others = st.columns(5, vertical_alignment="bottom")
     seeds = first.number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")
     return ComparisonSettings(strategies, *season(choices, others, pest), int(seeds))
 
 
 def season(
     choices: Choices, columns: list, pest: PestInWeather | None = None
-) -> tuple[int, float, float]:
-    """Show what a simulated season is like: days, share infested at the start, spread a night.
+) -> tuple[int, float, float, int]:
+    """Show what a simulated season is like.
 
-    Both begin as an open season believes. Where a pest is known, its nights are told instead of
-    asked for.
+    Days, share infested at the start, spread a night, days from one visit to the next. The share
+    and the spread begin as an open season believes. Where a pest is known, its nights are told
+    instead of asked for.
     """
-    show, (first, second, third) = widget_memory.show, columns
+    show, (first, apart, second, third) = widget_memory.show, columns
     own_share, own_rate = _believed(choices)
     if choices.season is not None:
         st.caption(texts.AS_BELIEVED.format(day=choices.units.said_day(choices.day)))
-    n_days = show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25)
+    n_days = int(show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25))
+    every = int(show(apart.number_input, texts.VISIT_EVERY, 1, 30, key="visit_every", default=1,
+                     help=texts.VISIT_EVERY_HELP))  # fmt: skip
+    _say_visits(n_days, every)
     share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5,
                  key=f"share {own_share:g}", default=own_share)  # fmt: skip
     if pest is not None:
         third.caption(texts.NIGHTS_OF_PEST.format(pest=pest_figures.title(pest.pest)))
-        return int(n_days), share / 100, 0.0
+        return n_days, share / 100, 0.0, every
     rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=0.5, key=f"rate {own_rate:g}",
                 default=own_rate, help=texts.SPREAD_HELP)  # fmt: skip
-    return int(n_days), share / 100, rate / 100
+    return n_days, share / 100, rate / 100, every
+
+
+def _say_visits(n_days: int, visit_every: int) -> None:
+    """Say on which days somebody comes, if not on all."""
+    if visit_every == 1:
+        return
+    days = [f"{day}" for day in range(1, n_days + 1, visit_every)]
+    few = days if len(days) <= _SOME else [*days[: _SOME - 2], "…", days[-1]]
+    st.caption(texts.VISITS_ON.format(visits=len(days), days=n_days, on=listed(few)))
 
 
 def _believed(choices: Choices) -> tuple[float, float]:

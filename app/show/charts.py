@@ -97,9 +97,10 @@ def detection(
 ) -> alt.LayerChart:
     """Return detection per day, a line for each sampler, with a rule at the day shown."""
     table = pd.concat(
-        pd.DataFrame({"strategy": name, "day": range(1, len(f.found) + 1), "mean": f.detection_pct})
+        pd.DataFrame({"strategy": name, "day": range(1, len(f.found) + 1), "mean": f.detection_pct,
+                      "visit": f.visit})
         for name, f in seasons.items()
-    )
+    )  # fmt: skip
     lines = _lines(table, _styles(list(seasons), samplers), axes)
     rule = (
         alt.Chart(pd.DataFrame({"day": [day]}))
@@ -118,24 +119,32 @@ def curves(table: pd.DataFrame, axes: tuple[str, str]) -> alt.Chart:
     return _lines(long, _styles(list(table.columns)), axes).properties(height=320)
 
 
-def _lines(table: pd.DataFrame, styles: Styles, axes: tuple[str, str]) -> alt.Chart:
-    """Return the mean by day, a line for each strategy, told apart by colour and by dashes."""
+def _lines(
+    table: pd.DataFrame, styles: Styles, axes: tuple[str, str]
+) -> alt.Chart | alt.LayerChart:
+    """Return the mean by day, a line for each strategy, told apart by colour and by dashes.
+
+    Where the table tells visits, only their days have a dot.
+    """
     tooltip = [
         alt.Tooltip("strategy", title=texts.COLUMN_STRATEGY),
         alt.Tooltip("day", title=axes[0]),
         alt.Tooltip("mean:Q", title=axes[1], format=".1f"),
     ]
-    return (
-        alt.Chart(table)
-        .mark_line(point=True, strokeWidth=2.5)
-        .encode(
-            x=alt.X("day:Q", title=axes[0], axis=alt.Axis(tickMinStep=1)),
-            y=alt.Y("mean:Q", title=axes[1], scale=alt.Scale(domain=[0, 100])),
-            color=alt.Color("strategy:N", scale=_scale(styles), legend=_LEGEND),
-            strokeDash=alt.StrokeDash("strategy:N", scale=_dashes(styles), legend=_LEGEND),
-            tooltip=tooltip,
-        )
+    apart = "visit" in table and not table["visit"].all()
+    base = alt.Chart(table).encode(
+        x=alt.X("day:Q", title=axes[0], axis=alt.Axis(tickMinStep=1)),
+        y=alt.Y("mean:Q", title=axes[1], scale=alt.Scale(domain=[0, 100])),
+        color=alt.Color("strategy:N", scale=_scale(styles), legend=_LEGEND),
+        tooltip=tooltip,
     )
+    line = base.mark_line(point=not apart, strokeWidth=2.5).encode(
+        strokeDash=alt.StrokeDash("strategy:N", scale=_dashes(styles), legend=_LEGEND)
+    )
+    if not apart:
+        return line
+    dots = base.mark_point(filled=True, opacity=1, size=60).transform_filter(alt.datum.visit)
+    return alt.layer(line, dots)
 
 
 def _styles(names: Sequence[str], samplers: Sequence[str] = ()) -> Styles:
@@ -187,7 +196,7 @@ def load() -> None:
 @_in_language
 def bands(
     curves: dict[str, tuple[NDArray[np.float64], ...]], axes: tuple[str, str],
-    samplers: Sequence[str] = (),
+    samplers: Sequence[str] = (), visit_every: int = 1,
 ) -> alt.LayerChart:  # fmt: skip
     """Return a line with its interval for each strategy.
 
@@ -196,7 +205,7 @@ def bands(
     styles = _styles(list(curves), samplers)
     table = pd.concat(
         pd.DataFrame({"strategy": name, "day": range(1, len(mean) + 1), "mean": mean, "low": low,
-                      "high": high})
+                      "high": high, "visit": np.arange(len(mean)) % visit_every == 0})
         for name, (mean, low, high) in curves.items()
     )  # fmt: skip
     band = (

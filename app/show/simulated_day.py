@@ -11,6 +11,7 @@ from fieldmon.planning.route import route_of
 from fieldmon.samplers.base import NEVER, Scene
 
 from ..words import texts
+from ..words.language import number as written
 from . import field_map, map_layers
 from .map_view import MapContent, Switch
 from .maps import colours, labels, legends, marks, route_layers
@@ -18,6 +19,7 @@ from .maps import colours, labels, legends, marks, route_layers
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SimulatedDay
 
     from ..state.choices import Choices
@@ -60,6 +62,16 @@ def content(
         legend=[*map_layers.legend(choices), *more],
         labels=[*labels.stops(driven), *map_layers.words(choices)],
     )  # fmt: skip
+
+
+def visit(season: SeasonMetrics, day: int, every: int) -> str:
+    """Return which visit a day, from 1, has or is after, and what all visits came to."""
+    past, since = divmod(day - 1, every)
+    said = texts.NO_VISIT if since else texts.VISIT_OF_DAY
+    said = said.format(visit=past + 1, visits=season.visits, day=day - since)
+    percent = texts.IN_PERCENT.format(value=written(season.visited_each_time_pct, ".0f"))
+    hours = written(season.worked_h.sum(), ",.0f")
+    return f"{said} {texts.VISITS_CAME_TO.format(hours=hours, percent=percent)}"
 
 
 def _left(day: SimulatedDay) -> NDArray[np.bool_]:

@@ -60,15 +60,22 @@ def _saved(gain: MarginalGain) -> dict[str, float]:
             "high": round(gain.saved.high) + 0.0}  # fmt: skip
 
 
-def tables(ranked: list[Outcome]) -> tuple[pd.DataFrame, pd.DataFrame]:
+def tables(ranked: list[Outcome], *, daily: bool = True) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return what each strategy lost and found, and how it worked; each with room in the panel."""
-    whole = table(ranked)
-    cut = list(whole.columns).index(texts.COLUMN_VISITED)
+    whole = table(ranked, daily=daily)
+    cut = list(whole.columns).index(_visited(daily=daily))
     return whole.iloc[:, :cut], whole.iloc[:, [0, *range(cut, whole.shape[1])]]
 
 
-def table(ranked: list[Outcome]) -> pd.DataFrame:
-    """Return what each strategy came to, the best first and marked; its verdict beside its name."""
+def _visited(*, daily: bool) -> str:
+    return texts.COLUMN_VISITED if daily else texts.COLUMN_VISITED_EACH
+
+
+def table(ranked: list[Outcome], *, daily: bool = True) -> pd.DataFrame:
+    """Return what each strategy came to, the best first and marked; its verdict beside its name.
+
+    `daily`: whether somebody comes on every day.
+    """
     base = ranked[0].loss.mean
     return pd.DataFrame(
         {
@@ -76,7 +83,7 @@ def table(ranked: list[Outcome]) -> pd.DataFrame:
             texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
             texts.COLUMN_LOSS: [_interval(_none_less(o.loss), ",.0f") for o in ranked],
             texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), ".3g", " %") for o in ranked],
-            texts.COLUMN_VISITED: [
+            _visited(daily=daily): [
                 texts.IN_PERCENT.format(value=number(o.visited_pct, ".1f")) for o in ranked
             ],
             texts.COLUMN_HALF: [_day(o.half_day) for o in ranked],

@@ -72,20 +72,22 @@ def recorded_drive(key: str, _data: bytes, _plot: Plot, _scene: Scene) -> DayInT
 def simulated_season(
     key: str,
     sampler_name: str,
-    numbers: tuple[int, float, float, int],
+    numbers: tuple[int, float, float, int, int],
     robot: Robot,
     _laid: LaidPlot,
 ) -> tuple[list[SimulatedDay], SeasonMetrics]:
     """Return a simulated season and its figures; `key` stands for plot, records, day and pest.
 
-    `numbers` are days, share infested at the start, spread a night, and seed.
+    `numbers` are days, share infested at the start, spread a night, days from one visit to the
+    next, and seed.
     """
-    n_days, share, rate, seed = numbers
+    n_days, share, rate, visit_every, seed = numbers
     streams = RandomStreams(seed)
     plot, chance, pest_in_weather = _laid
     robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
     start = season_start(plot.grid, chance, share, streams)
-    settings = SeasonSettings(n_days=n_days, spread=Spread(rate), pest=pest_in_weather)
+    spread = Spread(rate)
+    settings = SeasonSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
     decides = sampler(sampler_name)
     walk = list(simulated_days(plot.aisles, robot, decides, start, settings, streams))
     return walk, season_metrics(walk)

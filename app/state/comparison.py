@@ -73,6 +73,8 @@ class ComparisonSettings:
         Plants infested at the start, 0 to 1.
     rate
         Chance a night that an infested plant infests each plant next to it, where no pest is known.
+    visit_every
+        Days from one visit to the next.
     seeds
         Seasons for each strategy.
     """
@@ -81,6 +83,7 @@ class ComparisonSettings:
     n_days: int
     share: float
     rate: float
+    visit_every: int
     seeds: int
 
 
@@ -97,7 +100,7 @@ class Outcome:
     detection_pct
         Detection at the end of the season.
     visited_pct
-        Plants inspected a day.
+        Plants inspected a visit.
     half_day
         First day with half of all infestations found; the median over seeds, None if it is never.
     behind
@@ -173,8 +176,8 @@ class Comparison(BackgroundWork):
             strategy.sampler, strategy.hours, strategy.inspection_s, settings.share, settings.rate
         )
         team = Team(strategy.robots, TEAMWORK)
-        season = seeds.start, settings.n_days
-        return simulated_season(self._laid, self._robot, levels, *season, team)
+        days = settings.n_days, settings.visit_every
+        return simulated_season(self._laid, self._robot, levels, seeds.start, days, team)
 
 
 def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:
@@ -192,7 +195,7 @@ def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:
             strategy,
             summary_statistics(losses[strategy]),
             summary_statistics(np.array([s.detection_pct[-1] for s in seasons[strategy]])),
-            float(np.mean([s.visited_pct.mean() for s in seasons[strategy]])),
+            float(np.mean([s.visited_each_time_pct for s in seasons[strategy]])),
             _median_day(seasons[strategy], 50.0),
             None if strategy == ranked[0] else summary_statistics(losses[strategy] - best),
             _median_day(seasons[strategy], 80.0),

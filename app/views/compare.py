@@ -64,9 +64,10 @@ def _results(choices: Choices, running: Comparison) -> None:
         return  # the sentence is there at once; curves and table come with their first interval
     curves = {verdicts.name(one): curve(walked) for one, walked in seasons.items()}
     axes, samplers = (texts.DAY_AXIS, texts.DETECTION_AXIS), [one.sampler for one in seasons]
-    st.altair_chart(charts.bands(curves, axes, samplers), alt=texts.DETECTION_AXIS)
+    every = running.settings.visit_every
+    st.altair_chart(charts.bands(curves, axes, samplers, every), alt=texts.DETECTION_AXIS)
     # two tables of words that wrap: of one wide one the last columns were out of sight
-    for table in verdicts.tables(ranked):
+    for table in verdicts.tables(ranked, daily=every == 1):
         st.table(table, hide_index=True, border="horizontal")
     alone = [o.strategy for o in ranked if o.strategy.robots == 1]
     if not alone:

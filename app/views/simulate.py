@@ -26,7 +26,8 @@ def show(choices: Choices) -> None:
     """Simulate, and show any day of any sampler on the map."""
     st.caption(texts.SEASON_INTRO)
     pest = chosen_pest.in_weather(choices)
-    numbers = comparing.season(choices, st.columns(3, vertical_alignment="bottom"), pest)
+    numbers = comparing.season(choices, st.columns(4, vertical_alignment="bottom"), pest)
+    n_days, *_, every = numbers
     seed = st.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
     names = _names(choices)
     laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
@@ -41,9 +42,11 @@ def show(choices: Choices) -> None:
         texts.SHOW_SAMPLER, names, default=choices.sampler, required=True,
         format_func=sampler_name, key=f"season_sampler {names}",
     )  # fmt: skip
-    number = st.slider(texts.SHOW_DAY, 1, numbers[0], min(5, numbers[0]), key="season_day")
+    number = st.slider(texts.SHOW_DAY, 1, n_days, min(5, n_days), key="season_day")
     truth = st.toggle(texts.SHOW_TRUTH, key="truth")
     field_map.want(simulated_day.content(choices, seasons[name][0], number - 1, truth=truth))
+    if every > 1:
+        st.caption(simulated_day.visit(seasons[name][1], number, every))
     _figures(seasons[name][0][number - 1])
     figures = {sampler_name(name): value[1] for name, value in seasons.items()}
     axes = texts.DAY_AXIS, texts.DETECTION_AXIS

@@ -283,6 +283,17 @@ DEVELOPMENT_NOTE = (
     "(dashed)."
 )
 DAYS, INFESTED, SPREAD, SEED = "Days", "Infested at the start (%)", "Spread a night (%)", "Seed"
+VISIT_EVERY = "A visit every (days)"
+VISIT_EVERY_HELP = (
+    "1: a visit on every day. 7: on days 1, 8, 15 and so on. Between visits nobody inspects, and "
+    "insects go on."
+)
+VISITS_ON = "Visits on {visits} of {days} days: {on}."
+VISIT_OF_DAY = "Visit {visit} of {visits}."
+NO_VISIT = "No visit on this day. The last one, visit {visit} of {visits}, was on day {day}."
+VISITS_CAME_TO = (
+    "The whole season: {hours} hours worked, {percent} of the plants inspected a visit."
+)
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
 AS_BELIEVED = "*Infested at the start* and *Spread a night* begin as the season believes on {day}."
 NIGHTS_OF_PEST = "Spreads as the chosen pest, by its weather where that is known: {pest}."
@@ -965,6 +976,7 @@ INTERVAL_OF = "{value} ({low} to {high})"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
 COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
+COLUMN_VISITED_EACH = "inspected a visit"
 COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"

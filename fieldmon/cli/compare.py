@@ -20,9 +20,10 @@ from fieldmon.cli.options import (
     Passing,
     PlotFiles,
     Records,
+    SeasonDays,
+    VisitEvery,
     WorkDate,
     WorkerOptions,
-    WorkingDays,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
@@ -76,7 +77,8 @@ class CompareOptions:
     contact: Contact = 30.0
     least_gain: LeastGain = 0.5
     passing: Passing = None
-    days: WorkingDays = 25
+    days: SeasonDays = 25
+    visit_every: VisitEvery = 1
     seeds: Annotated[
         int, typer.Option(help="Simulated seasons of each.", callback=within(PAIRED))
     ] = 10
@@ -108,6 +110,7 @@ def compare(options: CompareOptions) -> None:
     A comparison that was stopped continues where its table ends.
 
     With --pest and --weather the insects are that pest in that weather, and the chance map knows.
+    With --visit-every 7 all of them work on days 1, 8, 15 and 22, and insects spread on all.
 
     Example: fieldmon compare vines.zip --feature 3 --pest spider-mite --weather station.csv
     Example: fieldmon compare vines.zip --feature 3 --observations mites.csv --robots 1-3
@@ -119,7 +122,7 @@ def compare(options: CompareOptions) -> None:
     can_be_folder(options.output)
     sizes = robot_numbers(options.robots)
     settings = [each for one in _scenarios(options) for each in _settings(one, sizes, options)]
-    made = rows(_outcomes(settings, options), options.days)
+    made = rows(_outcomes(settings, options), options.days, options.visit_every)
     for sentence in sentences(made):
         typer.echo(sentence)
     write_all(options.output, {"robots.md": table(made), "robots.html": report_html(made)})
@@ -164,7 +167,7 @@ def _scenarios(options: CompareOptions) -> list[TeamScenario]:
         TeamScenario(
             plot, chance,
             Spread(rate, options.to or "each"),  # type: ignore[arg-type]
-            robot, options.infested, options.days, pest_in_weather,
+            robot, options.infested, options.days, pest_in_weather, options.visit_every,
         )
         for plot, chance in known
         for rate in options.spread or [0.1]

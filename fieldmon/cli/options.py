@@ -265,7 +265,14 @@ LastDate = Annotated[
         "--date", help="The day, YYYY-MM-DD; else the last planned or recorded, today at most."
     ),
 ]
-WorkingDays = Annotated[int, typer.Option(help="Working days.", callback=within(DAYS))]
+SeasonDays = Annotated[int, typer.Option(help="Days of a season.", callback=within(DAYS))]
+VisitEvery = Annotated[
+    int,
+    typer.Option(
+        help="Days from one visit to the next, the first on day 1; between visits nobody inspects.",
+        callback=within(DAYS),
+    ),
+]
 InfestedAtStart = Annotated[
     float, typer.Option(help="Share of plants infested at the start.", callback=within(SHARE))
 ]

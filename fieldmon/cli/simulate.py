@@ -18,9 +18,10 @@ from fieldmon.cli.options import (
     MaybePlotFile,
     PlotFiles,
     Records,
+    SeasonDays,
+    VisitEvery,
     WorkDate,
     WorkerOptions,
-    WorkingDays,
     refuse_idle_every,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
@@ -28,6 +29,7 @@ from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED, SHARE
+from fieldmon.compute.wording import counted
 from fieldmon.samplers import kind_of, sampler
 
 if TYPE_CHECKING:
@@ -36,11 +38,13 @@ if TYPE_CHECKING:
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
-    from fieldmon.simulation.season import SeasonSettings
+    from fieldmon.simulation.season import SeasonSettings, SimulatedDay
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.treating import TreatmentRule
 
 _HEADER = "sampler,day,detection_pct,visited_pct,ever_visited_pct,found,infested_left"
+# more of those whose visits are days apart
+_OF_VISITS = ",visit,hours"
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,8 @@ class SimulateOptions:
         ),
     ] = None
     every: Every = None
-    days: WorkingDays = 25
+    days: SeasonDays = 25
+    visit_every: VisitEvery = 1
     seed: Annotated[
         int, typer.Option(help="Seed: the same seed, the same season.", callback=within(SEED))
     ] = 1
@@ -96,7 +101,11 @@ class SimulateOptions:
         self.pest_options.check_alone(spread=self.spread)
         rate = 0.1 if self.spread is None else self.spread
         return SeasonSettings(
-            n_days=self.days, spread=Spread(rate), pest=pest_in_weather, treating=_treating(self)
+            n_days=self.days,
+            spread=Spread(rate),
+            pest=pest_in_weather,
+            treating=_treating(self),
+            visit_every=self.visit_every,
         )
 
 
@@ -108,8 +117,10 @@ def simulate(options: SimulateOptions) -> None:
     Detection is all finds so far as a percentage of all infestations so far.
 
     With --pest and --weather the insects are that pest in that weather, and the chance map knows.
+    With --visit-every 7 somebody inspects on days 1, 8, 15 and 22, and insects spread on all.
 
     Example: fieldmon simulate vines.zip --feature 3 --pest spider-mite --weather station.csv
+    Example: fieldmon simulate vines.zip --feature 3 --visit-every 7 --hours 12
     Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10
     """
     import numpy as np
@@ -138,7 +149,8 @@ def simulate(options: SimulateOptions) -> None:
     if options.output is not None:
         from fieldmon.io.atomic_write import write_whole
 
-        write_whole(options.output, "\n".join([_HEADER, *rows, ""]).encode())
+        header = _HEADER + (_OF_VISITS if season.visit_every > 1 else "")
+        write_whole(options.output, "\n".join([header, *rows, ""]).encode())
         typer.echo(f"Table written to {options.output}")
 
 
@@ -157,22 +169,45 @@ def _season(
     settings_of = kind_of(name.value).settings_for(options.every)
     decides, streams = sampler(name.value, **settings_of), RandomStreams(options.seed)
     walk = simulated_days(plot.aisles, robot, decides, begin, settings, streams)
-    rows, plant_days, sprayed = [], 0, []
-    typer.echo(f"\n{name}\n day  detection %  visited %  found  infested left")
+    rows, plant_days, sprayed, inspected, worked_s = [], 0, [], 0, 0.0
+    apart = settings.visit_every > 1
+    visit = "  visit" if apart else ""
+    typer.echo(f"\n{name}\n day{visit}  detection %  visited %  found  infested left")
     for each in walk:
-        plant_days += each.left
+        plant_days, inspected = plant_days + each.left, inspected + len(each.work)
+        worked_s += each.worked_s
         sprayed += [] if each.sprayed is None else [each.sprayed.zones]
-        typer.echo(
-            f"{each.number + 1:4d}  {each.detection_pct:11.1f}  {each.visited_pct:9.1f}  "
-            f"{each.found:5d}  {each.left:13d}"
-        )
+        typer.echo(_line(each, apart=apart))
         rows.append(
             f"{name},{each.number + 1},{each.detection_pct:.4f},{each.visited_pct:.4f},"
             f"{each.ever_visited_pct:.4f},{each.found},{each.left}"
         )
+        if apart:
+            visit = "" if each.visit is None else f"{each.visit + 1}"
+            rows[-1] += f",{visit},{each.worked_s / 3600:.4f}"
+    if apart:
+        visits = counted(settings.visits, "visit")
+        typer.echo(
+            f"{visits} in {settings.n_days} days, {worked_s / 3600:.1f} h worked, "
+            f"{inspected / settings.visits:.0f} plants inspected a visit, {plant_days} infested "
+            "plant-days"
+        )
     if settings.treating is not None:
         typer.echo(_cost(settings.treating.costs, plant_days, sprayed))
     return rows
+
+
+def _line(day: SimulatedDay, *, apart: bool) -> str:
+    """Return a day as a line of the table on the screen; with its visit where they are apart."""
+    visit, visited, found = "", f"{day.visited_pct:.1f}", str(day.found)
+    if apart:
+        visit = f"  {'-' if day.visit is None else day.visit + 1:>5}"
+    if day.visit is None:
+        visited = found = "-"
+    return (
+        f"{day.number + 1:4d}{visit}  {day.detection_pct:11.1f}  {visited:>9}  {found:>5}  "
+        f"{day.left:13d}"
+    )
 
 
 def _treating(options: SimulateOptions) -> TreatmentRule | None:

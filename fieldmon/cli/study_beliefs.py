@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -32,9 +33,14 @@ def beliefs(
         ),
     ] = None,
     sampler: Annotated[str, typer.Option(help="Sampler that inspects.")] = "adaptive",
-    every: Annotated[
+    visit_every: Annotated[
         int,
-        typer.Option(help="Days from one inspection to the next.", callback=within(_APART)),
+        typer.Option(
+            "--visit-every",
+            "--every",
+            help="Days from one visit to the next, the first on day 1.",
+            callback=within(_APART),
+        ),
     ] = 1,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the report (HTML).")
@@ -51,7 +57,6 @@ def beliefs(
     from fieldmon.studies.samplers.calibration import (
         BELIEFS,
         OF_PESTS,
-        OnSomeDays,
         calibration,
         report_html,
     )
@@ -69,15 +74,16 @@ def beliefs(
     chosen = next((each for each in known if each.name.startswith(scenario or "")), None)
     if chosen is None:
         raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
-    made, inspects = {}, OnSomeDays(named(sampler), every)
+    made, inspects = {}, named(sampler)
+    visited = replace(chosen, visit_every=visit_every)
     for name, believe in (BELIEFS if pest_in_weather is None else OF_PESTS).items():
-        made[name] = c = calibration([chosen], inspects, believe, seeds, _DAYS)
+        made[name] = c = calibration([visited], inspects, believe, seeds, _DAYS)
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
             f"(as suspicious or not {c.suspicious_log_score:.4f}), skill {c.skill:.2f}, intervals "
             f"of 90 and 50 % hold on {c.covered:.0%} and {c.half_covered:.0%} of mornings, "
             f"{1000 * c.seconds_a_day:.0f} ms a day"
         )
-    days = "on each" if every == 1 else f"every {every} days"
+    days = "on each" if visit_every == 1 else f"every {visit_every} days"
     about = f"{chosen.name}; {seeds} seasons of {_DAYS} days, inspected {days} by {sampler}."
     write_all(output, {"beliefs.html": report_html(made, about, seeds)})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +10,7 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.options import VisitEvery
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.waiting import counting
@@ -59,6 +60,7 @@ class SamplersOptions:
         Path, typer.Option("--output", "-o", help="Folder for the table (CSV) and report (HTML).")
     ] = Path()
     pest: PestName = None
+    visit_every: VisitEvery = 1
 
 
 @with_options
@@ -78,6 +80,8 @@ def samplers(options: SamplersOptions) -> None:
     With --maps the plots are maps of real plants, on which nothing spreads. One of your own is a
     table NAME.map.csv with the columns row, plant, infested, row_m and plant_m.
 
+    With --visit-every 7 somebody inspects on days 1, 8, 15 and 22, and insects spread on all.
+
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """
     from fieldmon.studies.samplers.report import report_html
@@ -89,6 +93,8 @@ def samplers(options: SamplersOptions) -> None:
             "--pest goes without --maps, where nothing spreads, and without --tune, which searches "
             "for the study's own insects."
         )
+    if options.visit_every > 1 and (options.tune or options.maps is not None):
+        raise SettingError("--visit-every goes without --maps and --tune: both know daily visits.")
     if options.maps is not None:
         _on_maps(options.maps, options.output)
         return
@@ -97,6 +103,7 @@ def samplers(options: SamplersOptions) -> None:
         return
     table = options.output / "samplers.csv"
     meant = _scenarios(options.scenario, pest_in_weather_of(options.pest), full=options.full)
+    meant = [replace(each, visit_every=options.visit_every) for each in meant]
     shown = _outcomes(meant, options.seeds, table)
     for sentence in (*ratio_lines(shown), *sentences(shown)):
         typer.echo(sentence)

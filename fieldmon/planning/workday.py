@@ -47,6 +47,12 @@ class Workday:
     end_s: float
     wait_s: NDArray[np.float64] | None = None
 
+    @classmethod
+    def of_nobody(cls) -> Workday:
+        """Return the day of somebody who does not come."""
+        s = np.empty(0)
+        return cls(np.empty(0, np.int32), s, np.empty(0, np.bool_), s, s, 0.0)
+
     def __repr__(self) -> str:
         inspected = f"{counted(len(self), 'plant')} inspected"
         finds = counted(int(np.count_nonzero(self.found)), "find")

@@ -85,7 +85,8 @@ def simulate(
     robot
         Who inspects; None: the usual `Robot`.
     settings
-        Days, and what insects do at night; None: 25 days, see `SeasonSettings`.
+        Days, visits, and what insects do at night; None: a visit on each of 25 days, see
+        `SeasonSettings`.
     seed
         Of nights and of what inspections find.
 
@@ -109,6 +110,10 @@ def simulate(
     >>> season = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))
     >>> season.left.shape
     (3,)
+    >>> weekly = fm.SeasonSettings(n_days=8, visit_every=7)
+    >>> season = fm.simulate(plot, start, "naive", settings=weekly)
+    >>> season.visits, (season.worked_h > 0).nonzero()[0].tolist()
+    (2, [0, 7])
     """
     decides = sampler_or_name(sampler)
     chosen, streams = settings or SeasonSettings(), RandomStreams(seed)

@@ -44,6 +44,8 @@ class SeasonMetrics:
         Hours worked on each day, of all who work.
     sprayed_m2, spent
         Area sprayed on each evening, and what that cost.
+    visit
+        Whether somebody came to inspect on each day.
 
     Examples
     --------
@@ -64,6 +66,7 @@ class SeasonMetrics:
     worked_h: NDArray[np.float64]
     sprayed_m2: NDArray[np.float64]
     spent: NDArray[np.float64]
+    visit: NDArray[np.bool_]
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A season's")
@@ -71,12 +74,24 @@ class SeasonMetrics:
 
     def __repr__(self) -> str:
         days, finds = counted(len(self.left), "day"), counted(int(self.found.sum()), "find")
-        return f"<SeasonMetrics: {days}, {finds}, {self.infested_plant_days} infested plant-days>"
+        visits = "" if self.visit.all() else f" with {counted(self.visits, 'visit')}"
+        lost = f"{self.infested_plant_days} infested plant-days"
+        return f"<SeasonMetrics: {days}{visits}, {finds}, {lost}>"
 
     @property
     def infested_plant_days(self) -> int:
         """Return the sum over all evenings of the plants still infested: the grower's loss."""
         return int(self.left.sum())
+
+    @property
+    def visits(self) -> int:
+        """Return on how many days somebody came to inspect."""
+        return int(np.count_nonzero(self.visit))
+
+    @property
+    def visited_each_time_pct(self) -> float:
+        """Return the plants inspected on a visit in percent of all plants, on average."""
+        return float(self.visited_pct[self.visit].mean())
 
     def first_day(self, level_pct: float) -> int | None:
         """Return the first day (from 1) at whose end `level_pct` of all so far were found.
@@ -98,6 +113,7 @@ def season_metrics(days: Iterable[SimulatedDay]) -> SeasonMetrics:
             day.ever_infested,
             day.left,
             day.worked_s / 3600.0,
+            day.visit is not None,
             *(
                 (0.0, 0.0)
                 if day.sprayed is None
@@ -106,8 +122,10 @@ def season_metrics(days: Iterable[SimulatedDay]) -> SeasonMetrics:
         )
         for day in days
     ]
-    columns = np.array(rows, dtype=np.float64).reshape(-1, 9).T
+    columns = np.array(rows, dtype=np.float64).reshape(-1, 10).T
     found, ever, left = columns[3:6].astype(np.int64)
     new = np.diff(ever, prepend=0)
     detection, visited, ever_visited = columns[:3]
-    return SeasonMetrics(detection, visited, ever_visited, found, new, left, *columns[6:])
+    worked, visit, sprayed, spent = columns[6:]
+    by_day = detection, visited, ever_visited, found, new, left, worked, sprayed, spent
+    return SeasonMetrics(*by_day, visit.astype(np.bool_))

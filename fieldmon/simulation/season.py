@@ -14,7 +14,7 @@ from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.planning.workday import draw_detections, work_day
+from fieldmon.planning.workday import Workday, draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 from fieldmon.simulation.insects import NightInsects, PestInsects
 from fieldmon.simulation.mornings import MorningBeliefs
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.pest_in_weather import PestInWeather
-    from fieldmon.planning.workday import Workday
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
@@ -55,7 +54,7 @@ class SeasonSettings:
     Parameters
     ----------
     n_days
-        Working days (thesis: 25).
+        Days (thesis: 25).
     spread
         What the insects do at night.
     believed_spread
@@ -76,12 +75,18 @@ class SeasonSettings:
         The pest and the weather that the chance map knows of; None: the same.
     treating
         By what rule it is treated in the evening, see `TreatmentRule`; None: never.
+    visit_every
+        Days from one visit to the next, the first on the first day; 1: a visit a day. On the days
+        between, nobody inspects or treats.
 
     Examples
     --------
     >>> import fieldmon as fm
     >>> fm.SeasonSettings(n_days=10, spread=fm.Spread(rate_per_day=0.05)).n_days
     10
+    >>> weekly = fm.SeasonSettings(visit_every=7)
+    >>> weekly.visits, weekly.visit_of(7), weekly.visit_of(8)
+    (4, 1, None)
     """
 
     n_days: int = 25
@@ -94,11 +99,23 @@ class SeasonSettings:
     pest: PestInWeather | None = None
     believed_pest: PestInWeather | None = None
     treating: TreatmentRule | None = None
+    visit_every: int = 1
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A season's")
         must_be_in("A season's n_days", DAYS, self.n_days)
         must_be_in("A season's hidden_nights", _HIDDEN, self.hidden_nights)
+        must_be_in("A season's visit_every", DAYS, self.visit_every)
+
+    @property
+    def visits(self) -> int:
+        """Return on how many of its days somebody comes."""
+        return visits_in(self.n_days, self.visit_every)
+
+    def visit_of(self, number: int) -> int | None:
+        """Return the number of the visit of a day, both from 0; None: nobody comes."""
+        visit, days_since = divmod(number, self.visit_every)
+        return None if days_since else visit
 
     def night(
         self, grid: PlantGrid, infested: NDArray[np.bool_], key: np.uint64
@@ -136,6 +153,17 @@ class SeasonSettings:
         return lambda _: self.believed_spread or self.spread
 
 
+def visits_in(n_days: int, visit_every: int) -> int:
+    """Return how many visits there are in so many days, the first on the first day.
+
+    Examples
+    --------
+    >>> visits_in(25, 7)
+    4
+    """
+    return 1 + (n_days - 1) // visit_every
+
+
 @dataclass(frozen=True, eq=False)
 class SimulatedDay:
     """One day of a simulated season.
@@ -156,6 +184,8 @@ class SimulatedDay:
         Infestations so far, this morning's included (a plant infested again counts again).
     ever_found
         Finds so far, today's included.
+    visit
+        Number of today's visit, from 0; None: nobody came.
     each
         The working day of each of a team; of one alone it is `work`.
     evening
@@ -172,6 +202,7 @@ class SimulatedDay:
     last_inspected: NDArray[np.int32]
     ever_infested: int
     ever_found: int
+    visit: int | None
     each: tuple[Workday, ...] = ()
     evening: NDArray[np.bool_] | None = None
     sprayed: Sprayed | None = None
@@ -245,7 +276,9 @@ def simulated_days(
     season = RunningSeason(aisles, robot, sampler, start, settings)
     keys = zip(*(streams.keys(name) for name in ("sampler", "inspect", "spread")), strict=True)
     for number, (own, inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
-        if season.moves_by_day:
+        if settings.visit_of(number) is None:
+            day = season.worked(number, Workday.of_nobody())
+        elif season.moves_by_day:
             day = season.work_by_hour(number, own, inspect, overnight)
         else:
             day = season.work(number, own, inspect)
@@ -367,6 +400,7 @@ class RunningSeason:
             self.last_inspected,
             self.ever_infested,
             self.ever_found,
+            self.settings.visit_of(number),
             each,
             sprayed=self._treat(number, work),
         )
@@ -374,7 +408,11 @@ class RunningSeason:
     def _treat(self, number: int, work: Workday) -> Sprayed | None:
         """Return what is treated on an evening by the season's rule."""
         rule, last = self.settings.treating, self.last_treated
-        if rule is None or (last is not None and number - last < rule.every_days):
+        if (
+            rule is None
+            or self.settings.visit_of(number) is None
+            or (last is not None and number - last < rule.every_days)
+        ):
             return None
         zones = rule.treated(self.aisles.grid, self.mornings.evening(number, work).chance)
         if zones is None:

@@ -12,7 +12,7 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.planning.members import Teamwork, team_of
 from fieldmon.planning.team_day import merged, team_day
 from fieldmon.planning.team_worker import Posted
-from fieldmon.planning.workday import draw_detections
+from fieldmon.planning.workday import Workday, draw_detections
 from fieldmon.samplers.base import resting_place
 from fieldmon.simulation.season import RunningSeason, check_start, simulated_days
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.team_news import Learn
-    from fieldmon.planning.workday import Workday
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler, Scene, WouldFind
@@ -90,7 +89,10 @@ def simulated_team_days(
     names = ("inspect", "spread")
     keys = zip(*(streams.keys(name) for name in names), strict=True)
     for number, (inspect, overnight) in zip(range(settings.n_days), keys, strict=False):
-        day = season.day(number, streams, inspect, overnight)
+        if settings.visit_of(number) is None:
+            day = season.worked(number, Workday.of_nobody())
+        else:
+            day = season.day(number, streams, inspect, overnight)
         yield day
         season.pass_night(day, overnight)
 

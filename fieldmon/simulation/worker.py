@@ -82,7 +82,7 @@ def simulate_chunk(
     rows, plot, robot = [], laid.plot, Robot().with_times(robot_times)
     named = replace(levels, sampler=label_of(levels.sampler))
     for seed in seeds:
-        season = simulated_season(laid, robot, levels, seed, n_days)
+        season = simulated_season(laid, robot, levels, seed, (n_days, 1))
         about = {"plot": plot.field.name, **vars(named), "seed": seed, "days": n_days}
         rows.append(about | {"plants": len(plot.grid)} | _measures(season))
     return rows
@@ -93,14 +93,18 @@ def simulated_season(
     robot: Robot,
     levels: Combination,
     seed: int,
-    n_days: int,
+    days: tuple[int, int],
     team: Team = ONE,
 ) -> SeasonMetrics:
-    """Return what one season comes to, on a plot with its chances of infestation."""
-    plot, chance, pest_in_weather = laid
+    """Return what one season comes to, on a plot with its chances of infestation.
+
+    `days` are how many it has, and how many from one visit to the next.
+    """
+    (plot, chance, pest_in_weather), (n_days, visit_every) = laid, days
     streams = RandomStreams(seed)
     start = season_start(plot.grid, chance, levels.infested, streams)
-    settings = SeasonSettings(n_days=n_days, spread=Spread(levels.spread), pest=pest_in_weather)
+    spread = Spread(levels.spread)
+    settings = SeasonSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
     robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
     decides = sampler_or_name(levels.sampler)

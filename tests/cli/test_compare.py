@@ -69,3 +69,17 @@ def test_a_plot_and_hectares_are_too_much_and_a_folder_must_be_one(run):
     assert (code, "must be a folder" in err) == (2, True)
     code, _, err, _ = run("compare", "--hectares", "0.1", "--to", "nobody", *SHORT)
     assert (code, "Spread goes to" in err) == (2, True)
+
+
+def test_teams_may_come_every_so_many_days(run, tmp_path):
+    asked = ("compare", "--hectares", "0.1", "--robots", "1-2", *SHORT)
+    code, out, err, _ = run(*asked, "--visit-every", "2")
+    assert code == 0, err
+    assert "spread 10% to each, a visit every 2 days (adaptive" in out
+    table = (tmp_path / "robots.md").read_text()
+    assert table.count(" in 2 visits |") == 2
+    # its table goes on with seasons of a visit a day, and mixes none
+    run(*asked)
+    assert "visit" not in (tmp_path / "robots.md").read_text()
+    with (tmp_path / "robots.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == 8

@@ -24,3 +24,23 @@ def test_a_season_may_be_treated_by_a_rule_and_says_what_that_came_to(run):
     code, _, err, _ = run(*words, "--treat-from", 0.01, "--treat", "half")
     assert code == 2
     assert "'zones' or 'whole'" in err
+
+
+def test_visits_may_be_days_apart_and_are_told_from_days(run, tmp_path):
+    words = ["simulate", ZIP, "--feature", "Nursery", "--days", 5, "--sampler", "naive"]
+    plain = run(*words, "-o", "plain.csv")[1]
+    run(*words, "--visit-every", 1, "-o", "daily.csv")
+    daily = (tmp_path / "daily.csv").read_text(encoding="utf-8")
+    assert daily == (tmp_path / "plain.csv").read_text(encoding="utf-8")
+    assert "visits" not in plain
+    code, out, err, _ = run(*words, "--visit-every", 3, "-o", "apart.csv")
+    assert code == 0, err
+    assert "2 visits in 5 days, " in out
+    assert "plants inspected a visit" in out
+    head, *rows = (tmp_path / "apart.csv").read_text(encoding="utf-8").splitlines()
+    assert head.endswith(",infested_left,visit,hours")
+    assert [row.split(",")[-2] for row in rows] == ["1", "", "", "2", ""]
+    # the first visit is that of a season with one a day
+    assert rows[0].startswith(daily.splitlines()[1])
+    code, _, err, _ = run(*words, "--visit-every", 0)
+    assert (code, "--visit-every must be 1 or more" in err) == (2, True)

@@ -13,6 +13,7 @@ from tests.cli.estate import table
         (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
         (["--maps", "."], "must hold a map of plants"),
         (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),
+        (["--visit-every", "7", "--tune"], "--visit-every goes without --maps and --tune"),
         (["--pest", "whitefly", "--scenario", "world"], "must begin with world"),
     ],
 )

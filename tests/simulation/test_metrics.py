@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
+from fieldmon.simulation.season import SeasonSettings
 from tests.simulation.test_season import season
 
 
 def by_hand(detection):
     zeros = np.zeros(len(detection), int)
-    return SeasonMetrics(np.array(detection), *[zeros] * 8)
+    return SeasonMetrics(np.array(detection), *[zeros] * 8, visit=zeros == 0)
 
 
 @pytest.mark.parametrize(("level", "day"), [(30, 2), (50, 3), (80, None), (100, None)])
@@ -32,3 +33,15 @@ def test_the_columns_are_those_of_the_days():
 
 def test_no_days_have_no_figures():
     assert len(season_metrics([]).found) == 0
+
+
+def test_visits_are_told_from_days():
+    days = season("naive", settings=SeasonSettings(8, visit_every=7))
+    weekly = season_metrics(days)
+    assert weekly.visit.tolist() == [True, *[False] * 6, True]
+    assert weekly.visited_each_time_pct == pytest.approx(weekly.visited_pct.sum() / 2)
+    assert repr(weekly).startswith("<SeasonMetrics: 8 days with 2 visits, ")
+    daily = season_metrics(season("naive"))
+    assert daily.visits == 6
+    assert daily.visited_each_time_pct == daily.visited_pct.mean()
+    assert "visit" not in repr(daily)

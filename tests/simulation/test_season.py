@@ -1,5 +1,6 @@
 """Many working days while the insects spread."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -227,3 +228,54 @@ def test_each_morning_begins_with_what_the_days_before_it_left(name, hours, retu
         assert day.last_inspected.tolist() == last.tolist()
     assert len(watched.scenes) == len(days) == 4
     assert bool(trail) == (hours > 0.01)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_between_visits_nobody_inspects_and_insects_go_on(name):
+    weekly = season(name, settings=SeasonSettings(9, Spread(0.2), visit_every=4))
+    assert [day.visit for day in weekly] == [0, None, None, None, 1, None, None, None, 2]
+    for day in weekly:
+        assert (len(day.work) > 0) == (day.worked_s > 0) == (day.visit is not None)
+    assert weekly[3].ever_infested > weekly[0].ever_infested
+    assert weekly[3].left > weekly[0].left
+    # the first visit is that of a season with one a day
+    daily = season(name, settings=SeasonSettings(1, Spread(0.2)))
+    assert (daily[0].work.plant == weekly[0].work.plant).all()
+
+
+def test_all_samplers_meet_the_same_insects_on_the_same_visits():
+    settings = SeasonSettings(5, Spread(0.2), visit_every=2)
+    blind = Robot(hours=2.0, detection=0.0)
+    # who finds nothing changes nothing: nights do not know of visits
+    daily = season("naive", blind, replace(settings, visit_every=1))[-1].infested
+    for name in ("naive", "dynamic", "adaptive"):
+        assert (season(name, blind, settings)[-1].infested == daily).all()
+
+
+def test_a_sweep_goes_on_where_the_last_visit_ended():
+    one, _, two = season(settings=SeasonSettings(3, visit_every=2))
+    assert not np.isin(two.work.plant, one.work.plant).any()
+    daily = season(settings=SeasonSettings(2))
+    assert two.work.plant.tolist() == daily[1].work.plant.tolist()
+
+
+def test_what_is_believed_between_visits_is_what_nights_make_of_it():
+    days = season("adaptive", settings=SeasonSettings(4, Spread(0.2), visit_every=3))
+    assert days[2].chance.sum() > days[1].chance.sum()
+
+
+def test_a_visit_every_no_days_is_refused():
+    with pytest.raises(SettingError, match="visit_every must be 1 or more"):
+        SeasonSettings(visit_every=0)
+
+
+@pytest.mark.parametrize(
+    ("name", "left", "found"),
+    [("naive", [2, 1, 0, 0, 0, 0], [4, 3, 2, 0, 0, 0]),
+     ("adaptive", [4, 3, 3, 2, 1, 0], [2, 4, 3, 3, 2, 1])],
+)  # fmt: skip
+def test_a_visit_a_day_is_what_it_was_before_visits_could_be_apart(name, left, found):
+    days = season(name)
+    assert [day.left for day in days] == left
+    assert [day.found for day in days] == found
+    assert [day.visit for day in days] == [*range(6)]

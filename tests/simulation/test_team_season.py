@@ -174,3 +174,15 @@ def test_one_of_a_kind_works_as_ever_and_none_is_no_team():
         Team(0)
     with pytest.raises(SettingError, match="1 member or more"):
         season(members=())
+
+
+@pytest.mark.parametrize("teamwork", [Teamwork(), SECTIONS])
+def test_between_visits_none_of_a_team_works(teamwork):
+    settings, streams = replace(SETTINGS, visit_every=3), RandomStreams(3)
+    team = team_of(2, ROBOT), teamwork
+    days = list(simulated_team_days(PLOT, team, sampler("adaptive"), start(), settings, streams))
+    assert [day.visit for day in days] == [0, None, None, 1, None]
+    assert [day.worked_s > 0 for day in days] == [len(day.work) > 0 for day in days]
+    assert [len(day.work) > 0 for day in days] == [True, False, False, True, False]
+    alone = Team(1).days((PLOT, ROBOT), sampler("adaptive"), start(), settings, RandomStreams(3))
+    assert [len(day.work) > 0 for day in alone] == [True, False, False, True, False]

@@ -20,11 +20,11 @@ AISLES = Aisles.of(rectangle(15, 15))
 COSTS = TreatmentCosts(per_ha=20.0, per_zone=0.1)
 
 
-def days(rule=None, name="dynamic"):
+def days(rule=None, name="dynamic", visit_every=1):
     infested = np.zeros(225, bool)
     infested[100:106] = True
     first = Start(infested, np.where(infested, 0.6, 0.01))
-    settings = SeasonSettings(n_days=6, spread=Spread(0.3), treating=rule)
+    settings = SeasonSettings(n_days=6, spread=Spread(0.3), treating=rule, visit_every=visit_every)
     robot = Robot(hours=0.12)
     streams = RandomStreams(4)
     return list(simulated_days(AISLES, robot, sampler(name), first, settings, streams))
@@ -100,3 +100,9 @@ def test_the_first_evening_of_the_rule_treats_and_then_not_for_its_days():
             kept = day.infested & ~day.sprayed.cleaned
             kept[day.work.plant[day.work.found]] = False
             assert (day.in_the_evening == kept).all()
+
+
+def test_between_visits_nothing_is_treated():
+    rule = TreatmentRule(0.001, WHOLE, every_days=1)
+    sprayed = [day.sprayed is not None for day in days(rule, visit_every=3)]
+    assert sprayed == [True, False, False, True, False, False]

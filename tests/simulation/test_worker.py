@@ -71,10 +71,10 @@ def test_all_combinations_of_a_seed_start_with_the_same_insects():
 
 def test_what_is_not_varied_is_the_robots_own():
     slow, fast = Robot(speed_m_s=0.3), Robot(speed_m_s=3.0)
-    few, many = (simulated_season(laid(), robot, LEVELS, 1, 3) for robot in (slow, fast))
+    few, many = (simulated_season(laid(), robot, LEVELS, 1, (3, 1)) for robot in (slow, fast))
     assert many.visited_pct.sum() > few.visited_pct.sum()
     long, short = (
-        simulated_season(laid(), fast, Combination("naive", hours, 40.0, 0.05, 0.1), 1, 3)
+        simulated_season(laid(), fast, Combination("naive", hours, 40.0, 0.05, 0.1), 1, (3, 1))
         for hours in (3.0, 1.0)
     )
     assert long.visited_pct.sum() > short.visited_pct.sum()
@@ -90,7 +90,10 @@ def test_a_plot_without_room_comes_back_with_a_sentence():
 def test_records_raise_the_chance_where_they_are():
     one, chance, _ = laid()
     made = np.array(
-        [simulated_season(LaidPlot(one, chance), Robot(), LEVELS, s, 1).new[0] for s in range(60)]
+        [
+            simulated_season(LaidPlot(one, chance), Robot(), LEVELS, s, (1, 1)).new[0]
+            for s in range(60)
+        ]
     )
     assert abs(made.mean() / len(one.grid) - 0.05) < 0.01
 

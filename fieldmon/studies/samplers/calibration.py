@@ -18,7 +18,6 @@ from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_plot
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.html import page
-from fieldmon.samplers.base import Sampler, Stops
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Experiment, Memory, run
 from fieldmon.simulation.season import simulated_days
@@ -32,8 +31,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief, Learning
     from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.robot import Robot
-    from fieldmon.samplers.base import InspectionTimes, Scene, WouldFind
+    from fieldmon.samplers.base import Sampler
     from fieldmon.studies.samplers.scenarios import Scenario
 
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
@@ -149,32 +147,6 @@ class _Mornings(NamedTuple):
     half_ahead: list[PlotEstimate]
     told: list[bool]
     seconds: list[float]
-
-
-class OnSomeDays(Sampler):
-    """Inspects as another sampler does on one of so many days, and not at all on the others.
-
-    Parameters
-    ----------
-    sampler
-        The other one.
-    every
-        1: on all days; 3: on the first, the fourth, and so on.
-    """
-
-    def __init__(self, sampler: Sampler, every: int) -> None:
-        self._sampler, self._every = sampler, every
-        self.reads_chance = sampler.reads_chance  # type: ignore[misc]
-
-    def inspection_times(self, robot: Robot) -> InspectionTimes:
-        """Return those of the other one."""
-        return self._sampler.inspection_times(robot)
-
-    def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
-        """Walk as the other one, or stay."""
-        if scene.day % self._every:
-            return Stops(np.empty(0, np.int32), np.empty(0))
-        return self._sampler.walk(scene, would_find)
 
 
 def calibration(

@@ -75,6 +75,8 @@ class Scenario:
         The pest in its weather, which has nights of its own and is known to the belief; then
         `spread` is not read, and there is neither a world nor a wrong spread. None: as `spread` has
         it.
+    visit_every
+        Days from one visit to the next.
     """
 
     plot: str = "B"
@@ -85,6 +87,7 @@ class Scenario:
     world: str = ""
     hours: float = 12.0
     pest_in_weather: PestInWeather | None = None
+    visit_every: int = 1
 
     def __post_init__(self) -> None:
         known: dict[str, Iterable[str]] = {
@@ -102,13 +105,15 @@ class Scenario:
     @property
     def name(self) -> str:
         """Return the scenario in words, unique."""
+        # unsaid, it leaves a scenario what it was before visits could be days apart
+        visits = "" if self.visit_every == 1 else f", a visit every {self.visit_every} days"
         if self.world:
-            return f"world, {self.plot}, {self.hours:g} h, {self.world}"
+            return f"world, {self.plot}, {self.hours:g} h, {self.world}{visits}"
         nights = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
         if self.pest_in_weather is not None:
             nights = self.pest_in_weather.pest.name
         words = f"{self.plot}, {nights}, {self.start}, prior {self.prior}"
-        words = f"{words}, {self.flaw} wrong" if self.flaw else words
+        words = (f"{words}, {self.flaw} wrong" if self.flaw else words) + visits
         # two files may give a pest the same name
         return (
             words if self.pest_in_weather is None else f"{words}, {of_pest(self.pest_in_weather)}"
@@ -145,6 +150,7 @@ class Scenario:
             believed_spread=believed,
             learning=learning,
             pest=self.pest_in_weather,
+            visit_every=self.visit_every,
         )
         if not self.world:
             return settings

@@ -55,9 +55,11 @@ class TeamScenario:
     infested
         Share of plants infested on the first morning.
     n_days
-        Working days.
+        Days.
     pest_in_weather
         The pest in its weather; None: nights are as `spread` says.
+    visit_every
+        Days from one visit to the next.
     """
 
     plot: Plot
@@ -67,6 +69,7 @@ class TeamScenario:
     infested: float = 0.02
     n_days: int = 25
     pest_in_weather: PestInWeather | None = None
+    visit_every: int = 1
 
     @property
     def hectares(self) -> float:
@@ -83,6 +86,8 @@ class TeamScenario:
         pest = () if self.pest_in_weather is None else self.pest_in_weather.content
         nights = f"spread {self.spread.rate_per_day:.0%} to {self.spread.to}"
         nights = nights if self.pest_in_weather is None else self.pest_in_weather.pest.name
+        # and likewise before visits could be days apart: the name says it
+        nights += "" if self.visit_every == 1 else f", a visit every {self.visit_every} days"
         return f"{self.plot.field.name} {nights} {digest(*parts, *pest, length=_DIGITS)}"
 
     @property
@@ -186,7 +191,10 @@ def outcome(setting: TeamSetting, seed: int) -> TeamOutcome:
     plot = scenario.plot
     start = season_start(plot.grid, scenario.chance, scenario.infested, streams)
     season = SeasonSettings(
-        n_days=scenario.n_days, spread=scenario.spread, pest=scenario.pest_in_weather
+        n_days=scenario.n_days,
+        spread=scenario.spread,
+        pest=scenario.pest_in_weather,
+        visit_every=scenario.visit_every,
     )
     decides = sampler_of(setting.sampler)
     works = plot, scenario.robot

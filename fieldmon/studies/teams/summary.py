@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.wording import counted
+from fieldmon.simulation.season import visits_in
 from fieldmon.simulation.statistics import summary_statistics
 from fieldmon.simulation.team_worth import MarginalGain, marginal_gains, worth_sentence
 
@@ -29,8 +31,8 @@ class TeamRow(NamedTuple):
         Infested plant-days, and hours worked of a season.
     d80
         Days to 80 % of the seasons that reach it, ``(k,)``.
-    n_days
-        How many days a season has.
+    n_days, visits
+        How many days a season has, and on how many of them they work.
     hectares, spread
         How large the plot is, and the chance a night; NaN where a pest has nights of its own.
     gain
@@ -43,6 +45,7 @@ class TeamRow(NamedTuple):
     loss: SummaryStatistics
     d80: NDArray[np.float64]
     n_days: int
+    visits: int
     worked_h: SummaryStatistics
     hectares: float
     spread: float
@@ -57,10 +60,10 @@ class TeamRow(NamedTuple):
         return f"<TeamRow: {self.scenario}, {self.robots} robots>"
 
 
-def rows(outcomes: Sequence[TeamOutcome], n_days: int) -> list[TeamRow]:
+def rows(outcomes: Sequence[TeamOutcome], n_days: int, visit_every: int = 1) -> list[TeamRow]:
     """Return a row for each scenario, way to work and number of robots, in their order.
 
-    Seasons are of `n_days` days.
+    Seasons are of `n_days` days, with a visit every so many.
     One robot alone is the first of every way to work: there is nobody to share with.
     """
     made = []
@@ -71,12 +74,16 @@ def rows(outcomes: Sequence[TeamOutcome], n_days: int) -> list[TeamRow]:
             sampler = way.partition(",")[0]
             alone = [o for o in here if o.robots == 1 and (not way or o.who in (sampler, way))]
             made += _of_way(
-                [*alone, *(o for o in here if o.who == way and o.robots > 1)], way, n_days
+                [*alone, *(o for o in here if o.who == way and o.robots > 1)],
+                way,
+                (n_days, visits_in(n_days, visit_every)),
             )
     return made
 
 
-def _of_way(outcomes: Sequence[TeamOutcome], way: str, n_days: int) -> list[TeamRow]:
+def _of_way(
+    outcomes: Sequence[TeamOutcome], way: str, days_and_visits: tuple[int, int]
+) -> list[TeamRow]:
     sizes = sorted({one.robots for one in outcomes})
     seeds = set.intersection(*({o.seed for o in outcomes if o.robots == k} for k in sizes))
     by = {
@@ -89,8 +96,8 @@ def _of_way(outcomes: Sequence[TeamOutcome], way: str, n_days: int) -> list[Team
         TeamRow(
             by[k][0].scenario, way or by[k][0].who, k,
             summary_statistics(losses[k]),
-            np.array([o.d80 for o in by[k] if o.d80 <= n_days]),
-            n_days,
+            np.array([o.d80 for o in by[k] if o.d80 <= days_and_visits[0]]),
+            *days_and_visits,
             summary_statistics(np.array([o.worked_h for o in by[k]])),
             by[k][0].hectares, by[k][0].spread,
             gains.get(k),
@@ -122,6 +129,7 @@ HEADS = (
 
 def cells(row: TeamRow) -> tuple[str, ...]:
     """Return a row as texts, in the order of `HEADS`."""
+    daily = row.visits == row.n_days
     return (
         short(row.scenario),
         row.who,
@@ -129,7 +137,7 @@ def cells(row: TeamRow) -> tuple[str, ...]:
         _interval(row.loss),
         "" if row.gain is None else _interval(row.gain.saved),
         _days_to_80(row),
-        f"{row.worked_h.mean:.0f}",
+        f"{row.worked_h.mean:.0f}" + ("" if daily else f" in {counted(row.visits, 'visit')}"),
     )
 
 

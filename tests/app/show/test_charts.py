@@ -22,7 +22,8 @@ def rows(chart):
 
 
 def season(percent, found):
-    return SimpleNamespace(detection_pct=np.array(percent), found=np.array(found))
+    here = np.ones(len(found), bool)
+    return SimpleNamespace(detection_pct=np.array(percent), found=np.array(found), visit=here)
 
 
 DAYS = [DayFigures(date(2026, 11, 16), 40, 3, 21.3, 12, 30, 0.0),
@@ -165,3 +166,11 @@ def test_dates_of_a_long_season_stand_apart_in_any_language(name, most):
     assert len(shown) <= most
     assert shown[0] == labels[0]
     assert charts._days(labels[:3], "day").to_dict()["axis"]["values"] == labels[:3]
+
+
+def test_only_days_of_visits_have_a_dot():
+    level = np.zeros(5)
+    made = charts.bands({"one": (level, level, level)}, ("day", "found"), visit_every=2)
+    lines = made.to_dict()["layer"][1]
+    assert [one["mark"]["type"] for one in lines["layer"]] == ["line", "point"]
+    assert lines["layer"][1]["transform"] == [{"filter": "datum.visit"}]

@@ -17,7 +17,7 @@ def played():
     choices = chosen(plot)
     chance = np.full(len(plot.grid), 0.1)
     days, _ = cached_simulations.simulated_season(
-        "shown", "dynamic", (4, 0.2, 0.1, 1), choices.robot, LaidPlot(plot, chance)
+        "shown", "dynamic", (4, 0.2, 0.1, 1, 1), choices.robot, LaidPlot(plot, chance)
     )
     return choices, days
 

@@ -104,3 +104,12 @@ def test_each_further_robot_is_said_with_its_interval():
 
 def test_a_team_is_named_by_its_number():
     assert verdicts.name(Strategy("naive", 12.0, 40.0, 3)) == "3 × Naive · 12 h · 40 s"
+
+
+def test_visits_days_apart_are_not_called_days():
+    daily, apart = (
+        verdicts.tables(ranked([1.0, 2.0, 3.0]), daily=daily) for daily in (True, False)
+    )
+    assert "inspected a day" in daily[1]
+    assert "inspected a visit" in apart[1]
+    assert [len(one.columns) for one in apart] == [len(one.columns) for one in daily]

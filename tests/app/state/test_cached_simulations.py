@@ -14,7 +14,7 @@ def test_a_simulated_season_is_the_one_that_the_library_simulates():
     plot, robot, seed = a_plot(), Robot(hours=1.0), 3
     chance = np.full(len(plot.grid), 0.05)
     days, figures = cached_simulations.simulated_season(
-        "test", "dynamic", (4, 0.05, 0.1, seed), robot, LaidPlot(plot, chance)
+        "test", "dynamic", (4, 0.05, 0.1, 1, seed), robot, LaidPlot(plot, chance)
     )
     assert len(days) == len(figures.found) == 4
     starts = start_infested(chance, 0.05, RandomStreams(seed).of("start"))

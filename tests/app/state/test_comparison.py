@@ -30,7 +30,9 @@ def plot():
 def compared(plot, strategies, seeds=4, pest_in_weather=None):
     rng = np.random.default_rng(3)
     chance = np.where(rng.random(len(plot.grid)) < 0.1, 0.5, 0.001)
-    settings = ComparisonSettings(tuple(strategies), n_days=5, share=0.05, rate=0.1, seeds=seeds)
+    settings = ComparisonSettings(
+        tuple(strategies), n_days=5, share=0.05, rate=0.1, visit_every=1, seeds=seeds
+    )
     running = Comparison(settings, LaidPlot(plot, chance, pest_in_weather), Robot())
     running.start()
     running.wait(180)
@@ -71,7 +73,9 @@ def test_longer_inspections_and_more_hours_lose_less(plot):
 
 
 def test_a_stopped_comparison_goes_on_where_it_stood(plot):
-    settings = ComparisonSettings(tuple(SHORT), n_days=3, share=0.05, rate=0.1, seeds=200)
+    settings = ComparisonSettings(
+        tuple(SHORT), n_days=3, share=0.05, rate=0.1, visit_every=1, seeds=200
+    )
     running = Comparison(settings, LaidPlot(plot, np.full(len(plot.grid), 0.01)), Robot())
     running.start()
     running.stop()

@@ -85,7 +85,7 @@ def test_how_well_treating_works_is_as_learnt_until_somebody_says(
     go(app, "decide")
     box = app.number_input(key="decide works")
     assert (box.value, box.placeholder) == (None, f"{100 * told.efficacy:.3g}")
-    learnt = f"As this season learnt of soap: treating cleans 4\u00a0%."
+    learnt = "As this season learnt of soap: treating cleans 4\u00a0%."
     assert learnt in texts_of(app)
     box.set_value(70.0).run()
     assert not app.exception

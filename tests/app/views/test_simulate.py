@@ -1,6 +1,6 @@
 """A simulated season, day by day."""
 
-from tests.app.driving import go, layer, plants
+from tests.app.driving import go, layer, metric, plants, texts_of
 
 
 def test_a_season_is_simulated_and_its_day_slider_moves_the_map(app):
@@ -13,3 +13,15 @@ def test_a_season_is_simulated_and_its_day_slider_moves_the_map(app):
     assert layer(app, "truth") is None
     app.toggle(key="truth").set_value(True).run()
     assert layer(app, "truth") is not None
+
+
+def test_a_season_of_visits_says_which_day_has_one(app):
+    go(app, "simulate")
+    app.number_input(key="visit_every").set_value(3).run()
+    app.slider(key="season_day").set_value(6).run()
+    said = texts_of(app)
+    assert "Visits on 9 of 25 days: 1, 4, 7, 10, …, 25." in said
+    assert "No visit on this day. The last one, visit 2 of 9, was on day 4." in said
+    assert metric(app, "Found that day") == "0"
+    app.slider(key="season_day").set_value(7).run()
+    assert "Visit 3 of 9." in texts_of(app)

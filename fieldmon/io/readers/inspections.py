@@ -8,7 +8,8 @@ Decisions
   one asks for them.
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
-- Of two inspections of one file that are the same but for their notes, one is taken. What a season
+- Of the inspections of one visit (`visits`) that are the same but for their notes, one is taken. At
+  clearly other times of a day each is a look of its own, as the belief has it. What a season
   holds already is told there (`fieldmon.monitoring.inspection_table`).
 """
 
@@ -42,6 +43,7 @@ from fieldmon.io.readers.inspection_places import (
     misplaced,
 )
 from fieldmon.io.readers.nearby import doubt_of_order
+from fieldmon.io.readers.visits import first_of_visits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -270,17 +272,13 @@ def _inspections(
 
 
 def _once_each(inspections: Inspections) -> Inspections:
-    """Return the first of each that are the same but for their notes."""
+    """Return the first of each visit that are the same but for their notes."""
     columns = zip(
         inspections.plant.tolist(),
         inspections.date.astype(np.int64).tolist(),  # a day that is no time is one number too
-        np.nan_to_num(inspections.second, nan=-1.0).tolist(),
         inspections.result.tolist(),
         [f"{count:.9g}" for count in inspections.count.tolist()],
         [who.strip() for who in inspections.who],
         strict=True,
     )
-    first: dict[tuple[object, ...], int] = {}
-    for number, same in enumerate(columns):
-        first.setdefault(same, number)
-    return inspections.take(np.array([*first.values()], np.intp))
+    return inspections.take(first_of_visits(columns, inspections.second))

@@ -112,7 +112,7 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
         "7,x,4,Noa,2026-11-18T08:30",
         "7,x,,Noa,2026-11-18T08:30",
         "7,x,3,Amir,2026-11-18T08:30",
-        "7,x,3,Noa,2026-11-18T08:31",
+        "7,x,3,Noa,2026-11-18T08:41",
         "7,x,3,Noa,2026-11-18",
         "7,x,3,Noa,",
     ],

@@ -140,6 +140,33 @@ def test_records_that_repeat_another_in_every_column_are_left_out():
     assert "another count for a place and day" in said(records, Severity.DOUBTFUL)
 
 
+@pytest.mark.parametrize(
+    ("time", "found", "north", "kept", "words"),
+    [
+        ("2026-11-16T08:00:00Z", 1, 0.0, 1, "one visit, which counts once"),
+        ("2026-11-16T10:09:00+02:00", 1, 0.0, 1, "1 record repeats what another says"),
+        ("2026-11-16T13:00:00Z", 1, 0.0, 2, "another time: each visit counts"),
+        ("2026-11-17T08:00:00Z", 1, 0.0, 2, ""),
+        ("2026-11-16T08:00:00Z", 0, 0.0, 2, "gives another count"),
+        ("2026-11-16T08:00:00Z", 1, 1e-5, 2, ""),
+    ],
+)
+def test_a_plant_of_which_a_robot_tells_often_in_one_visit_counts_once(
+    time, found, north, kept, words
+):
+    imported = records_of(
+        table(
+            lon=[35.150123] * 2, lat=[30.360789, 30.360789 + north], found=[1, found],
+            time=["2026-11-16T08:00:00Z", time], detection_id=[1, 2],
+        ),
+        ANY,
+    )  # fmt: skip
+    assert len(imported.value) == kept
+    told = " ".join(message.sentence for message in imported.messages)
+    assert words in told
+    assert ("visit" in told) == ("visit" in words or "repeats" in words)
+
+
 def test_several_species_are_doubted_and_each_can_be_chosen_alone():
     records = read(count=[1, 2, 3], species=["mite", "aphid", "mite"])
     (doubt,) = [m for m in records.messages if "species are mixed" in m.sentence]

@@ -20,10 +20,18 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
+from fieldmon.io.options import ROLES
 from fieldmon.io.parse.clock import clock_time, local_time, zone_of
-from fieldmon.io.parse.columns import find, is_id, recognised
+from fieldmon.io.parse.columns import find, is_confidence, is_id, recognised
 from fieldmon.io.parse.positions import located
-from fieldmon.io.parse.result_words import ResultWords, about_mark, about_minus
+from fieldmon.io.parse.result_words import (
+    ResultWords,
+    about_confidences,
+    about_fractions,
+    about_mark,
+    about_minus,
+    are_fractions,
+)
 from fieldmon.io.parse.values import (
     counted,
     dates,
@@ -49,7 +57,7 @@ if TYPE_CHECKING:
     from fieldmon.io.parse.values import DatedColumn
     from fieldmon.io.readers.places import NamedPlaces
 
-_LOOKED_AT = 200
+_LOOKED_AT, _FEW_WORDS = 200, 12
 # a position that is this far off names no plant: many may be meant by it
 _NO_PLANT_M = 10.0
 
@@ -98,6 +106,7 @@ def _records_and_plots(
     first, visits = _each_visit_once(observations, at_s)
     once = observations.take(first)
     more = (*_species(table), *visits, *_same_visit(once))
+    messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
 
 
@@ -113,6 +122,10 @@ class _Table:
 
     def named(self, role: str, taken: frozenset[str] = frozenset()) -> str | None:
         return self.options.column(role) or find(role, self.layer.columns, taken)
+
+    def used(self) -> set[str | None]:
+        """Return the columns that play a role."""
+        return {self.named(role) for role in ROLES}
 
     def cells(self, name: str) -> list[str]:
         return [text(v) for v in self.layer.column(name)]
@@ -188,8 +201,8 @@ def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
     if name is not None:
         day, zoned = _as_local(read.day, table.cells(name), lonlat)
         read = read._replace(day=day)
-    said = seen(worded("Dates were read from {where}.", where=quoted))
-    return _Days(read.day, at_s, [said, *zoned, *_about_dates(read, where)])
+    of_dates = seen(worded("Dates were read from {where}.", where=quoted))
+    return _Days(read.day, at_s, [of_dates, *zoned, *_about_dates(read, where)])
 
 
 def _times(table: _Table, day: NDArray[np.datetime64], name: str | None) -> NDArray[np.float64]:
@@ -293,9 +306,9 @@ def _counts(table: _Table) -> _Counts:
 
 def _what_was_found(table: _Table) -> ChoiceNeeded:
     """Return the question which column says what was found, with those that could."""
-    words = _fitting(table, _are_results)
-    numbers = [name for name in _fitting(table, _are_numbers) if not is_id(name, table.cells(name))]
-    could = (*(f"present={n}" for n in words), *(f"count={n}" for n in numbers if n not in words))
+    words = [*_fitting(table, _are_results), *_fitting(table, _hold_results)]
+    numbers = [name for name in _fitting(table, _are_numbers) if _could_count(table, name)]
+    could = dict.fromkeys((*(f"present={n}" for n in words), *(f"count={n}" for n in numbers)))
     return ChoiceNeeded(
         worded(
             "{name} must have a column that says what was found (count, "
@@ -342,6 +355,21 @@ def _are_results(cells: list[str]) -> bool:
     return bool(read) and all(one != UNKNOWN for one in read) and not _are_numbers(cells)
 
 
+def _hold_results(cells: list[str]) -> bool:
+    """Return whether cells are a few words, one of which says what was found."""
+    words = {cell for cell in cells if not is_missing(cell)}
+    some = any(presence(word) != UNKNOWN for word in words)
+    return len(words) <= _FEW_WORDS and some and not _are_numbers(cells)
+
+
+def _could_count(table: _Table, name: str) -> bool:
+    """Return whether a column of numbers could count pests: no ids, no confidences."""
+    cells = table.cells(name)
+    if is_id(name, cells) or is_confidence(name):
+        return False
+    return not are_fractions(counted(cell).number for cell in cells[:_LOOKED_AT])
+
+
 def _are_dates(cells: list[str]) -> bool:
     column = np.array(cells, dtype=object)
     return not np.isnat(dates(column).day).all()
@@ -364,6 +392,7 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
     messages.append(seen(worded("Counts are in column {name!r}.", name=name)))
+    messages += about_fractions(name, count.tolist(), is_usual=bool(recognised([name])))
     odd = [cell for cell in cells if known[cell].is_rough]
     rough = [cell for cell in odd if known[cell].present != UNKNOWN]
     none = [cell for cell in odd if known[cell].present == UNKNOWN]

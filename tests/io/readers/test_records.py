@@ -68,6 +68,24 @@ def test_a_file_that_only_lists_places_asks_what_was_found_and_offers_what_could
     assert (again.value.present == PRESENT).all()
 
 
+DETECTED = {"class": ["mite", "background", "mite"], "confidence": [0.54, 0.83, 0.78]}
+
+
+def test_what_a_robot_saw_is_asked_for_in_words_that_answer_and_never_taken_from_its_confidence():
+    with pytest.raises(ChoiceNeeded) as asked:
+        read(**DETECTED)
+    assert asked.value.choices == ("present=class", "present=")
+    for role in ("present", "found", "result"):
+        imported = read(RecordOptions(columns=((role, "class"),)), **DETECTED)
+        assert imported.value.present.tolist() == [PRESENT, ABSENT, PRESENT]
+        unused = [one.feature for one in imported.messages if "is not used" in one.sentence]
+        assert unused == ["confidence"]
+    told = read(ANY.naming(count="confidence"), **DETECTED)
+    assert "as confidences are" in said(told, Severity.DOUBTFUL)
+    assert "is not used" not in said(told, Severity.SEEN)
+    assert "as confidences" not in said(read(mites=[0.5, 0.1, 0]), Severity.DOUBTFUL)
+
+
 def test_a_count_that_is_no_plain_number_is_read_roughly_and_shown():
     records = read(count=["3", "~10", ">5", "many"])
     assert "no plain number" in said(records, Severity.DOUBTFUL)

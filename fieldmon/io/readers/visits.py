@@ -32,7 +32,8 @@ def first_of_visits(alike: Iterable[Hashable], at_s: Floats) -> NDArray[np.intp]
     at_s
         ``(k,)`` seconds from anywhere; NaN where no time is known: one visit each.
     """
-    keys, began, first = list(alike), {}, []
+    keys, first = list(alike), list[int]()
+    began: dict[object, float] = {}
     for k in np.argsort(at_s, kind="stable").tolist():  # those of no time come last
         at = float(at_s[k])
         key = keys[k], at != at  # noqa: PLR0124 - NaN

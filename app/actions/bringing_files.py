@@ -32,8 +32,8 @@ _ICONS = {
         "doubtful": "warning",
     }.items()
 }  # fmt: skip
-# questions that another file answers, in a box of its own
-_OTHER_FILES = frozenset({"kind", "plots", "plants"})
+# questions that a box of their own answers: for another file, or beside the file
+_OWN_BOXES = frozenset({"kind", "plots", "plants", "meaning"})
 _MOST_BUTTONS = 12
 
 
@@ -130,7 +130,7 @@ def say(
 
 
 def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> None:
-    if error.option in _OTHER_FILES:
+    if error.option in _OWN_BOXES:
         return
     offered = [str(choice) for choice in error.choices]
     for number, answer in with_buttons(offered, tried):

@@ -27,11 +27,15 @@ def show_risk() -> None:
     with st.expander(texts.RISK, expanded=rasters.RISK in brought()):
         st.caption(texts.RISK_NOTE)
         bringing_files.show_raster(texts.RISK_FILE, rasters.RISK)
-        widget_memory.show(st.selectbox, texts.RISK_MEANS, list(texts.RISK_MEANINGS),
-                           key=rasters.RISK_MEANING, default="chance", filter_mode=None,
-                           format_func=texts.RISK_MEANINGS.__getitem__)  # fmt: skip
+        widget_memory.show(st.selectbox, texts.RISK_MEANS, [None, *texts.RISK_MEANINGS],
+                           key=rasters.RISK_MEANING, filter_mode=None,
+                           format_func=_meaning)  # fmt: skip
         if widget_memory.value(rasters.RISK_MEANING) in RELATIVE:
             widget_memory.show(st.number_input, texts.RISK_SHARE, 0.1, 50.0, step=0.5,
                                key=rasters.RISK_SHARE, default=2.0)  # fmt: skip
             widget_memory.show(st.toggle, texts.RISK_LOW, key=rasters.RISK_LOW, default=False)
         bringing_files.show_kept_raster(rasters.RISK)
+
+
+def _meaning(meaning: str | None) -> str:
+    return texts.RISK_AS_FILE if meaning is None else texts.RISK_MEANINGS[meaning]

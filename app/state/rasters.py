@@ -86,8 +86,10 @@ def _risk(file: File, options: RasterOptions) -> RiskSource:
     return RiskSource(file.source, _risk_settings(), options)
 
 
-def _risk_settings() -> RiskSettings:
-    meaning = widget_memory.value(RISK_MEANING, "chance")
+def _risk_settings() -> RiskSettings | None:
+    meaning = widget_memory.value(RISK_MEANING)
+    if meaning is None:  # as the file says
+        return None
     if meaning not in RELATIVE:
         return RiskSettings(meaning)
     share = widget_memory.value(RISK_SHARE, 2.0) / 100

@@ -578,7 +578,7 @@ NO_ROWS = "The plants stand in no rows"
 NO_ROWS_HELP = "They are visited one by one, by nearness."
 RISK, RISK_FILE = "Risk from a raster", "GeoTIFF: NDVI, elevation, a risk map"
 RISK_NOTE = "One more reason for a plant to be infested, beside records, edges and paths."
-RISK_MEANS = "Its numbers are"
+RISK_MEANS, RISK_AS_FILE = "Its numbers are", "what the file says"
 RISK_MEANINGS = {
     "chance": "chances, 0 to 1",
     "percent": "chances in percent",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -100,8 +100,8 @@ def _options(given: dict[str, str]) -> tuple[RasterOptions, How | None]:
     return options, how
 
 
-def _risk_settings(given: dict[str, str]) -> RiskSettings:
-    """Return what was said of the meaning, taken out of the options."""
+def _risk_settings(given: dict[str, str]) -> RiskSettings | None:
+    """Return what was said of the meaning, taken out of the options; None: nothing."""
     from fieldmon.infestation.raster_risk import RiskSettings
     from fieldmon.io.options import yes_or_no
 
@@ -112,7 +112,14 @@ def _risk_settings(given: dict[str, str]) -> RiskSettings:
         said["mean_share"] = _number(said["mean_share"])
     if "low_is_risky" in said:
         said["low_is_risky"] = yes_or_no("low_is_risky", said["low_is_risky"])
-    return replace(RiskSettings(), **said)
+    if not said:
+        return None
+    if "meaning" not in said:
+        raise SettingError(
+            f"{' and '.join(said)} of a risk raster must go with what its numbers mean, but that "
+            "is not said. Add --risk-option meaning=rank or meaning=score."
+        )
+    return RiskSettings(**said)
 
 
 def _number(text: str) -> float:

@@ -187,11 +187,12 @@ def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
     """Refuse files that contradict the season, or one another, before any is recorded."""
     from fieldmon.monitoring.recorded_before import contradictions
 
-    held = season.history.inspections
-    for inspections in read:
+    every = read[0] if read else None
+    for inspections in read[1:]:
+        every = inspections if every is None else every.and_those(inspections)
+    if every is not None:
         with _naming_confirmation():
-            contradictions(inspections, held).refuse(season.label)
-        held = held.and_those(inspections)
+            contradictions(every, season.history.inspections).refuse(season.label)
 
 
 @contextmanager

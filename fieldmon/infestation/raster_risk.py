@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import expit
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ObservationError, SettingError
+from fieldmon.errors import ChoiceNeeded, ObservationError, SettingError
 from fieldmon.infestation.prior import scaled
 
 if TYPE_CHECKING:
@@ -26,6 +26,8 @@ Meaning: TypeAlias = Literal["chance", "percent", "rank", "score"]
 _MOST_SCORE = 4.0
 #: meanings that say which plants are at more risk, but not at how much
 RELATIVE = frozenset({"rank", "score"})
+#: what a chance map written by fieldmon calls its band
+CHANCE_BAND = "chance of infestation"
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class RiskSettings:
         With rank and score: low values are the risky ones, as of a vegetation index.
     """
 
-    meaning: Meaning = "chance"
+    meaning: Meaning
     mean_share: float | None = None
     low_is_risky: bool = False
 
@@ -84,6 +86,43 @@ class RiskSettings:
                     mean_share=self.mean_share,
                 )
             )
+
+
+def meaning_of(name: str, values: Floats, described: str = "") -> RiskSettings:
+    """Return what a raster's numbers mean by what its band is called.
+
+    Parameters
+    ----------
+    name
+        What the raster is called.
+    values
+        ``(n,)`` at the plants.
+    described
+        What its file calls the band.
+
+    Raises
+    ------
+    ChoiceNeeded
+        If the file does not say it.
+    """
+    known = values[~np.isnan(values)]
+    if described.strip().casefold() == CHANCE_BAND or not known.size:
+        return RiskSettings("chance")
+    low, high = float(known.min()), float(known.max())
+    whole = {"chance": 1.0, "percent": 100.0}
+    could = [one for one, most in whole.items() if low >= 0.0 and high <= most]
+    raise ChoiceNeeded(
+        worded(
+            "The numbers of {name} are {low:.3g} to {high:.3g} at the plants, but nothing says "
+            "what they mean: chance (0..1), percent, rank (only their order counts) or score. "
+            "Say which.",
+            name=name,
+            low=low,
+            high=high,
+        ),
+        "meaning",
+        ("rank", "score", *could),
+    )
 
 
 def risk_chance(values: Floats, settings: RiskSettings) -> Floats:

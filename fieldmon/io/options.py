@@ -36,6 +36,8 @@ ROLES = {
     "plant": "number of the plant",
     "name": "name of the feature",
 }
+#: what else questions call a role
+_ALSO = {"found": "present", "result": "present"}
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,8 @@ class ReadOptions:
     far: str | None = None
 
     def __post_init__(self) -> None:
+        known = {_ALSO.get(role, role): column for role, column in self.columns}
+        object.__setattr__(self, "columns", tuple(known.items()))
         for role, _ in self.columns:
             if role not in ROLES:
                 raise SettingError(
@@ -187,7 +191,7 @@ class ReadOptions:
 
     def naming(self, **columns: str) -> Self:
         """Return these options with columns named by hand: ``naming(date="Datum")``."""
-        return replace(self, columns=tuple((dict(self.columns) | columns).items()))
+        return replace(self, columns=(*self.columns, *columns.items()))
 
     def choose(self, option: str, value: str) -> Self:
         """Return these options with one of them set from text, as a `Remedy` or choice holds it."""

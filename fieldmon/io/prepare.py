@@ -275,12 +275,11 @@ def without_missing(plot: Plot, source: CanopySource) -> Imported[Plot]:
 
 def risk_on(plot: Plot, source: RiskSource) -> Imported[NDArray[np.float64]]:
     """Return the risk of each plant ``(n,)`` from a raster, NaN where it says nothing."""
-    from fieldmon.infestation.raster_risk import RiskSettings  # noqa: PLC0415
     from fieldmon.io.rasters.at_plants import read_risk  # noqa: PLC0415 - half a second
     from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415
 
-    settings, options = source.settings or RiskSettings(), source.options or RasterOptions()
-    return read_risk(source.file, options, plot, settings, source.how)
+    options = source.options or RasterOptions()
+    return read_risk(source.file, options, plot, source.settings, source.how)
 
 
 class _Hearing:

@@ -148,7 +148,7 @@ class RiskSource:
     file
         The raster.
     settings
-        What its numbers mean; None: chances.
+        What its numbers mean; None: as the file says, else it is asked.
     options
         How it is read; None: as it says.
     how

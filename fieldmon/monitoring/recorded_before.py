@@ -38,6 +38,8 @@ class Contradictions:
         ``(c,)`` of what, and of which day.
     recorded, brought
         ``(c,)`` result that is recorded, and the one brought: `CLEAN` or `FOUND`.
+    together
+        ``(c,)`` whether none is recorded: both are brought at once.
     """
 
     which: NDArray[np.intp]
@@ -45,6 +47,7 @@ class Contradictions:
     date: NDArray[np.datetime64]
     recorded: NDArray[np.int8]
     brought: NDArray[np.int8]
+    together: NDArray[np.bool_]
 
     def __len__(self) -> int:
         """Return how many there are."""
@@ -52,30 +55,36 @@ class Contradictions:
 
     def sentences(self, label: RowLabel) -> list[str]:
         """Return one sentence for each; `label` names all plants of the plot."""
-        return [
-            worded(
-                "Row {line}, plant {number} on {date}: recorded as {result_names}, now "
-                "{result_names_2}.",
-                line=label.line[plant],
-                number=label.number[plant],
-                date=date,
-                result_names=worded(RESULT_NAMES[was]),
-                result_names_2=worded(RESULT_NAMES[now]),
-            )
-            for plant, date, was, now in zip(
-                self.plant.tolist(),
-                self.date.tolist(),
-                self.recorded.tolist(),
-                self.brought.tolist(),
-                strict=True,
-            )
-        ]
+        told = (self.plant, self.date, self.recorded, self.brought, self.together)
+        sentences: list[str] = []
+        for plant, date, was, now, together in zip(*(v.tolist() for v in told), strict=True):
+            values = {
+                "line": label.line[plant],
+                "number": label.number[plant],
+                "date": date,
+                "result_names": worded(RESULT_NAMES[was]),
+                "result_names_2": worded(RESULT_NAMES[now]),
+            }
+            if together:
+                said = worded(
+                    "Row {line}, plant {number} on {date}: brought as {result_names} and as "
+                    "{result_names_2}.",
+                    **values,
+                )
+            else:
+                said = worded(
+                    "Row {line}, plant {number} on {date}: recorded as {result_names}, now "
+                    "{result_names_2}.",
+                    **values,
+                )
+            sentences.append(said)
+        return sentences
 
     def still(self, held: Inspections) -> Contradictions:
         """Return those of which both results are held."""
         results = _held(held, self)
         stays = np.array([len(results.get(key, ())) > 1 for key in _keys(self)], bool)
-        columns = ("which", "plant", "date", "recorded", "brought")
+        columns = ("which", "plant", "date", "recorded", "brought", "together")
         return Contradictions(*(getattr(self, name)[stays] for name in columns))
 
     def refuse(self, label: RowLabel) -> None:
@@ -84,6 +93,17 @@ class Contradictions:
             return
         named = joined(" ", self.sentences(label)[:_MOST_NAMED])
         more = " ..." if len(self) > _MOST_NAMED else ""
+        if self.together.all():
+            raise ContradictionError(
+                worded(
+                    "Results that are brought must not contradict each other unless that is "
+                    "confirmed, but {n} of them do, of the same plant and day: {named}{more} "
+                    "Check both; then leave out what is wrong, or confirm that both hold.",
+                    n=len(self),
+                    named=named,
+                    more=more,
+                )
+            )
         raise ContradictionError(
             worded(
                 "Results must not contradict what is recorded of the same "
@@ -107,17 +127,19 @@ def contradictions(brought: Inspections, held: Inspections) -> Contradictions:
     same = _n_alike(brought, held)  # nearly all, of two copies of a season
     news = brought.take(slice(same, None))
     results = _held(held.inspected, news)
-    found = []
+    recorded_of, found = frozenset(results), []
     for k, (key, result) in enumerate(zip(_keys(news), news.result.tolist(), strict=True), same):
         if result == SKIPPED:
             continue
         was = results.setdefault(key, set())
         if was and result not in was:
-            found.append((k, min(was)))
+            found.append((k, min(was), key not in recorded_of))
         was.add(result)
-    at = np.array([k for k, _ in found], np.intp)
-    recorded = np.array([result for _, result in found], np.int8)
-    return Contradictions(at, brought.plant[at], brought.date[at], recorded, brought.result[at])
+    at = np.array([k for k, *_ in found], np.intp)
+    recorded = np.array([result for _, result, _ in found], np.int8)
+    together = np.array([both for *_, both in found], bool)
+    of = brought.plant[at], brought.date[at]
+    return Contradictions(at, *of, recorded, brought.result[at], together)
 
 
 def _n_alike(one: Inspections, other: Inspections) -> int:

@@ -53,12 +53,16 @@ def chances(path):
     return band[:, : middle - 8].mean(), band[:, middle + 8 :].mean()
 
 
+def chance_of(risk):
+    return ["--risk", risk, "--risk-option", "meaning=chance"]
+
+
 def test_a_risk_raster_raises_the_chance_where_it_says_so(run, tmp_path):
     risk = covariate(tmp_path / "risk.tif", 0.0, 0.3)
     code, out, err, _ = run(*PLAN, "--chance-map", "before.tif")
     assert code == 0, err
     assert "Chance map written to before.tif" in out
-    code, out, err, _ = run(*PLAN, "--risk", risk, "--chance-map", "after.tif")
+    code, out, err, _ = run(*PLAN, *chance_of(risk), "--chance-map", "after.tif")
     assert code == 0, err
     assert "seen: Risk by chance: 0 to 0.3" in err
     (west_before, east_before), (west, east) = chances("before.tif"), chances("after.tif")
@@ -68,6 +72,12 @@ def test_a_risk_raster_raises_the_chance_where_it_says_so(run, tmp_path):
 
 def test_what_a_risk_raster_means_is_an_option(run, tmp_path):
     risk = covariate(tmp_path / "ndvi.tif", 0.8, 0.3)
+    code, _, err, _ = run(*PLAN, "--risk", risk)
+    assert code == 2
+    assert 'Answer with --risk-option meaning="rank", for instance.' in err
+    code, _, err, _ = run(*PLAN, "--risk", risk, "--risk-option", "mean_share=0.02")
+    assert code == 2
+    assert "Add --risk-option meaning=rank or meaning=score" in err
     code, _, err, _ = run(*PLAN, "--risk", risk, "--risk-option", "meaning=rank")
     assert code == 2
     assert "mean_share" in err
@@ -105,11 +115,11 @@ def test_plants_under_a_low_canopy_are_not_planned_for(run, tmp_path):
 
 def test_what_was_guessed_is_said_with_the_option_that_undoes_it(run, tmp_path):
     risk = covariate(tmp_path / "risk.tif", -9999.0, 0.3)
-    code, _, err, _ = run(*PLAN, "--risk", risk)
+    code, _, err, _ = run(*PLAN, *chance_of(risk))
     assert code == 0, err
     assert "(They are values: --risk-option nodata=none)" in err
     assert "have no value on the raster" in err
-    code, _, err, _ = run(*PLAN, "--risk", risk, "--risk-option", "nodata=none")
+    code, _, err, _ = run(*PLAN, *chance_of(risk), "--risk-option", "nodata=none")
     assert code == 2
     assert "must hold values in 0..1" in err
 
@@ -121,7 +131,7 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
     code, out, err, _ = run("init", "plain.gpkg", *plot, *day)
     assert code == 0, err
     code, out, err, _ = run(
-        *["init", "season.gpkg", *plot, *day, "--risk", risk],
+        *["init", "season.gpkg", *plot, *day, *chance_of(risk)],
         *["--canopy", risk, "--canopy-below", "-1"],
     )
     assert code == 0, err
@@ -153,7 +163,7 @@ def test_a_simulated_season_starts_from_the_risk_and_without_missing_plants(run,
     canopy = covariate(tmp_path / "canopy.tif", 0.2, 0.9)
     words = ["simulate", *PLAN[1:], "--sampler", "naive", "--days", 1, "--infested", 0.1]
     code, _, err, _ = run(
-        *[*words, "--risk", canopy, "--risk-option", "how=highest"],
+        *[*words, *chance_of(canopy), "--risk-option", "how=highest"],
         *["--canopy", canopy, "--canopy-below", 0.5],
     )
     assert code == 0, err

@@ -19,7 +19,7 @@ def odds(chance):
 
 def test_chances_and_percent_are_taken_as_they_are_and_unknown_stays_unknown():
     values = np.array([0.0, 0.25, np.nan, 1.0])
-    np.testing.assert_array_equal(risk_chance(values, RiskSettings()), values)
+    np.testing.assert_array_equal(risk_chance(values, RiskSettings("chance")), values)
     percent = RiskSettings(meaning="percent")
     np.testing.assert_array_equal(risk_chance(100 * values, percent), values)
 
@@ -64,10 +64,10 @@ def test_where_all_values_are_equal_so_are_the_chances():
 @pytest.mark.parametrize(
     ("values", "settings", "words"),
     [
-        ([0.2, 1.01], RiskSettings(), "0..1"),
-        ([-0.1, 0.5], RiskSettings(), "run from -0.1 to 0.5"),
+        ([0.2, 1.01], RiskSettings("chance"), "0..1"),
+        ([-0.1, 0.5], RiskSettings("chance"), "run from -0.1 to 0.5"),
         ([20.0, 101.0], RiskSettings("percent"), "0..100"),
-        ([np.nan, np.nan], RiskSettings(), "has none"),
+        ([np.nan, np.nan], RiskSettings("chance"), "has none"),
     ],
 )
 def test_values_that_do_not_mean_it_are_refused(values, settings, words):

@@ -8,6 +8,7 @@ import shapely
 from rasterio.transform import from_bounds
 
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
+from fieldmon.infestation.raster_risk import RiskSettings
 from fieldmon.io.options import PlotOptions
 from fieldmon.io.plot_records import records_on
 from fieldmon.io.prepare import lay, one_of, prepare, prepare_estate
@@ -137,7 +138,8 @@ def canopy(path, plot):
 def test_records_name_plants_as_they_were_planted_and_missing_ones_go_afterwards(parcels, tmp_path):
     whole = prepare(one(parcels, "Plot 1")).plot
     low = canopy(tmp_path / "canopy.tif", whole)
-    bare, risky = CanopySource(low, 0.5, how="nearest"), RiskSource(low, how="nearest")
+    bare = CanopySource(low, 0.5, how="nearest")
+    risky = RiskSource(low, RiskSettings("chance"), how="nearest")
     made = prepare(one(parcels, "Plot 1", ROWS, canopy=bare, risk=risky))
     np.testing.assert_allclose(made.records.lonlat, [place(whole, 3, 7)], atol=1e-12)
     assert 0.3 < len(made.plot.grid) / len(whole.grid) < 0.7

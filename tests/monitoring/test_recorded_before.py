@@ -60,6 +60,17 @@ def test_one_file_contradicts_itself_as_two_files_contradict_each_other():
     assert not len(contradictions(apart, results()))
 
 
+def test_what_is_brought_at_once_is_not_said_to_be_recorded():
+    label = row_label(rectangle(1, 9))
+    both, held = results((3, FOUND), (3, CLEAN)), results((4, CLEAN))
+    with pytest.raises(ContradictionError, match="brought as found and as clean") as told:
+        contradictions(both, held).refuse(label)
+    assert "recorded" not in str(told.value)
+    found = contradictions(both.and_those(results((4, FOUND))), held)
+    assert found.together.tolist() == [True, False]
+    assert "recorded as clean, now found" in found.sentences(label)[1]
+
+
 @pytest.fixture
 def season(tmp_path):
     return a_season(tmp_path / "s.gpkg")

@@ -99,6 +99,19 @@ def recognised(names: Iterable[str]) -> frozenset[str]:
 _ALL = frozenset(name for names in _PLAIN.values() for name in names)
 
 
+_SURE = ("confidence", "conf", "certainty", "probability", "prob", "likelihood")
+
+
+def is_confidence(name: str) -> bool:
+    """Return whether a column says by its name how sure a program was of each record."""
+    return plain(name).endswith(_SURE) or plain(name).startswith(("confidence", "probability"))
+
+
+def is_score(name: str) -> bool:
+    """Return whether a column holds by its name a confidence, or a score that may be one."""
+    return is_confidence(name) or plain(name).endswith(("score", "scores"))
+
+
 _IDS = frozenset(
     {"id", "fid", "gid", "oid", "objectid", "ogcfid", "nr", "no", "num", "number", "nummer"}
     | {"numero", "index", "idx", "key", "code", "uuid", "guid", "serial", "lfdnr", "feature", "pk"}

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
+from fieldmon.io.parse.columns import is_confidence, is_score
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -38,7 +39,7 @@ evet|var|bulundu|pozitif|bulaşık|hasta
 """
 _CLEAN = """
 no|false|f|absent|negative|neg|n|none|nil|zero|clean|clear|healthy|nothing|not found|not detected
-nil found|no pests|ok|okay|free|0
+nil found|no pests|ok|okay|free|background|0
 nein|keine|keiner|kein befall|nicht gefunden|sauber|befallsfrei|gesund|negativ|nichts|ohne befall
 nee|geen|niet gevonden|schoon|gezond|negatief|afwezig
 non|aucun|aucune|absent|absente|négatif|négative|sain|saine|propre|pas trouvé|rien|indemne
@@ -135,6 +136,29 @@ def about_mark(unsure: str | None, column: str, mark: str) -> list[ImportMessage
         said = worded("Counts such as {unsure} were read as thousands.", unsure=unsure)
         label = worded("Read them as decimals")
     return [guessed(said, column, Remedy("decimal", "," if mark == "." else ".", label))]
+
+
+def are_fractions(read: Iterable[float]) -> bool:
+    """Return whether numbers are between 0 and 1 and not all whole, as confidences are."""
+    known = [one for one in read if one == one]  # noqa: PLR0124 - NaN
+    return all(0 <= one <= 1 for one in known) and any(one % 1 for one in known)
+
+
+def about_fractions(name: str, read: Iterable[float], *, is_usual: bool) -> list[ImportMessage]:
+    """Return a doubt about counts that could be confidences, unless their column is a usual one."""
+    if (is_usual and not is_confidence(name)) or not are_fractions(read):
+        return []
+    said = worded(
+        "Its numbers are between 0 and 1, as confidences are. As counts, all above 0 are finds."
+    )
+    return [doubtful(said, name)]
+
+
+def about_confidences(names: Iterable[str], used: Iterable[str | None]) -> list[ImportMessage]:
+    """Return which columns hold by their names confidences, which nothing uses."""
+    said = worded("It is not used: each record counts in full as its result says.")
+    taken = set(used)
+    return [seen(said, name) for name in names if is_score(name) and name not in taken]
 
 
 def _own(words: str | None) -> list[str]:

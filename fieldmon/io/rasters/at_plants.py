@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import joined, worded
-from fieldmon.infestation.raster_risk import risk_chance
-from fieldmon.io.import_report import seen
+from fieldmon.infestation.raster_risk import RELATIVE, meaning_of, risk_chance
+from fieldmon.io.import_report import doubtful, seen
+from fieldmon.io.options import source_name
 from fieldmon.io.rasters.read import read_raster
 
 if TYPE_CHECKING:
@@ -22,21 +23,27 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+# a raster of chances seldom has more than this share infested; of other numbers many would
+_MUCH = 0.2
+
 
 def read_risk(
     source: Source,
     options: RasterOptions,
     plot: Plot,
-    settings: RiskSettings,
+    settings: RiskSettings | None,
     how: How | None = None,
 ) -> Imported[Floats]:
     """Return the risk of each plant ``(n,)``, NaN where the raster says nothing.
 
-    Raise what `read_raster` raises, and `ObservationError` if values are not what they are said to
-    mean. A plant's value is the mean on its ground unless `how` says otherwise.
+    Raise what `read_raster` raises, `ObservationError` if values are not what they are said to
+    mean, and `ChoiceNeeded` if neither `settings` nor the file says what that is. A plant's value
+    is the mean on its ground unless `how` says otherwise.
     """
     read = read_raster(source, options, plot.field)
-    chance = risk_chance(read.value.of_plants(plot.grid, how or "mean"), settings)
+    values = read.value.of_plants(plot.grid, how or "mean")
+    settings = settings or meaning_of(source_name(source), values, read.value.described)
+    chance = risk_chance(values, settings)
     low, high, mean = np.nanmin(chance), np.nanmax(chance), np.nanmean(chance)
     said = worded(
         "Risk by {meaning}: {low:.3g} to {high:.3g}, {mean:.3g} on average",
@@ -45,9 +52,15 @@ def read_risk(
         high=high,
         mean=mean,
     )
-    return read.having(
-        chance, [seen(joined("", (said, _unseen(chance, worded("and have no risk by it")))))]
-    )
+    told = [seen(joined("", (said, _unseen(chance, worded("and have no risk by it")))))]
+    if settings.meaning not in RELATIVE and mean > _MUCH:
+        much = worded(
+            "By it alone {share} of all plants are infested: check that its numbers are chances, "
+            "and no index, order or score.",
+            share=f"{mean:.0%}",
+        )
+        told.append(doubtful(much))
+    return read.having(chance, told)
 
 
 def read_missing(

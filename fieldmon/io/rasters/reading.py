@@ -41,7 +41,8 @@ def raster(
         messages = (*read.messages, *_scaled(opened, band, values), *_empty(values))
         is_classes = opened.tif.colorinterp[band - 1] == ColorInterp.palette
         text = opened.crs.to_wkt()
-        value = Raster(values, part.to_map(opened.to_map), text, bool(is_classes))
+        called = opened.tif.descriptions[band - 1] or ""
+        value = Raster(values, part.to_map(opened.to_map), text, bool(is_classes), called)
         return Imported(value, messages)
 
 

@@ -82,12 +82,15 @@ class Raster:
         That system, as text PROJ understands.
     is_classes
         The numbers are classes (the band has a colour table): they must not be averaged.
+    described
+        What the file calls the band; empty: nothing.
     """
 
     values: NDArray[np.floating]
     to_map: Affine
     crs: str
     is_classes: bool = False
+    described: str = ""
 
     def __post_init__(self) -> None:
         self.values.setflags(write=False)

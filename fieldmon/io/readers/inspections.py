@@ -8,7 +8,8 @@ Decisions
   one asks for them.
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
-- Of two inspections of one file that are the same but for their notes, one is taken. What a season
+- Of the inspections of one visit (`visits`) that are the same but for their notes, one is taken. At
+  clearly other times of a day each is a look of its own, as the belief has it. What a season
   holds already is told there (`fieldmon.monitoring.inspection_table`).
 """
 
@@ -19,7 +20,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.units import distance_figure
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
@@ -42,6 +44,8 @@ from fieldmon.io.readers.inspection_places import (
     misplaced,
 )
 from fieldmon.io.readers.nearby import doubt_of_order
+from fieldmon.io.readers.visits import first_of_visits
+from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,6 +57,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _RESULTS = {PRESENT: FOUND, ABSENT: CLEAN, UNKNOWN: SKIPPED}
+_NAMED = 10  # plants of which a file contradicts itself
 _LISTED = 20  # doubtful records that are named one by one
 _TAKE = Remedy("take_doubtful", "yes", worded("Take it all the same"))
 
@@ -132,8 +137,10 @@ def look_up(
         *labelled.said,
         *_about_faces(rows, grid, plant, taken),
         *_about_accuracy(rows, options, open_yet & taken),
+        *_too_coarse(rows, grid, options, open_yet),
     ]
     inspections = _inspections(rows, plant, np.flatnonzero(taken))
+    said += _about_contradictions(rows, grid, plant, np.flatnonzero(taken))
     once = _once_each(inspections)
     if len(once) < len(inspections):
         n_again = len(inspections) - len(once)
@@ -145,7 +152,53 @@ def look_up(
                 )
             )
         )
+    if len(rows) > 1 and len(inspections) < len(rows):
+        said.append(_what_became(len(rows), inspections))
     return once, tuple(said)
+
+
+def _what_became(n_records: int, inspections: Inspections) -> ImportMessage:
+    """Return how many records of a file were taken, and of how many plants."""
+    n_out = n_records - len(inspections)
+    said = worded(
+        "Of {total} {total:record|records} {taken} {taken:was|were} taken, of {plants} "
+        "{plants:plant|plants}; {out} {out:was|were} left out.",
+        total=n_records,
+        taken=len(inspections),
+        plants=len(np.unique(inspections.plant)),
+        out=n_out,
+    )
+    return doubtful(said) if 2 * n_out > n_records else seen(said)
+
+
+def _about_contradictions(
+    rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64], records: NDArray[np.intp]
+) -> list[ImportMessage]:
+    """Return a doubt about plants that are both found and clean on one day, with the records."""
+    told: dict[tuple[int, int], dict[int, int]] = {}
+    for i in records.tolist():
+        if rows.result[i] != UNKNOWN:
+            key = int(plant[i]), int(rows.day[i].astype(np.int64))
+            told.setdefault(key, {}).setdefault(int(rows.result[i]), int(rows.source_row[i]))
+    both = {at: sorted(one.values()) for (at, _), one in told.items() if len(one) > 1}
+    if not both:
+        return []
+    label = row_label(grid, np.array([*both]))
+    names = [
+        worded(
+            "row {line}, plant {number} (records {some})",
+            line=line,
+            number=number,
+            some=", ".join(map(str, some)),
+        )
+        for line, number, some in zip(label.line, label.number, both.values(), strict=True)
+    ]
+    said = worded(
+        "In this file {n} {n:plant is|plants are} both found and clean on one day: {some}.",
+        n=len(both),
+        some=first_few(names, _NAMED),
+    )
+    return [doubtful(said)]
 
 
 def _nowhere(unread: str, *, below_one: bool) -> str:
@@ -248,6 +301,28 @@ def _about_accuracy(
     ]
 
 
+def _too_coarse(
+    rows: InspectionRows,
+    grid: PlantGrid,
+    options: InspectionOptions,
+    snapped: NDArray[np.bool_],
+) -> list[ImportMessage]:
+    """Return a doubt about positions so far off that none can name a plant."""
+    apart_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    told = 0.0 if options.accuracy_m is None else options.accuracy_m
+    accuracy_m = np.where(np.isnan(rows.accuracy_m), told, rows.accuracy_m)
+    n = int(np.count_nonzero(snapped & (2 * accuracy_m >= apart_m)))
+    if not n or options.take_doubtful:
+        return []
+    said = worded(
+        "{n} {n:position is|positions are} stated to be as far off as half the way to the next "
+        "plant ({apart}) or more: such positions name no plant.",
+        n=n,
+        apart=distance_figure(apart_m),
+    )
+    return [doubtful(said, None, _TAKE)]
+
+
 def _inspections(
     rows: InspectionRows, plant: NDArray[np.int64], records: NDArray[np.intp]
 ) -> Inspections:
@@ -270,17 +345,13 @@ def _inspections(
 
 
 def _once_each(inspections: Inspections) -> Inspections:
-    """Return the first of each that are the same but for their notes."""
+    """Return the first of each visit that are the same but for their notes."""
     columns = zip(
         inspections.plant.tolist(),
         inspections.date.astype(np.int64).tolist(),  # a day that is no time is one number too
-        np.nan_to_num(inspections.second, nan=-1.0).tolist(),
         inspections.result.tolist(),
         [f"{count:.9g}" for count in inspections.count.tolist()],
         [who.strip() for who in inspections.who],
         strict=True,
     )
-    first: dict[tuple[object, ...], int] = {}
-    for number, same in enumerate(columns):
-        first.setdefault(same, number)
-    return inspections.take(np.array([*first.values()], np.intp))
+    return inspections.take(first_of_visits(columns, inspections.second))

@@ -20,10 +20,18 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
+from fieldmon.io.options import ROLES
 from fieldmon.io.parse.clock import clock_time, local_time, zone_of
-from fieldmon.io.parse.columns import find, is_id, recognised
+from fieldmon.io.parse.columns import find, is_confidence, is_id, recognised
 from fieldmon.io.parse.positions import located
-from fieldmon.io.parse.result_words import ResultWords, about_mark, about_minus
+from fieldmon.io.parse.result_words import (
+    ResultWords,
+    about_confidences,
+    about_fractions,
+    about_mark,
+    about_minus,
+    are_fractions,
+)
 from fieldmon.io.parse.values import (
     counted,
     dates,
@@ -34,8 +42,11 @@ from fieldmon.io.parse.values import (
     presence,
 )
 from fieldmon.io.readers.date_doubts import in_future, mixed_dates
+from fieldmon.io.readers.inspection_file.columns import own_column
+from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places
 from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
+from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -46,7 +57,9 @@ if TYPE_CHECKING:
     from fieldmon.io.parse.values import DatedColumn
     from fieldmon.io.readers.places import NamedPlaces
 
-_LOOKED_AT = 200
+_LOOKED_AT, _FEW_WORDS = 200, 12
+# a position that is this far off names no plant: many may be meant by it
+_NO_PLANT_M = 10.0
 
 
 def records_of(
@@ -76,7 +89,7 @@ def _records_and_plots(
     layer, repeated = _once_each(by_day(layer, options))
     found = located(layer, options, places)
     table = _Table(found.layer, options)
-    day, day_messages = _days(table, found.lonlat)
+    day, at_s, day_messages = _days(table, found.lonlat)
     counts = _counts(table)
     stated_m = table.numbers("accuracy")
     observations = Observations.of(
@@ -90,8 +103,11 @@ def _records_and_plots(
         leaves_sampled=table.numbers("leaves"),
     )
     messages = (*layer.messages, *repeated, *found.messages, *day_messages, *counts.messages)
-    more = (*_species(table), *_same_visit(observations))
-    return Imported(observations, (*messages, *more)), found.plot
+    first, visits = _each_visit_once(observations, at_s)
+    once = observations.take(first)
+    more = (*_species(table), *visits, *_same_visit(once))
+    messages += (*about_confidences(layer.columns, table.used()),)
+    return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +122,10 @@ class _Table:
 
     def named(self, role: str, taken: frozenset[str] = frozenset()) -> str | None:
         return self.options.column(role) or find(role, self.layer.columns, taken)
+
+    def used(self) -> set[str | None]:
+        """Return the columns that play a role."""
+        return {self.named(role) for role in ROLES}
 
     def cells(self, name: str) -> list[str]:
         return [text(v) for v in self.layer.column(name)]
@@ -151,13 +171,20 @@ def _once_each(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     return layer.take(kept), [dropped(said)]
 
 
-def _days(
-    table: _Table, lonlat: NDArray[np.float64]
-) -> tuple[NDArray[np.datetime64], list[ImportMessage]]:
-    """Return the local days of records at positions ``(n, 2)``."""
+class _Days(NamedTuple):
+    """Local days ``(n,)``, and times in seconds from anywhere, NaN where unknown, ``(n,)``."""
+
+    day: NDArray[np.datetime64]
+    at_s: NDArray[np.float64]
+    messages: list[ImportMessage]
+
+
+def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
+    """Return the local days of records at positions ``(n, 2)``, and their times."""
     parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
     by_hand = table.options.column("date")
     zoned: list[ImportMessage] = []
+    name = None
     if len(set(parts)) == 3 and by_hand is None:
         read = dates_of_parts(*(numbers(table.layer.column(part)) for part in parts))
         where, quoted = ", ".join(parts), ", ".join(map(repr, parts))
@@ -166,16 +193,35 @@ def _days(
         if name is None:
             unknown = np.full(len(table), "NaT", dtype="datetime64[D]")
             said = worded("No column was recognised as the date of the records.")
-            return unknown, [doubtful(said, remedy=_offer(table, "date", _are_dates))]
+            offer = [doubtful(said, remedy=_offer(table, "date", _are_dates))]
+            return _Days(unknown, np.full(len(table), np.nan), offer)
         read = dates(table.layer.column(name), table.options.date_order)
         where, quoted = name, repr(name)
+    at_s = _times(table, read.day, name)
+    if name is not None:
         day, zoned = _as_local(read.day, table.cells(name), lonlat)
         read = read._replace(day=day)
-    return read.day, [
-        seen(worded("Dates were read from {where}.", where=quoted)),
-        *zoned,
-        *_about_dates(read, where),
-    ]
+    of_dates = seen(worded("Dates were read from {where}.", where=quoted))
+    return _Days(read.day, at_s, [of_dates, *zoned, *_about_dates(read, where)])
+
+
+def _times(table: _Table, day: NDArray[np.datetime64], name: str | None) -> NDArray[np.float64]:
+    """Return when each record was made, seconds from anywhere; NaN where no clock says it.
+
+    `name` is the column of the date, which may hold the time too.
+    """
+    other = own_column("time", table.layer, {name})
+    at_s = np.full(len(table), np.nan)
+    for column in (name, other):
+        if column is None:
+            continue
+        cells = table.cells(column)
+        clocks = {cell: clock_time(cell) for cell in set(cells)}
+        for k in np.flatnonzero(np.isnan(at_s) & ~np.isnat(day)).tolist():
+            if (clock := clocks[cells[k]]) is not None:
+                ahead_s = 0.0 if clock.offset is None else clock.offset.total_seconds()
+                at_s[k] = int(day[k].astype(np.int64)) * 86_400 + clock.seconds - ahead_s
+    return at_s
 
 
 def _as_local(
@@ -260,9 +306,9 @@ def _counts(table: _Table) -> _Counts:
 
 def _what_was_found(table: _Table) -> ChoiceNeeded:
     """Return the question which column says what was found, with those that could."""
-    words = _fitting(table, _are_results)
-    numbers = [name for name in _fitting(table, _are_numbers) if not is_id(name, table.cells(name))]
-    could = (*(f"present={n}" for n in words), *(f"count={n}" for n in numbers if n not in words))
+    words = [*_fitting(table, _are_results), *_fitting(table, _hold_results)]
+    numbers = [name for name in _fitting(table, _are_numbers) if _could_count(table, name)]
+    could = dict.fromkeys((*(f"present={n}" for n in words), *(f"count={n}" for n in numbers)))
     return ChoiceNeeded(
         worded(
             "{name} must have a column that says what was found (count, "
@@ -309,6 +355,21 @@ def _are_results(cells: list[str]) -> bool:
     return bool(read) and all(one != UNKNOWN for one in read) and not _are_numbers(cells)
 
 
+def _hold_results(cells: list[str]) -> bool:
+    """Return whether cells are a few words, one of which says what was found."""
+    words = {cell for cell in cells if not is_missing(cell)}
+    some = any(presence(word) != UNKNOWN for word in words)
+    return len(words) <= _FEW_WORDS and some and not _are_numbers(cells)
+
+
+def _could_count(table: _Table, name: str) -> bool:
+    """Return whether a column of numbers could count pests: no ids, no confidences."""
+    cells = table.cells(name)
+    if is_id(name, cells) or is_confidence(name):
+        return False
+    return not are_fractions(counted(cell).number for cell in cells[:_LOOKED_AT])
+
+
 def _are_dates(cells: list[str]) -> bool:
     column = np.array(cells, dtype=object)
     return not np.isnat(dates(column).day).all()
@@ -331,6 +392,7 @@ def _numbers_of(table: _Table, name: str) -> _Counts:
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
     messages.append(seen(worded("Counts are in column {name!r}.", name=name)))
+    messages += about_fractions(name, count.tolist(), is_usual=bool(recognised([name])))
     odd = [cell for cell in cells if known[cell].is_rough]
     rough = [cell for cell in odd if known[cell].present != UNKNOWN]
     none = [cell for cell in odd if known[cell].present == UNKNOWN]
@@ -429,6 +491,47 @@ def _species(table: _Table) -> list[ImportMessage]:
     return [
         doubtful(worded("{n} species are mixed: {shown}.", n=len(kinds), shown=shown), name, remedy)
     ]
+
+
+def _each_visit_once(
+    observations: Observations, at_s: NDArray[np.float64]
+) -> tuple[NDArray[np.intp], list[ImportMessage]]:
+    """Return the first record of each visit, and what there is to say of the others.
+
+    A robot tells of a plant each time that it sees it, and that is one look. Records without a day,
+    and of positions that tell no plants apart, stay as they are.
+    """
+    accuracy_m, lonlat = observations.accuracy_m, observations.lonlat
+    known = ~np.isnat(observations.day) & ~(accuracy_m > _NO_PLANT_M)
+    known &= np.isfinite(lonlat).all(axis=1)
+    if np.count_nonzero(known) < 2:
+        return np.arange(len(observations)), []
+    some, records = observations.take(known), np.flatnonzero(known)
+    east = np.cos(np.radians(np.median(some.lonlat[:, 1])))
+    xy_m = (some.lonlat - some.lonlat[0]) * M_PER_DEGREE * [east, 1.0]
+    place = same_places(xy_m, some.accuracy_m)
+    columns = (some.day.astype(np.int64), some.present, some.count, some.leaves_sampled)
+    told = [np.nan_to_num(column.astype(np.float64), nan=-1.0).tolist() for column in columns]
+    says = list(zip(place.tolist(), *told, some.species.tolist(), some.stage.tolist(), strict=True))
+    first = first_of_visits(says, at_s[known])
+    messages: list[ImportMessage] = []
+    if n_again := len(some) - len(first):
+        said = worded(
+            "{n} {n:record repeats|records repeat} what another says of the same place and day, "
+            "within {minutes} minutes or with no time: one visit, which counts once.",
+            n=n_again,
+            minutes=round(VISIT_S / 60),
+        )
+        messages.append(guessed(said))
+    if n_more := len(first) - len({says[k] for k in first.tolist()}):
+        said = worded(
+            "{n} {n:record tells|records tell} the same of a place and day as another at another "
+            "time: each visit counts.",
+            n=n_more,
+        )
+        messages.append(doubtful(said))
+    kept = np.sort(np.concatenate([np.flatnonzero(~known), records[first]]))
+    return kept, messages
 
 
 def _same_visit(observations: Observations) -> list[ImportMessage]:

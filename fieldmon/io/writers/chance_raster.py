@@ -11,6 +11,7 @@ import pyproj
 from fieldmon.compute.jit import routine
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
+from fieldmon.infestation.raster_risk import CHANCE_BAND
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.rasters.smooth import smoothly
 from fieldmon.io.sandbox import limits
@@ -141,7 +142,7 @@ def _packed(picture: ChanceRaster) -> bytes:
         with MemoryFile(ext=".tif") as plain, MemoryFile(ext=".tif") as cloud:
             with plain.open(**profile, crs=picture.crs, transform=place, nodata=NODATA) as tif:
                 tif.write(picture.values, 1)
-                tif.set_band_description(1, "chance of infestation")
+                tif.set_band_description(1, CHANCE_BAND)
             copy(
                 plain.name,
                 cloud.name,

@@ -41,6 +41,8 @@ def test_a_raster_of_risk_changes_the_chances_and_the_season_keeps_it(app, seaso
     before = float(metric(app, "Expected finds"))
     go(app, "plot")
     app.file_uploader(key="risk_file").upload("risk.tif", data).run()
+    assert any("nothing says what they mean" in one.value for one in app.warning)
+    app.selectbox(key="risk_meaning").set_value("chance").run()
     assert "must hold values in 0..1" in app.error[0].value, "percent were taken for chances"
     app.selectbox(key="risk_meaning").set_value("percent").run()
     assert not app.error

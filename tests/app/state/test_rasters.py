@@ -30,6 +30,9 @@ def test_without_a_raster_nothing_changes(plot):
 
 def test_a_raster_s_key_stands_for_the_file_and_how_it_is_read(plot, session):
     bring(rasters.RISK, geotiff(np.full((30, 30), 0.2, np.float32), EDGES))
+    assert rasters.risk(plot, "key") == (None, (), "key")
+    assert "nothing says" in str(rasters.problem(rasters.RISK))
+    session[rasters.RISK_MEANING] = "chance"
     risk, said, key = rasters.risk(plot, "key")
     assert risk == pytest.approx(0.2, abs=1e-6)
     assert [one.asked for one in said] == [brought_files.brought()[rasters.RISK].asked] * len(said)
@@ -52,8 +55,10 @@ def test_plants_are_missing_below_the_value_in_the_box(plot, session):
     assert other != key
 
 
-@pytest.mark.usefixtures("session")
-def test_a_raster_that_cannot_be_used_is_left_out_and_its_problem_kept_until_it_is_gone(plot):
+def test_a_raster_that_cannot_be_used_is_left_out_and_its_problem_kept_until_it_is_gone(
+    plot, session
+):
+    session[rasters.RISK_MEANING] = "chance"
     bring(rasters.RISK, geotiff(np.full((30, 30), 7.0, np.float32), EDGES))
     assert rasters.risk(plot, "key") == (None, (), "key")
     assert "0..1" in str(rasters.problem(rasters.RISK))

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+import rasterio
 
-from fieldmon.errors import FileProblem, ObservationError
-from fieldmon.infestation.raster_risk import RiskSettings, risk_chance
+from fieldmon.errors import ChoiceNeeded, FileProblem, ObservationError
+from fieldmon.infestation.raster_risk import CHANCE_BAND, RiskSettings, risk_chance
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.rasters.at_plants import read_missing, read_risk
@@ -25,10 +26,10 @@ def columns_of(plot):
 def test_the_risk_of_a_plant_is_that_of_its_own_ground(tmp_path):
     values = (ramp() / 1e6).astype("float32")
     path = write(tmp_path / "risk.tif", values)
-    exact = read_risk(path, ANY, HOME, RiskSettings(), "nearest").value
+    exact = read_risk(path, ANY, HOME, RiskSettings("chance"), "nearest").value
     np.testing.assert_allclose(exact, expected(HOME.grid.lonlat()) / 1e6, rtol=1e-5)
     # on a tilted plane the mean of the ground about a plant is that of its middle
-    mean = read_risk(path, ANY, HOME, RiskSettings()).value
+    mean = read_risk(path, ANY, HOME, RiskSettings("chance")).value
     np.testing.assert_allclose(mean, exact, atol=0.0011)
 
 
@@ -40,9 +41,31 @@ def test_what_the_numbers_mean_is_as_said(tmp_path):
     assert np.argmax(imported.value) == np.argmin(expected(HOME.grid.lonlat()))
     assert "Risk by rank" in imported.messages[-1].sentence
     with pytest.raises(ObservationError):
-        risk_chance(expected(HOME.grid.lonlat()), RiskSettings())
+        risk_chance(expected(HOME.grid.lonlat()), RiskSettings("chance"))
     with pytest.raises(ObservationError):
-        read_risk(path, ANY, HOME, RiskSettings())
+        read_risk(path, ANY, HOME, RiskSettings("chance"))
+
+
+def test_what_the_numbers_mean_is_asked_unless_the_file_says_it(tmp_path):
+    path = write(tmp_path / "ndvi.tif", np.full((400, 400), 0.3, "float32"))
+    with pytest.raises(ChoiceNeeded, match=r"0\.3 to 0\.3 at the plants") as asked:
+        read_risk(path, ANY, HOME, None)
+    assert asked.value.option == "meaning"
+    assert asked.value.choices == ("rank", "score", "chance", "percent")
+    with rasterio.open(path, "r+") as tif:
+        tif.set_band_description(1, CHANCE_BAND)
+    assert read_risk(path, ANY, HOME, None).value.mean() == pytest.approx(0.3)
+
+
+def test_chances_that_have_much_of_the_plot_infested_are_doubted(tmp_path):
+    much = write(tmp_path / "much.tif", np.full((400, 400), 0.5, "float32"))
+    for settings, is_doubted in (
+        (RiskSettings("chance"), True),
+        (RiskSettings("percent"), False),
+        (RiskSettings("rank", mean_share=0.5), False),  # somebody said it
+    ):
+        said = read_risk(much, ANY, HOME, settings).messages
+        assert ("By it alone 50% of all" in said[-1].sentence) is is_doubted
 
 
 def half_without_value():
@@ -53,7 +76,7 @@ def half_without_value():
 
 def test_plants_that_the_raster_does_not_show_have_no_risk_by_it_and_are_counted(tmp_path):
     path = write(tmp_path / "risk.tif", half_without_value(), nodata=-1.0)
-    imported = read_risk(path, ANY, HOME, RiskSettings(), "nearest")
+    imported = read_risk(path, ANY, HOME, RiskSettings("percent"), "nearest")
     unseen = columns_of(HOME) >= 200
     np.testing.assert_array_equal(np.isnan(imported.value), unseen)
     assert 0 < unseen.sum() < len(unseen)

@@ -112,7 +112,7 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
         "7,x,4,Noa,2026-11-18T08:30",
         "7,x,,Noa,2026-11-18T08:30",
         "7,x,3,Amir,2026-11-18T08:30",
-        "7,x,3,Noa,2026-11-18T08:31",
+        "7,x,3,Noa,2026-11-18T08:41",
         "7,x,3,Noa,2026-11-18",
         "7,x,3,Noa,",
     ],
@@ -342,3 +342,14 @@ def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():
     alone = "record names a plant by its number alone: taken as files given out count them, 0 to 59"
     assert any(alone in str(one) for one in read("plant,count\n1,2\n").messages)
     assert not any(alone in str(one) for one in read("plant,row,number,count\n1,1,2,2\n").messages)
+
+
+def test_a_file_that_contradicts_itself_says_with_which_records_and_what_became_of_all():
+    told = read("row,plant,found,confidence\n1,1,x,.3\n1,2,no,.9\n1,1,no,.8\n99,1,no,.2\n")
+    said = [message.sentence for message in told.messages]
+    shown = (
+        "In this file 1 plant is both found and clean on one day: row 1, plant 1 (records 1, 3)."
+    )
+    assert shown in said
+    assert "Of 4 records 3 were taken, of 2 plants; 1 was left out." in said
+    assert "It is not used: each record counts in full as its result says." in said

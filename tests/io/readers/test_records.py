@@ -68,6 +68,24 @@ def test_a_file_that_only_lists_places_asks_what_was_found_and_offers_what_could
     assert (again.value.present == PRESENT).all()
 
 
+DETECTED = {"class": ["mite", "background", "mite"], "confidence": [0.54, 0.83, 0.78]}
+
+
+def test_what_a_robot_saw_is_asked_for_in_words_that_answer_and_never_taken_from_its_confidence():
+    with pytest.raises(ChoiceNeeded) as asked:
+        read(**DETECTED)
+    assert asked.value.choices == ("present=class", "present=")
+    for role in ("present", "found", "result"):
+        imported = read(RecordOptions(columns=((role, "class"),)), **DETECTED)
+        assert imported.value.present.tolist() == [PRESENT, ABSENT, PRESENT]
+        unused = [one.feature for one in imported.messages if "is not used" in one.sentence]
+        assert unused == ["confidence"]
+    told = read(ANY.naming(count="confidence"), **DETECTED)
+    assert "as confidences are" in said(told, Severity.DOUBTFUL)
+    assert "is not used" not in said(told, Severity.SEEN)
+    assert "as confidences" not in said(read(mites=[0.5, 0.1, 0]), Severity.DOUBTFUL)
+
+
 def test_a_count_that_is_no_plain_number_is_read_roughly_and_shown():
     records = read(count=["3", "~10", ">5", "many"])
     assert "no plain number" in said(records, Severity.DOUBTFUL)
@@ -138,6 +156,33 @@ def test_records_that_repeat_another_in_every_column_are_left_out():
     assert records.value.count.tolist() == [1.0, 2.0]
     assert "1 record repeats another" in said(records, Severity.DROPPED)
     assert "another count for a place and day" in said(records, Severity.DOUBTFUL)
+
+
+@pytest.mark.parametrize(
+    ("time", "found", "north", "kept", "words"),
+    [
+        ("2026-11-16T08:00:00Z", 1, 0.0, 1, "one visit, which counts once"),
+        ("2026-11-16T10:09:00+02:00", 1, 0.0, 1, "1 record repeats what another says"),
+        ("2026-11-16T13:00:00Z", 1, 0.0, 2, "another time: each visit counts"),
+        ("2026-11-17T08:00:00Z", 1, 0.0, 2, ""),
+        ("2026-11-16T08:00:00Z", 0, 0.0, 2, "gives another count"),
+        ("2026-11-16T08:00:00Z", 1, 1e-5, 2, ""),
+    ],
+)
+def test_a_plant_of_which_a_robot_tells_often_in_one_visit_counts_once(
+    time, found, north, kept, words
+):
+    imported = records_of(
+        table(
+            lon=[35.150123] * 2, lat=[30.360789, 30.360789 + north], found=[1, found],
+            time=["2026-11-16T08:00:00Z", time], detection_id=[1, 2],
+        ),
+        ANY,
+    )  # fmt: skip
+    assert len(imported.value) == kept
+    told = " ".join(message.sentence for message in imported.messages)
+    assert words in told
+    assert ("visit" in told) == ("visit" in words or "repeats" in words)
 
 
 def test_several_species_are_doubted_and_each_can_be_chosen_alone():

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.parse.columns import find, is_id, plain, recognised
+from fieldmon.io.parse.columns import find, is_confidence, is_id, plain, recognised
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -106,7 +106,9 @@ def _open(layer: Layer) -> list[str]:
     return [
         name
         for name in layer.columns
-        if name not in known and not is_id(name, [text(v) for v in layer.columns[name][:200]])
+        if name not in known
+        and not is_confidence(name)
+        and not is_id(name, [text(v) for v in layer.columns[name][:200]])
     ] or list(layer.columns)
 
 

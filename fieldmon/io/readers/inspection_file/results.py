@@ -11,10 +11,13 @@ from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
+from fieldmon.io.parse.columns import recognised
 from fieldmon.io.parse.result_words import (
     MINUS,
     NOT_INSPECTED,
     ResultWords,
+    about_confidences,
+    about_fractions,
     about_mark,
     about_minus,
 )
@@ -84,8 +87,15 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
                 worded("Counts are in column {number_found!r}.", number_found=columns.number_found)
             ),
             *guess,
+            *about_fractions(
+                columns.number_found,
+                [one.how_many for one in by_count],
+                is_usual=bool(recognised([columns.number_found])),
+            ),
             *_unread(cells, known),
         ]
+    taken = (columns.result, columns.number_found, *dict(options.columns).values())
+    messages += about_confidences(layer.columns, taken)
     return _put_together(by_result, by_count, messages)
 
 

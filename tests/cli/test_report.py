@@ -27,7 +27,7 @@ def test_a_day_is_written_on_one_page_of_the_paper_asked_for(run, season):
     assert code == 0, err
     (file,) = made
     (page,) = texts(file.read_bytes())
-    assert f"on {BEGINS}" in page
+    assert f"Day of {BEGINS}" in page
     assert sizes_mm(file.read_bytes()) == [(215.9, 279.4)]
 
 

@@ -47,10 +47,15 @@ def test_a_season_says_what_it_said(season, capsys):
         since = [line for line in said if line.startswith(new)]
         assert len(since) == 1
         said.remove(since[0])
-    new = "were found and only flagged, are still", "that the plot is clean leaves these out."
-    since = [line for line in said if any(one in line for one in new)]
-    assert len(since) == 2 * ("flagged" in season.path.stem)
-    said = [line for line in said if line not in since]
+    flagged = "were found and only flagged, are still", "that the plot is clean leaves these out."
+    planned = "  planned, not recorded  2026-04-09", "  Record it; if nobody went, record one stop"
+    for new, there in (
+        (flagged, "flagged" in season.path.stem),
+        (planned, LAST in season.planned_only(LAST)),
+    ):
+        since = [line for line in said if any(one in line for one in new)]
+        assert len(since) == 2 * there
+        said = [line for line in said if line not in since]
     # recorded when, by the clock of the plot instead of UTC, and with what
     told = (FOLDER / f"{season.path.stem}.status.txt").read_text("utf-8")
     clock = local_clock(season.plot.field)

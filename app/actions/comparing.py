@@ -19,6 +19,8 @@ MOST_ROBOTS = 5
 _SOME = 6
 
 if TYPE_CHECKING:
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.infestation.pest_in_weather import PestInWeather
 
     from ..state.choices import Choices
@@ -48,13 +50,22 @@ def settings(choices: Choices, pest: PestInWeather | None = None) -> ComparisonS
         Strategy(name, float(h), float(s), k)
         for name, h, s, k in product(samplers, hours, seconds, sorted(robots))
     )
-    first, *others = st.columns(5, vertical_alignment="bottom")
+    first, *others = _columns(4 if pest is not None else 5)
     seeds = first.number_input(texts.SEEDS, 1, 500, 20, help=texts.SEEDS_HELP, key="seeds")
-    return ComparisonSettings(strategies, *season(choices, others, pest), int(seeds))
+    return ComparisonSettings(strategies, *_season(choices, others, pest), int(seeds))
 
 
-def season(
-    choices: Choices, columns: list, pest: PestInWeather | None = None
+def season(choices: Choices, pest: PestInWeather | None = None) -> tuple[int, float, float, int]:
+    """Show what a simulated season is like; return what `settings` has of it."""
+    return _season(choices, _columns(3 if pest is not None else 4), pest)
+
+
+def _columns(number: int) -> list[DeltaGenerator]:
+    return st.columns(number, vertical_alignment="bottom")
+
+
+def _season(
+    choices: Choices, columns: list[DeltaGenerator], pest: PestInWeather | None
 ) -> tuple[int, float, float, int]:
     """Show what a simulated season is like.
 
@@ -62,10 +73,11 @@ def season(
     and the spread begin as an open season believes. Where a pest is known, its nights are told
     instead of asked for.
     """
-    show, (first, apart, second, third) = widget_memory.show, columns
+    show, (first, apart, second, *third) = widget_memory.show, columns
     own_share, own_rate = _believed(choices)
     if choices.season is not None:
-        st.caption(texts.AS_BELIEVED.format(day=choices.units.said_day(choices.day)))
+        said = texts.AS_BELIEVED if pest is None else texts.START_AS_BELIEVED
+        st.caption(said.format(day=choices.units.said_day(choices.day)))
     n_days = int(show(first.number_input, texts.DAYS, 2, 60, key="n_days", default=25))
     every = int(show(apart.number_input, texts.VISIT_EVERY, 1, 30, key="visit_every", default=1,
                      help=texts.VISIT_EVERY_HELP))  # fmt: skip
@@ -73,9 +85,9 @@ def season(
     share = show(second.number_input, texts.INFESTED, 0.1, 50.0, step=0.5,
                  key=f"share {own_share:g}", default=own_share)  # fmt: skip
     if pest is not None:
-        third.caption(texts.NIGHTS_OF_PEST.format(pest=pest_figures.title(pest.pest)))
+        st.caption(texts.NIGHTS_OF_PEST.format(pest=pest_figures.title(pest.pest)))
         return n_days, share / 100, 0.0, every
-    rate = show(third.number_input, texts.SPREAD, 0.0, 100.0, step=0.5, key=f"rate {own_rate:g}",
+    rate = show(third[0].number_input, texts.SPREAD, 0.0, 100.0, step=0.5, key=f"rate {own_rate:g}",
                 default=own_rate, help=texts.SPREAD_HELP)  # fmt: skip
     return n_days, share / 100, rate / 100, every
 

@@ -26,7 +26,7 @@ def show(choices: Choices) -> None:
     """Simulate, and show any day of any sampler on the map."""
     st.caption(texts.SEASON_INTRO)
     pest = chosen_pest.in_weather(choices)
-    numbers = comparing.season(choices, st.columns(4, vertical_alignment="bottom"), pest)
+    numbers = comparing.season(choices, pest)
     n_days, *_, every = numbers
     seed = st.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
     names = _names(choices)

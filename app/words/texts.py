@@ -296,6 +296,7 @@ VISITS_CAME_TO = (
 )
 SPREAD_HELP = "Chance a night that an infested plant infests each plant next to it."
 AS_BELIEVED = "*Infested at the start* and *Spread a night* begin as the season believes on {day}."
+START_AS_BELIEVED = "*Infested at the start* begins as the season believes on {day}."
 NIGHTS_OF_PEST = "Spreads as the chosen pest, by its weather where that is known: {pest}."
 SEED_HELP = "The same seed gives the same season."
 DETECTION_AXIS, DAY_AXIS, FOUND_AXIS = "found so far (%)", "day", "plants found that day"

@@ -35,6 +35,8 @@ _DRAWS = 4000
 # an interval of 90 % is so many standard deviations wide
 _SIGMAS = 3.29
 _LEAST = 1e-9
+# more would be no number
+_MOST_GROWN = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +148,8 @@ def forecast(
         inside[0] = min(inside[0] * (now.expected / expected[0]), now.expected)
         expected[0] = now.expected
     doubts = _deviation(tonight), OF_A_PEST if named else LEVEL_DOUBT
-    low, high = _interval(inside, expected - inside, doubts, found, grown)
+    so_far = grown, len(evening.chance)
+    low, high = _interval(inside, expected - inside, doubts, found, so_far)
     if now is not None:
         # it is never surer than what is known this evening
         grows = expected / max(float(expected[0]), _LEAST)
@@ -192,7 +195,11 @@ def _deviation(made: PlotEstimate) -> float:
 
 
 def _interval(
-    inside: Floats, arrived: Floats, doubts: tuple[float, float], found: float, grown: float = 0.0
+    inside: Floats,
+    arrived: Floats,
+    doubts: tuple[float, float],
+    found: float,
+    so_far: tuple[float, int],
 ) -> Floats:
     """Return the interval of 90 % on each morning, ``(2, d)``, from whole numbers that are drawn.
 
@@ -207,8 +214,9 @@ def _interval(
         How far tonight's number may be off, as a share: as the chance map says, and beyond that.
     found
         How many finds tell what arrives.
-    grown
-        By how much it has grown since somebody inspected last, as a logarithm.
+    so_far
+        By how much it has grown since somebody inspected last, as a logarithm, and how many plants
+        there are.
     """
     draws = RandomStreams(0).of("forecast")
     known = _ARRIVALS_KNOWN + max(found - _NOT_TOLD, 0.0)
@@ -216,9 +224,11 @@ def _interval(
     level = draws.gamma(beyond**-2.0, beyond**2.0, _DRAWS)
     faster = np.exp(draws.normal(0.0, RATE_DOUBT, _DRAWS))
     arrives = draws.gamma(known, 1.0 / known, _DRAWS)
-    level = level * np.exp(grown * (faster - 1.0))
-    here = draws.poisson(level * _tonight(inside[0], arrived[0], doubt, draws))
-    came = draws.poisson(level * arrives * arrived[0])
+    grown, most = so_far
+    level = level * np.exp(np.minimum(grown * (faster - 1.0), _MOST_GROWN))
+    tonight = level * _tonight(inside[0], arrived[0], doubt, draws)
+    here = draws.poisson(np.minimum(tonight, most))
+    came = draws.poisson(np.minimum(level * arrives * arrived[0], most))
     ends = [np.quantile(here + came, (0.05, 0.95))]
     for night in range(1, len(inside)):
         grows = max(inside[night], _LEAST) / max(inside[night - 1], _LEAST)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from datetime import timedelta
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,7 @@ from fieldmon.samplers.decide import Decide
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from datetime import date
 
     from shapely import MultiPolygon
 
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.sequential import Verdict
     from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.monitoring.history import Treatment
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
@@ -126,6 +129,42 @@ class MoreInspections:
     if_found: int | None
 
 
+@dataclass(frozen=True)
+class InspectAgain:
+    """Until when a plot stays below its threshold with a chance of 95 %, if nobody inspects it.
+
+    Parameters
+    ----------
+    by
+        The first day on which it may be above; None: none of those that are foretold.
+    nights
+        How many nights are foretold.
+    """
+
+    by: date | None
+    nights: int
+
+    @classmethod
+    def of(cls, ahead: Forecast, on: date, infested: float) -> InspectAgain:
+        """Return it by what is foretold from a day on, of so many infested plants."""
+        (above,) = np.nonzero(ahead.high[1:] > infested)
+        by = on + timedelta(days=int(above[0]) + 1) if len(above) else None
+        return cls(by, ahead.nights)
+
+    def sentence(self, units: Units | None = None) -> Worded:
+        """Return it in words."""
+        if self.by is None:
+            return worded(
+                "Without inspections it stays below the threshold for {nights} at least, with a "
+                "chance of 95 %.",
+                nights=counted(self.nights, "night"),
+            )
+        return worded(
+            "Inspect again by {day}: before, it stays below the threshold with a chance of 95 %.",
+            day=(units or Units()).day(self.by),
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class Advice:
     """The answer to "do I have to spray, and where?".
@@ -146,6 +185,8 @@ class Advice:
         Looks to a verdict; None: there is one.
     done
         What was treated that day: its plants are in no zone.
+    again
+        When to inspect again; None: the plot is not below the threshold.
     """
 
     grid: PlantGrid
@@ -155,6 +196,7 @@ class Advice:
     said: ZoneVerdicts
     more: MoreInspections | None = None
     done: tuple[Treatment, ...] = ()
+    again: InspectAgain | None = None
 
     def __repr__(self) -> str:
         return f"<Advice: {self.verdict}, {counted(len(self.zones), 'zone')}>"
@@ -243,15 +285,16 @@ class Advice:
 
     def sentences(self, units: Units | None = None) -> list[str]:
         """Return the answer and what it rests on, in sentences."""
-        return [self.headline(units), *self.reasons(), *self.said_of_zones(units)]
+        return [self.headline(units), *self.reasons(units), *self.said_of_zones(units)]
 
     def in_short(self) -> str:
         """Return what the season's log keeps of it: the answer, and what it rests on."""
         return joined(" ", (self.headline(), self.plot.believed()))
 
-    def reasons(self) -> list[str]:
-        """Return what the answer rests on, and what would end it sooner."""
-        return [self.plot.believed(), *self._done_said(), *self._sooner_said()]
+    def reasons(self, units: Units | None = None) -> list[str]:
+        """Return what the answer rests on, how long it holds, and what would end it sooner."""
+        again = [] if self.again is None else [self.again.sentence(units)]
+        return [self.plot.believed(), *self._done_said(), *again, *self._sooner_said()]
 
     def _done_said(self) -> list[str]:
         if not self.done:

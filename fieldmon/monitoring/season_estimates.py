@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
+from fieldmon.decisions.sequential import LEAVE
 from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import day_figures
-from fieldmon.monitoring.advice import AdviceSettings, advice
+from fieldmon.monitoring.advice import AdviceSettings, InspectAgain, advice
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.open_season import OpenSeason
@@ -121,9 +122,15 @@ class SeasonEstimates(OpenSeason):
             contents = self._read(db)
             day = contents.settings.day(on)
             scene = self._scene(contents, on, read=db)
-            evening = contents.history.in_hindsight(contents.morning(day), day)
-        done = tuple(one for one in contents.history.treatments if one.day == day)
-        return advice(contents.history.grid, evening, asked or AdviceSettings(), scene, done)
+            morning = contents.morning(day)
+            evening = contents.history.in_hindsight(morning, day)
+        history, asked = contents.history, asked or AdviceSettings()
+        done = tuple(one for one in history.treatments if one.day == day)
+        made = advice(history.grid, evening, asked, scene, done)
+        if made.verdict != LEAVE:
+            return made
+        ahead = history.forecast(morning, day)  # others may plan meanwhile
+        return replace(made, again=InspectAgain.of(ahead, on, asked.level * len(history.grid)))
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

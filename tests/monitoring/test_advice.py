@@ -57,6 +57,20 @@ def test_the_headline_is_the_answer(season, level, said):
     assert season.advice(BEGINS, asked).headline().startswith(said)
 
 
+@pytest.mark.parametrize("level", [0.4, 0.99])
+def test_a_plot_that_is_left_is_inspected_again_before_it_may_be_above_the_threshold(season, level):
+    advice = season.advice(BEGINS, AdviceSettings(level, costs=CHEAP))
+    ahead, infested = season.forecast(BEGINS), level * len(season.plot.grid)
+    above = [night for night in range(1, 15) if ahead.high[night] > infested]
+    assert advice.again.by == (BEGINS + timedelta(days=above[0]) if above else None)
+    said = advice.reasons()[1]
+    if above:
+        assert said.startswith(f"Inspect again by {advice.again.by}: before, it stays below")
+    else:
+        assert said.startswith("Without inspections it stays below the threshold for 14 nights")
+    assert season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).again is None
+
+
 def test_when_nobody_can_say_it_tells_how_many_looks_decide(season):
     level = float(season.evening(BEGINS).mean())
     advice = season.advice(BEGINS, AdviceSettings(level, costs=CHEAP))

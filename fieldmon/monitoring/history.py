@@ -378,9 +378,15 @@ class History:
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
         left = self._still_out(morning, day)
-        return estimate_plot(
+        made = estimate_plot(
             self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=left.pest is not None
         )
+        if not isinstance(left, TracedPairs) or left.unwatched.days == 0:
+            return made
+        # never surer than a forecast from when somebody inspected last, also where most are infested
+        drawn = forecast(left, self.grid, ())
+        low, high = int(drawn.low[0]), int(drawn.high[0])
+        return replace(made, low=min(made.low, low), high=max(made.high, high))
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""

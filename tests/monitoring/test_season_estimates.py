@@ -67,6 +67,15 @@ def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):
     assert np.all(wide[1:] >= 0.99 * wide[0])
 
 
+def test_after_months_the_number_is_as_doubtful_as_tomorrows(season):
+    season.record(some_results(season, n=60, found=list(range(30))), "x")
+    day = on(120)
+    now, ahead = season.status(day).estimate, season.forecast(day)
+    assert now.expected > 0.7 * len(season.plot.grid)
+    assert ahead.low[1] == pytest.approx(now.low, rel=0.25)
+    assert now.low < 0.5 * now.expected
+
+
 def test_until_something_is_inspected_no_day_tells_more_of_the_start(season):
     def start(day):
         return {one.name: one for one in season.learnt(on(day))}["infested at the start"]

@@ -213,11 +213,17 @@ DAY: dict[str, Any] = {
         },
         "closed": {
             "type": "array",
-            "description": "Rows that nobody may enter after a treatment: first and last, and "
-            "until when, in the plot's local time.",
+            "description": "Rows with plants that nobody may come to after a treatment: first and "
+            "last, and until when, in the plot's local time; which plants, as runs of first and "
+            "last, and how many of these are somebody's own. They are on no route.",
             "items": {
                 "type": "object",
-                "properties": {"rows": _LIST, "until": {"type": "string"}},
+                "properties": {
+                    "rows": _LIST,
+                    "until": {"type": "string"},
+                    "plants": {"type": "array", "items": _LIST},
+                    "own": {"type": "integer"},
+                },
             },
         },
     },

@@ -124,7 +124,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "hot_spots": _hot_spots(season, known),
         "photos": [photo._asdict() for photo in photos_of(season)],
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
-        "closed": _closed(season, on),
+        "closed": _closed(season, ahead, on, part),
     }
 
 
@@ -197,15 +197,31 @@ def _said(inspections: Inspections) -> list[dict[str, Any]]:
     ]
 
 
-def _closed(season: Season, on: date) -> list[dict[str, Any]]:
-    """Return rows that nobody may enter after a treatment, and until when."""
-    closed = []
-    for plants, until in season.closed(on):
-        rows = np.unique(season.label.line[plants])
-        for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
-            span = {"rows": [int(run[0]), int(run[-1])]} if len(run) else None
-            closed += [span | {"until": f"{until:%Y-%m-%dT%H:%M}"}] if span else []
+def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[str, Any]]:
+    """Return rows with plants that nobody may come to after a treatment, and until when.
+
+    With which of their plants, as runs of numbers, and how many of these are somebody's own.
+    """
+    closed, line, mine = [], season.label.line, ahead.own(part)
+    for one in season.closed(on, part.name):
+        rows = np.unique(line[one.plants])
+        for run in _runs(rows):
+            plants = np.flatnonzero(one.plants & (line >= run[0]) & (line <= run[1]))
+            closed.append(
+                {
+                    "rows": run,
+                    "until": f"{one.until:%Y-%m-%dT%H:%M}",
+                    "plants": _runs(plants),
+                    "own": int(np.count_nonzero(mine[plants])),
+                }
+            )
     return closed
+
+
+def _runs(numbers: NDArray[np.integer]) -> list[list[int]]:
+    """Return the first and the last of numbers in a row, of numbers in order."""
+    each = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
+    return [[int(run[0]), int(run[-1])] for run in each if len(run)]
 
 
 def _hot_spots(season: Season, known: NDArray[np.int8]) -> list[Any]:

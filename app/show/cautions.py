@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import streamlit as st
 
+from fieldmon.monitoring.closures import any_closed, left_off_in_words
+
+from ..state import chosen_day
 from ..words import texts
 from ..words.language import in_words
 
 if TYPE_CHECKING:
+    from fieldmon.planning.plan import DayPlan
+
     from ..state.choices import Choices
 
 
@@ -23,11 +29,25 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
         st.warning("\n".join(f"- {sentence}" for sentence in dict.fromkeys(said)))
 
 
-def show_today(choices: Choices) -> None:
+def show_today(choices: Choices, plan: DayPlan) -> None:
     """Show what counts on the day itself: where not to enter, and a harvest that is to come."""
     harvest = None if choices.season is None else choices.season.settings.harvest
     is_ahead = harvest is not None and choices.on <= harvest
+    if choices.season is not None and (left_off := _left_off(choices, plan)):
+        st.warning("\n".join(f"- {sentence}" for sentence in left_off))
     show(choices, ("entry", "harvest") if is_ahead else ("entry",))
+
+
+def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
+    """Return what is left off the route as people may not be there yet, and off a kept one."""
+    if chosen_day.route(choices).worked:
+        return []
+    season, units = choices.season, choices.units.in_sentences(choices.on)
+    closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
+    said = left_off_in_words(closed, (choices.plot.grid, season.label), units)
+    shut = any_closed(closed, len(choices.plot.grid))
+    kept = np.count_nonzero(shut[chosen_day.given_out(choices)])
+    return [*map(in_words, said), *([texts.KEPT_CLOSED.format(n=int(kept))] if kept else [])]
 
 
 def show_treatments(choices: Choices) -> None:

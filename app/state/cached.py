@@ -121,6 +121,12 @@ def season(path: Path) -> Season:
         return opened_seasons.opened(path)
 
 
+def revision_on(season: Season, on: date, who: str | None = None) -> str:
+    """Return what changes with all that is recorded, and when plants that were closed open."""
+    closed = season.closed(on, who or "")
+    return " ".join([season.revision, *(f"{one.until}" for one in closed)])
+
+
 @st.cache_resource(max_entries=FEW)
 def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:
     """Return what the imports had to say when a season began."""

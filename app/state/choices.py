@@ -160,7 +160,8 @@ class Choices:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.season is not None:
             of = self.day, self.who
-            return cached.season_plan(self.key, self.revision, of, self.season, self.wishes)
+            now = cached.revision_on(self.season, self.on, self.who)
+            return cached.season_plan(self.key, now, of, self.season, self.wishes)
         known = self.records, self.risk
         settings = PlanSettings(self.robot, self.decides, self.prior)
         return cached.day_plan(

@@ -158,8 +158,9 @@ def _of_season(plot: PlotState) -> _Ready:
     season = cached.season(seasons_folder.path_of(plot.source))
     settings = season.settings
     on = max(local_clock(season.plot.field).today(), settings.begins)
-    key = f"{season.path} {season.revision} {on}"
-    scene = cached.season_scene(str(season.path), season.revision, str(on), season)
+    now = cached.revision_on(season, on)
+    key = f"{season.path} {now} {on}"
+    scene = cached.season_scene(str(season.path), now, str(on), season)
     return _Ready(plot, key, on, scene, settings.sampler, settings.decides())
 
 

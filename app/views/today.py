@@ -58,7 +58,7 @@ def _work(choices: Choices, plan: DayPlan) -> None:
     """Show the morning's steps, and what is asked and recorded on the map."""
     bringing_files.show_doubts_of_plot(choices)
     day.said_of_day(choices, plan)
-    cautions.show_today(choices)
+    cautions.show_today(choices, plan)
     morning.show(choices, plan)
     bringing_files.show_doubts_of_records(choices)
     content = map_layers.day_map(choices, above=picking.layers(choices))

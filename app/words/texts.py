@@ -840,6 +840,9 @@ TREAT_DOSE_UNSAID = (
 )
 HARVEST, HARVEST_KEPT = "First day of harvest", "The first day of harvest was changed."
 HARVEST_HELP = "Treatments whose waiting period is not over by then are warned of."
+KEPT_CLOSED = (
+    "The plan kept of this day leads where people may not be yet (plants: {n:,}). Plan it anew."
+)
 HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
 LABELS, LABELS_IN = "What labels allow", "Your label table (CSV)"
 LABELS_NOTE = (
@@ -1056,6 +1059,7 @@ SCOUT_PAGE = {
     "who_says": "{who}: {result}",
     "closed": "Sprayed: do not enter before {until}.",
     "closed_rows": "Rows {low} to {high} are sprayed: do not enter before {until}.",
+    "closed_plants": "Plants not on the route before then: {n}.",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
     "count": "Pests", "leaves": "Leaves looked at", "stage": "Stage", "fewer": "{what}: one fewer",
     "more": "{what}: one more", "stage_egg": "Eggs", "stage_young": "Young",

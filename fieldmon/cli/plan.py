@@ -42,7 +42,8 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     the same chance, except at the plot's edge, from which insects come.
 
     In a season (see fieldmon init) the route uses everything recorded so far. If something was
-    already recorded on that day, the rest of the day is planned.
+    already recorded on that day, the rest of the day is planned. Plants where people may not be
+    yet after a treatment are left out.
 
     Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
@@ -73,8 +74,14 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
         return
     if options.now is not None:
         raise SettingError("--now needs a season (see fieldmon init), but this is a plot file.")
-    if options.as_now:
-        raise SettingError("--as-now needs a season (see fieldmon init), but this is a plot file.")
+    for flag, is_given in (
+        ("--as-now", options.as_now),
+        ("--enter-treated", options.enter_treated),
+    ):
+        if is_given:
+            raise SettingError(
+                f"{flag} needs a season (see fieldmon init), but this is a plot file."
+            )
     if options.passing is not None and options.robots is None:
         raise SettingError("--passing goes with --robots: one alone meets nobody.")
     if options.robots is not None:

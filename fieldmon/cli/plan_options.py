@@ -39,6 +39,14 @@ AsNow = Annotated[
         "--as-now", help="In a season: plan a past day by the settings of now, not of then."
     ),
 ]
+EnterTreated = Annotated[
+    bool,
+    typer.Option(
+        "--enter-treated",
+        help="In a season: also plan plants where people may not be yet after a treatment, as for "
+        "robots.",
+    ),
+]
 EveryPlot = Annotated[
     bool,
     typer.Option(
@@ -61,6 +69,7 @@ class PlanOptions:
     start: StartTime = "06:00"
     now: Now = None
     as_now: AsNow = False
+    enter_treated: EnterTreated = False
     worker: WorkerOptions = field(default_factory=WorkerOptions)
     pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)

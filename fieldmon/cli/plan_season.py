@@ -23,9 +23,10 @@ if TYPE_CHECKING:
     from fieldmon.cli.plan_options import PlanOptions
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.planning.plan import DayPlan
 
 # what a plan of a season may be told; all else was chosen when it began
-_OF_A_PLAN = {"plot", "output", "on", "now", "as_now", "chance_map", "bound"}
+_OF_A_PLAN = {"plot", "output", "on", "now", "as_now", "enter_treated", "chance_map", "bound"}
 
 
 def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
@@ -36,7 +37,8 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     season = Season(file)
     tell_drafts(season.drafts)
     on = day_on(season.plot.field, day(options.on))
-    with season.as_now(on) if options.as_now else nullcontext():
+    enters = season.entering_treated() if options.enter_treated else nullcontext()
+    with season.as_now(on) if options.as_now else nullcontext(), enters:
         _plan_day(season, options, on)
 
 
@@ -59,6 +61,9 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     if options.bound and len(today.route):
         today = with_bound(today)
     route = today.route
+    off = _left_off(season, on, (("", today),))
+    if not len(route) and off and not options.enter_treated:
+        raise _nobody_may_enter(on, off)
     if not len(route):
         left_h = today.scene.seconds_left / 3600
         raise SettingError(
@@ -71,10 +76,46 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     typer.echo(f"{on}: {done}{day_in_words(route, infested)}")
     if [*season.codes_on(on).values()] not in ([], [None]):
         typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)
+    _tell_left_off(options, off, on_foot=settings.robot.on_foot)
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
+
+
+def _left_off(season: Season, on: date, days: tuple[tuple[str, DayPlan], ...]) -> tuple[str, ...]:
+    """Return which plants are left off plans of those named as people may not be there yet."""
+    from fieldmon.compute.units import Units
+    from fieldmon.monitoring.closures import left_off_in_words
+
+    plot = season.plot.grid, season.label
+    closed = [season.closed(on, who, today.scene.seconds_left) for who, today in days]
+    return tuple(
+        dict.fromkeys(said for each in closed for said in left_off_in_words(each, plot, Units()))
+    )
+
+
+def _nobody_may_enter(on: date, off: tuple[str, ...]) -> SettingError:
+    return SettingError(
+        f"People must have a plant to inspect where they may be, but none is left on {on} within "
+        f"the hours. {' '.join(off)} Plan from a later time with --now, another day with --date, "
+        "or for robots with --enter-treated."
+    )
+
+
+def _tell_left_off(options: PlanOptions, off: tuple[str, ...], *, on_foot: bool) -> None:
+    """Print what is left off, and what to do where no people work."""
+    if options.enter_treated and off:
+        typer.echo("seen: Routes lead to plants where people may not be yet.", err=True)
+        return
+    for said in off:
+        typer.echo(f"seen: {said}", err=True)
+    if off and not on_foot:
+        typer.echo(
+            "seen: Whether people or robots work is not known: add --enter-treated where only "
+            "robots do.",
+            err=True,
+        )
 
 
 def _tell_settings_of_then(season: Season, on: date, settings: MonitoringSettings) -> None:
@@ -111,7 +152,11 @@ def _plan_team(
     files = files_of_each(options.output, team)
     refuse_unrecorded(season, (file for each in files for file in each))
     days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
+    named = tuple(zip((one.name for one in team), days, strict=True))
+    off = _left_off(season, on, named)
     if not any(len(today.route) for today in days):
+        if off and not options.enter_treated:
+            raise _nobody_may_enter(on, off)
         raise SettingError(
             f"Somebody must have time to reach another plant and come back, but nobody has on "
             f"{on}. Plan another day with --date."
@@ -123,6 +168,7 @@ def _plan_team(
             tell_member(member.name, notes.start, today.route)
     if options.bound and (said := bound_of_days(days)):
         typer.echo(said)
+    _tell_left_off(options, off, on_foot=all(one.robot.on_foot for one in team))
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     ahead = cache(lambda: season.forecast(on))

@@ -171,6 +171,17 @@ def first_few(names: Sequence[str], most: int) -> str:
     return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
 
 
+def runs(numbers: Iterable[int]) -> str:
+    """Return numbers with those in a row put together: ``"1, 4–6, 9"``."""
+    ends: list[list[int]] = []
+    for number in sorted({*numbers}):
+        if ends and number == ends[-1][1] + 1:
+            ends[-1][1] = number
+        else:
+            ends.append([number, number])
+    return ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in ends)
+
+
 def counted(number: int, thing: str) -> Worded:
     """Return so many things in words: "1 plant", "1,320 plants"."""
     one, many = f"{{n:,}} {thing}", f"{{n:,}} {thing}s"

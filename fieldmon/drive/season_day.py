@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,7 @@ from fieldmon.planning.wishes import Wishes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from contextlib import AbstractContextManager
     from datetime import date
 
     from fieldmon.monitoring.season_file import Season
@@ -59,7 +61,8 @@ class SeasonDay:
         self.replanned = 0
         self._asked: PlantToInspect | None = None
         begun, beside = self.batch is not None, self._who or ""
-        left = left_of_plan(season, on, beside, self.left_out) if begun else None
+        with self._entering():
+            left = left_of_plan(season, on, beside, self.left_out) if begun else None
         #: whether it goes on with what is left of the plan given out last
         self.goes_on = left is not None and len(left.route) > 0
         if left is not None and self.goes_on:
@@ -122,7 +125,13 @@ class SeasonDay:
         return (wishes or Wishes()).never(tuple(np.flatnonzero(theirs).tolist()))
 
     def _plan(self) -> None:
-        self._take(self._season.plan(self._on, wishes=self._wishes, who=self._who))
+        with self._entering():
+            self._take(self._season.plan(self._on, wishes=self._wishes, who=self._who))
+
+    def _entering(self) -> AbstractContextManager[None]:
+        """Let a robot enter where people may not be yet."""
+        on_foot = self._season.planned_by(self._on).robot.on_foot
+        return nullcontext() if on_foot else self._season.entering_treated()
 
     def _take(self, today: DayPlan) -> None:
         season, on, who = self._season, self._on, self._who

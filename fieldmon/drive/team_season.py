@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from fieldmon.monitoring.monitor import PlantToInspect
 from fieldmon.plot.travel import GATE, travel_s
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
     from datetime import date
 
     from fieldmon.monitoring.season_file import Season
@@ -90,13 +92,21 @@ class TeamSeason:
     def plan(self) -> None:
         """Plan the rest of the day for all, each from where it was told of last; keep the plans."""
         with self.lock:
-            days = self.season.plan_each(self.on)
+            with self._entering():
+                days = self.season.plan_each(self.on)
             self.days = dict(zip((one.name for one in self.team), days, strict=True))
             self.replanned += 1
 
+    def _entering(self) -> AbstractContextManager[None]:
+        """Let a team of robots enter where people may not be yet; nobody of it has a code."""
+        codes = any(self.settings.named(name) for name in self.season.codes_on(self.on))
+        is_people = codes or len(self.robots) < len(self.team)
+        return nullcontext() if is_people else self.season.entering_treated()
+
     def _go_on(self) -> bool:
         """Take what is left of the plans given out last; tell whether all fit and any is left."""
-        left = {one.name: left_of_plan(self.season, self.on, one.name) for one in self.team}
+        with self._entering():
+            left = {one.name: left_of_plan(self.season, self.on, one.name) for one in self.team}
         self.days = {name: today for name, today in left.items() if today is not None}
         return len(self.days) == len(left) and any(len(one.route) for one in self.days.values())
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.monitoring import routes
+from fieldmon.monitoring.closures import any_closed
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import scouts_in
@@ -225,13 +226,17 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
 
     Somebody of the team has a route of their own, and so has whoever has rows, or shares them, see
     `DayAhead.crew`. It begins where that person inspected last, or at the gate. What no longer fits
-    the hours that run is left out at its end.
+    the hours that run is left out at its end. One that leads to plants that are closed is planned
+    again.
     """
-    ahead, scene = DayAhead.of(season, on), season.scene(on, who=part.name)
+    ahead = DayAhead.of(season, on)
+    with season.entering_treated():
+        scene = season.scene(on, who=part.name)
+    closed = any_closed(season.closed(on, part.name), len(scene.chance))
     kept = ahead.route(part)
     kept = kept[scene.last_inspected[kept] != scene.day]
     left = kept[ahead.own(part)[kept]]
-    if not len(left) or (part.name and ahead.is_others(part, kept)):
+    if not len(left) or closed[left].any() or (part.name and ahead.is_others(part, kept)):
         return planned_again(season, on, part)
     hours = work_hours(season, on, part)
     return _fitting(scene, left, hours.left_s) if hours.run else through(scene, left).route

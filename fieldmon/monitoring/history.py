@@ -499,6 +499,13 @@ class History:
         resting = resting_place(shift.robot, self._trail(day, who))
         return _begun_s(shift, made_by(self.on(day), who), resting)
 
+    def gone_s(
+        self, shift: Shift, day: int, now_s: float | None = None, who: str | Besides | None = None
+    ) -> float:
+        """Return how many seconds of somebody's working day are gone; all is as in `scene`."""
+        resting = resting_place(shift.robot, self._trail(day, who))
+        return _gone_s(shift, made_by(self.on(day), who), resting, now_s)
+
     def _trail(self, day: int, who: str | Besides | None) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
         earlier = made_by(self.until(day - 1).inspected, who)

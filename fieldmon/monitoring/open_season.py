@@ -20,6 +20,7 @@ from fieldmon.monitoring import (
     derived_layers,
     first_morning,
     inspection_lots,
+    label_table,
     outside_changes,
     qgis_project,
     schema,
@@ -28,6 +29,7 @@ from fieldmon.monitoring import (
     tables,
     treatments,
 )
+from fieldmon.monitoring.closures import any_closed, closed_on, entry_waits
 from fieldmon.monitoring.history import Besides, History, Shift
 from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring.closures import Closure, EntryWait
     from fieldmon.monitoring.history import Treatment
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.travel import Aisles
@@ -133,6 +136,8 @@ class OpenSeason:
         self._aisles: dict[tuple[float, float], Aisles] = {}
         self._gone_then: dict[int, set[str]] = {}
         self._planned_as_now: date | None = None
+        self._enters = False
+        self._waits: tuple[FileRevision, tuple[EntryWait, ...]] | None = None
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
@@ -294,12 +299,69 @@ class OpenSeason:
     def scene(self, on: date, now: time | None = None, who: str | Besides = "") -> Scene:
         """Return the day `on` as it stands after what was recorded of it; `now` as in `plan`.
 
+        Plants where people may not be yet seem inspected today, see `closed`.
         Of a team it is that of `who` is named, or of the first. Whoever else is named has the
         season's robot and stands where they inspected last, or at the gate. The season's robot
         may also be `Besides` others, see `plan`.
         """
         with self._lock, self.store.reading() as db:  # all of one moment
             return self._scene(self._read(db), on, now, who, db)
+
+    def closed(
+        self, on: date, who: str | Besides = "", seconds_left: float | None = None
+    ) -> tuple[Closure, ...]:
+        """Return the plants where people may not be yet when work, or what is left of it, begins.
+
+        That is now at the earliest. They are those of all rows in which any was treated. `on` and
+        `who` as in `scene`; `seconds_left` of the day; None: what its scene says.
+        """
+        with self._lock, self.store.reading() as db:  # all of one moment
+            return self._closed(self._read(db), on, who, seconds_left)
+
+    @contextmanager
+    def entering_treated(self) -> Iterator[None]:
+        """Let days be planned for who may enter all the same, as robots: nothing is closed."""
+        with self._lock:
+            self._enters = True
+            try:
+                yield
+            finally:
+                self._enters = False
+
+    def _closed(
+        self, contents: SeasonContents, on: date, who: str | Besides, seconds_left: float | None
+    ) -> tuple[Closure, ...]:
+        if not contents.history.treatments:
+            return ()
+        shift, name = self._shift(self._planned_by(contents, on), who)
+        begun_s, day_s = self._begun_s(contents, on, who), shift.robot.day_s
+        if seconds_left is None:
+            day = contents.settings.day(on)
+            gone_s = contents.history.gone_s(shift, day, None, name)
+            seconds_left = max(0.0, day_s - gone_s)
+        begins_s, now = begun_s + day_s - seconds_left, local_clock(self.plot.field).now()
+        if now.date() == on:
+            begins_s = max(begins_s, seconds(now.time()))
+        return closed_on(self._entry_waits(), on, begins_s, begun_s + day_s)
+
+    def _entry_waits(self) -> tuple[EntryWait, ...]:
+        with self.store.reading() as db:
+            revision = FileRevision.of(db)
+            if self._waits is None or self._waits[0] != revision:
+                done = treatments.kept(db, self._inside, local_clock(self.plot.field))
+                self._waits = revision, entry_waits(done, label_table.read(db), self.plot.grid)
+            return self._waits[1]
+
+    def _open_to(
+        self, scene: Scene, contents: SeasonContents, on: date, who: str | Besides
+    ) -> Scene:
+        """Return a scene in which nobody is sent to plants that are closed to people."""
+        closed = () if self._enters else self._closed(contents, on, who, scene.seconds_left)
+        if not closed:
+            return scene
+        shut = any_closed(closed, len(scene.chance))
+        last = np.where(shut, np.int32(scene.day), scene.last_inspected)
+        return replace(scene, last_inspected=last)
 
     def begun_s(self, on: date, who: str | Besides = "") -> float:
         """Return the second of the day `on` at which work began, or will; `who` as in `plan`.
@@ -317,6 +379,13 @@ class OpenSeason:
         self, contents: SeasonContents, on: date, now: time | None = None,
         who: str | Besides = "", read: sqlite3.Connection | None = None,
     ) -> Scene:  # fmt: skip
+        return self._open_to(self._scene_of_all(contents, on, now, who, read), contents, on, who)
+
+    def _scene_of_all(
+        self, contents: SeasonContents, on: date, now: time | None = None,
+        who: str | Besides = "", read: sqlite3.Connection | None = None,
+    ) -> Scene:  # fmt: skip
+        """Return a scene with the plants that are closed to people."""
         settings, day = self._planned_by(contents, on, read), contents.settings.day(on)
         now_s = None if now is None else seconds(now)
         morning = contents.morning(day)

@@ -122,12 +122,16 @@ class SeasonPlans(OpenSeason):
         with self._lock:
             contents = self._now()
             settings, told_s = self._planned_by(contents, on), left_s or {}
-            scenes = [self._scene(contents, on, None, who) for who in crew]
+            scenes = [self._scene_of_all(contents, on, None, who) for who in crew]
             scenes = [
                 replace(scene, seconds_left=min(told_s.get(who, scene.seconds_left),
                                                 scene.robot.day_s))
                 for scene, who in zip(scenes, crew, strict=True)
             ]  # fmt: skip
+            scenes = [
+                self._open_to(scene, contents, on, who)
+                for scene, who in zip(scenes, crew, strict=True)
+            ]
             days: tuple[DayPlan, ...]
             if len(crew) == 1:
                 days = (plan_in(scenes[0], settings.decides(), wishes),)

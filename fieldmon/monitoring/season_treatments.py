@@ -33,7 +33,7 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable, Sequence
-    from datetime import date, datetime
+    from datetime import date
 
     from numpy.typing import NDArray
     from shapely import MultiPolygon
@@ -202,21 +202,6 @@ class SeasonTreatments(OpenSeason):
         if units is not None:
             rules = replace(rules, units=units)
         return cautions.cautions(done, rules, on)
-
-    def closed(self, on: date) -> tuple[tuple[NDArray[np.bool_], datetime], ...]:
-        """Return plants ``(n,)`` where nobody may enter when work starts on the day `on`.
-
-        With each the local time until which that is so.
-        """
-        with self._lock, self.store.reading() as db:  # all of one moment
-            done = [one for one in self._treatments(db) if one.on <= on]
-            starts, labels = settings_of(db).starts, label_table.read(db)
-        until = [
-            cautions.closed_until(one, cautions.label_of(one, labels), starts, on) for one in done
-        ]
-        return tuple(
-            (one.place.plants, end) for one, end in zip(done, until, strict=True) if end is not None
-        )
 
     def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, hours_figure, worded
+from fieldmon.compute.wording import estimate, figure, hours_figure, runs, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.monitoring.closures import left_off_in_words
 from fieldmon.planning.members import person
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import maps, words
@@ -30,7 +31,7 @@ from fieldmon.reports.content import (
     TickList,
 )
 from fieldmon.reports.maps import PlotMap
-from fieldmon.reports.sentences import headline, runs
+from fieldmon.reports.sentences import headline
 from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.monitoring import PlannedAndDone, Season
+    from fieldmon.monitoring.closures import Closure
     from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.planning.route import Route
 
@@ -94,6 +96,8 @@ class DayFacts:
     infested
         How many plants of the route are believed infested, those where it hides among them; None:
         nothing is known to hide.
+    closed
+        Plants that are left off the route as people may not be there yet.
     """
 
     name: str
@@ -114,6 +118,7 @@ class DayFacts:
     treatments: tuple[KeptTreatment, ...] = ()
     labels: tuple[ProductLabel, ...] = ()
     infested: float | None = None
+    closed: tuple[Closure, ...] = ()
 
     @classmethod
     def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
@@ -145,6 +150,9 @@ class DayFacts:
                 missed=was_missed(season, on, today),
                 treatments=treated_on(season, on), labels=season.labels(),
                 infested=float(season.evening_planned_by(on)[shown.plant].sum()),
+                closed=() if worked else season.closed(
+                    on, "".join(names[:1]), plan.scene.seconds_left
+                ),
             )  # fmt: skip
 
 
@@ -222,6 +230,9 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         said.append(worded(words.DAY_OF, who=words.isolated(facts.who)))
     elif not (facts.worked or facts.team or facts.held is None) and facts.held.people > 1:
         said.append(worded(words.DAY_OF_NOBODY))
+    if not facts.worked:
+        grid = facts.route.aisles.grid
+        said += left_off_in_words(facts.closed, (grid, row_label(grid)), units)
     return said
 
 

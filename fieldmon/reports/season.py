@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, estimate, figure, joined, worded
+from fieldmon.compute.wording import counted, estimate, figure, joined, runs, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
@@ -40,7 +40,7 @@ from fieldmon.reports.day import (
     which,
 )
 from fieldmon.reports.maps import PlotMap
-from fieldmon.reports.sentences import hot_spot_meanings, runs
+from fieldmon.reports.sentences import hot_spot_meanings
 from fieldmon.reports.settings_rows import (
     WorkSettings,
     assumed_sentence,

@@ -12,8 +12,6 @@ from fieldmon.plot.grid import row_label
 from fieldmon.reports import words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from numpy.typing import NDArray
 
     from fieldmon.infestation.hotspots import HotSpots
@@ -89,14 +87,3 @@ def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:
     if first == last:
         return worded(words.HOT_ROW, first=first, low=low, high=high)
     return worded(words.HOT_ROWS, first=first, last=last, low=low, high=high)
-
-
-def runs(numbers: Iterable[int]) -> str:
-    """Return numbers with those in a row put together: ``"1, 4–6, 9"``."""
-    ends: list[list[int]] = []
-    for number in sorted({*numbers}):
-        if ends and number == ends[-1][1] + 1:
-            ends[-1][1] = number
-        else:
-            ends.append([number, number])
-    return ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in ends)

@@ -1,7 +1,7 @@
 """`fieldmon plan` with a season: from plan to status, and again."""
 
 import json
-from datetime import date, timedelta
+from datetime import date, time, timedelta
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from fieldmon.compute.wording import written
 from fieldmon.errors import ImportDoubt
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.applications import Application
 from tests.cli.estate import BEGINS, ZIP, filled_in
 
 
@@ -46,6 +47,36 @@ def test_it_is_said_by_what_a_past_day_is_planned_and_how_to_plan_it_otherwise(r
     assert "counted then" not in run(*words, "--as-now")[2]
     assert "counted then" not in run(*words)[2]
     assert "--as-now needs a season" in run("plan", ZIP, "--feature", "Nursery", "--as-now")[2]
+
+
+def test_plants_where_people_may_not_be_yet_are_left_out_and_that_is_said(run, season):
+    kept, words = Season(season), ["plan", season, "--date", BEGINS, "--no-bound"]
+    on, line = date.fromisoformat(BEGINS), kept.label.line
+
+    def sprayed(rows):
+        waits = Application("Acarol", reentry_hours=24.0, ended=time(5))
+        kept.treat(on, 0.0, plants=np.isin(line, rows), application=waits)
+
+    sprayed([1, 2])
+    n, day = np.count_nonzero(np.isin(line, [1, 2])), on + timedelta(days=1)
+    said = f"Closed until 05:00 on {day} after Acarol, so not on the route: {n} plants in rows 1–2."
+    code, _, err, _ = run(*words)
+    assert code == 0
+    assert f"seen: {said}\n" in err
+    assert "people or robots" in err
+    assert not np.isin(line[kept.kept_route(on)], [1, 2]).any()
+    sprayed(np.unique(line))
+    code, _, err, made = run(*words, "-o", "r.csv")
+    assert (code, made) == (2, set())
+    assert "Closed until 05:00 on" in err
+    assert "Plan from a later time with --now" in err
+    code, _, err, made = run(*words, "-o", "r.csv", "--enter-treated")
+    assert (code, len(made)) == (0, 1)
+    assert "seen: Routes lead to plants where people may not be yet." in err
+    run("change", season, "--robots", "2")
+    assert "Closed until" in run(*words)[2]
+    assert run(*words, "--enter-treated")[0] == 0
+    assert "needs a season" in run("plan", ZIP, "--feature", "Nursery", "--enter-treated")[2]
 
 
 def test_half_way_the_rest_of_the_day_is_planned(run, season, tmp_path):

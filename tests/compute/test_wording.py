@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from fieldmon.compute.wording import Worded, counted, first_few, worded
+from fieldmon.compute.wording import Worded, counted, first_few, runs, worded
 
 
 @pytest.mark.parametrize(
@@ -38,3 +38,11 @@ def test_of_many_names_the_first_are_said_and_that_there_are_more():
     assert first_few(["a", "b"], 2) == "a, b"
     assert first_few(("a", "b", "c"), 2) == "a, b, ..."
     assert first_few([], 2) == ""
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [([], ""), ([7], "7"), ([3, 1, 2], "1–3"), ([1, 4, 5, 6, 9, 9], "1, 4–6, 9"), ([1, 2], "1–2")],
+)
+def test_numbers_in_a_row_are_put_together(numbers, said):
+    assert runs(numbers) == said

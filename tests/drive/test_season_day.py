@@ -1,7 +1,8 @@
 """A day of a season driven: one batch, in the file before the next plant is asked for."""
 
 from contextlib import suppress
-from datetime import date
+from dataclasses import replace
+from datetime import date, time
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from fieldmon.drive.season_day import SeasonDay, as_inspection
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.plot.robot import Robot
+from fieldmon.plot.robot import Robot, scout
 
 ON = date(2026, 4, 6)
 SETTINGS = MonitoringSettings(ON, robot=Robot(hours=0.3))
@@ -64,6 +66,20 @@ def test_a_day_is_one_batch_and_holds_every_plant(season):
     assert done.found > 0
     season.undo()
     assert len(season.history.inspections) == 0
+
+
+def test_a_robot_enters_where_people_may_not_be_yet_and_who_walks_does_not(season):
+    wait = Application("oil", reentry_hours=48.0, ended=time(5))
+    season.treat(ON, 0.0, application=wait)
+    assert len(season.plan(ON, keep=False).route) == 0
+    robot, walks = season.settings, replace(season.settings, robot=scout())
+    season.change(walks, robot)
+    assert SeasonDay(season, ON).ask() is None
+    season.change(robot, walks)
+    day = SeasonDay(season, ON)
+    assert day.ask() is not None
+    day.tell(found=False)
+    assert SeasonDay(season, ON).goes_on
 
 
 def test_the_day_is_the_one_that_the_season_plans_as_long_as_nothing_is_found(season):

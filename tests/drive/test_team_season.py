@@ -1,6 +1,7 @@
 """A team's day in a season: asked and told by each, one batch, planned for all after a find."""
 
 from dataclasses import replace
+from datetime import time
 
 import pytest
 
@@ -8,10 +9,11 @@ from fieldmon.drive.team_season import TeamSeason
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
-from fieldmon.plot.robot import Robot
+from fieldmon.plot.robot import Robot, scout
 from tests.drive.test_season_day import ON, noted
 
 
@@ -32,6 +34,17 @@ def test_each_is_asked_for_plants_of_its_own_route(team):
     assert asked == [team.days[name].route.plant[0] for name in ("robot-1", "robot-2")]
     assert len(set(asked)) == 2
     assert days[0].ask().plant == asked[0]  # the same until it is told
+
+
+def test_robots_enter_where_people_may_not_be_yet_unless_somebody_of_the_team_walks(team):
+    season = team.season
+    season.treat(ON, 0.0, application=Application("oil", reentry_hours=48.0, ended=time(5)))
+    assert not any(len(day.route) for day in season.plan_each(ON, keep=False))
+    assert TeamSeason(season, ON).member("robot-1").ask() is not None
+    before = season.settings
+    one, other = before.team
+    season.change(replace(before, team=(one, replace(other, robot=scout()))), before)
+    assert TeamSeason(season, ON).member("robot-1").ask() is None
 
 
 def test_a_find_by_one_is_planned_for_by_the_other(team):

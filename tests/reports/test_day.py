@@ -10,6 +10,7 @@ from fieldmon.compute.units import Units
 from fieldmon.compute.wording import estimate
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import PlannedAndDone
+from fieldmon.monitoring.applications import Application
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.robot import Robot
@@ -114,6 +115,16 @@ def test_half_a_day_says_both_what_was_done_and_what_is_left(tmp_path):
     assert leads[0] == f"Worked on {BEGINS}: 6 plants inspected, 1 found infested."
     assert leads[1] == headline(facts.route, str(BEGINS))
     assert facts.begins.strftime("%H:%M") > "06:00"
+
+
+def test_a_day_ahead_tells_which_plants_are_left_off_as_nobody_may_enter(tmp_path):
+    season = a_season(tmp_path / "closed.gpkg")
+    waits = Application("Oil", reentry_hours=24.0, ended=time(5))
+    season.treat(BEGINS, 0.0, plants=season.label.line == 3, application=waits)
+    facts = DayFacts.of_season(season, BEGINS)
+    said = paragraphs(day_report(facts, Units()))
+    assert [one for one in said if one.startswith("Closed until 05:00 on 2026-04-07 after Oil")]
+    assert not (season.label.line[facts.route.plant] == 3).any()
 
 
 def test_making_a_report_keeps_nothing_in_the_season(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from fieldmon.compute.wording import estimate, hours_figure
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import rectangle
-from fieldmon.reports.sentences import headline, runs
+from fieldmon.reports.sentences import headline
 from fieldmon.reports.sentences import hot_spot_meanings as meanings
 from tests.io.writers.handed import empty, usual
 
@@ -73,11 +73,3 @@ def test_the_headline_says_plants_rows_hours_and_finds():
 
 def test_a_day_without_a_stop_is_said():
     assert headline(empty().route, "18.11.2026") == "Nothing to inspect on 18.11.2026."
-
-
-@pytest.mark.parametrize(
-    ("numbers", "said"),
-    [([], ""), ([7], "7"), ([3, 1, 2], "1–3"), ([1, 4, 5, 6, 9, 9], "1, 4–6, 9"), ([1, 2], "1–2")],
-)
-def test_numbers_in_a_row_are_put_together(numbers, said):
-    assert runs(numbers) == said

@@ -1,7 +1,7 @@
 // What a scout does in the field. A step is seen at once; it is said to be kept when it is on the phone's disk.
 
 import { Clock } from "./clock.js";
-import { laidOut, metres, offered, rings, rowOf } from "./geo.js";
+import { laidOut, metres, neighbours, offered, rings, rowOf } from "./geo.js";
 import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
 import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
@@ -279,7 +279,7 @@ export class Field {
   /** The plants ahead, with those among them of which a photo is asked for; `back` is one that is taken back. */
   #withAsked(plants, back = -1) {
     const isOpen = (one) => one === back || !this.done.has(one), at = back < 0 ? this.lastRecord()?.plant ?? -1 : -1;
-    return withAsked(this.plot, this.day, at, plants.filter(isOpen), this.asked().map((one) => one.plant).filter(isOpen), this.secondsLeft());
+    return withAsked(this.plot, this.day, at, plants.filter(isOpen), this.asked().map((one) => one.plant).filter((one) => isOpen(one) && !this.closedUntil(one)), this.secondsLeft());
   }
 
   // -- the next plant
@@ -380,7 +380,9 @@ export class Field {
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
-      ahead = afterFind(this.plot, this.day, ahead, plant, done, secondsLeft(this.day, begun, this.time.best()));
+      // a neighbour that nobody may come to yet is none to go to
+      const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one));
+      ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), secondsLeft(this.day, begun, this.time.best()));
     }
     const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
     return this.#step(follows, () => this.store.record(record, { ...follows, ...this.time.known() }), record);
@@ -462,10 +464,12 @@ export class Field {
     return (this.day?.closed ?? []).filter((one) => one.until > now);
   }
 
-  /** The local time until which nobody may enter a plant's row, or null. */
+  /** The local time until which nobody may come to a plant, or null. */
   closedUntil(plant) {
-    const row = rowOf(this.plot, plant);
-    return this.closed().filter(({ rows: [low, high] }) => row >= low && row <= high).map((one) => one.until).sort().at(-1) ?? null;
+    const row = rowOf(this.plot, plant), within = (at, [low, high]) => at >= low && at <= high;
+    // a day loaded from an earlier version says no plants
+    const isIn = ({ rows, plants }) => (plants ? plants.some((run) => within(plant, run)) : within(row, rows));
+    return this.closed().filter(isIn).map((one) => one.until).sort().at(-1) ?? null;
   }
 
   /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */

@@ -194,7 +194,7 @@ export class Page {
     }
     const { draft } = field;
     if (draft.plant < 0) {
-      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), this.#lastSaid(), this.#others(), this.#back());
+      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), ...this.#closed(), this.#lastSaid(), this.#others(), this.#back());
     }
     this.place = h("div", { id: "place", "data-plant": draft.plant });
     this.#drawPlace();
@@ -223,6 +223,12 @@ export class Page {
     const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
     const newer = field.hasNewer() && !field.isOld() ? [h("button", { type: "button", class: "wide", id: "newer", onclick: () => this.load() }, say("newer_plan"))] : [];
     return [...wrong, ...this.#otherDay(), ...newer];
+  }
+
+  /** Where nobody may be yet, and how many plants are not on the route for it. */
+  #closed() {
+    const said = ({ rows: [low, high], until, own: n }) => [say("closed_rows", { low, high, until: this.#time(until) }), n && say("closed_plants", { n })];
+    return (this.field.day ? this.field.closed() : []).map((one) => h("p", { class: "bad" }, said(one).filter(Boolean).join(" ")));
   }
 
   #otherDay() {
@@ -391,7 +397,7 @@ export class Page {
     const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),
-      ...(field.day ? field.closed() : []).map(({ rows: [low, high], until }) => h("p", { class: "bad" }, say("closed_rows", { low, high, until: this.#time(until) }))),
+      ...this.#closed(),
       // it has not everything where it did not take something
       !((refused.length || this.stranded.size) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
       ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),

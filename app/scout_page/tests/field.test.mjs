@@ -359,6 +359,16 @@ test("rows that were sprayed are closed until their time on the plot", async () 
   assert.equal(field.closed().length, 1);
 });
 
+test("of rows that say their plants only these are closed, and neither a find nor a photo leads there", async () => {
+  const asked = [{ id: "a1", plant: 6, note: "", who: "Office" }, { id: "a2", plant: 12, note: "", who: "Office" }];
+  const closed = [{ rows: [2, 2], until: "2026-11-22T23:00", plants: [[5, 6]], own: 2 }];
+  const { field } = await aField(new ASeason(aDay([0, 1], { closed, photos_asked: asked })));
+  assert.deepEqual([5, 6, 7].map((plant) => field.closedUntil(plant) !== null), [true, true, false]);
+  assert.deepEqual([field.ahead.includes(6), field.ahead.includes(12)], [false, true]);
+  await field.tell("found");
+  assert.equal(field.ahead.includes(5), false);
+});
+
 test("a time zone that is too new for the phone stops nothing: its own is taken", async () => {
   const { field } = await aField();
   field.plot.zone = "Europe/Too_New";

@@ -135,7 +135,12 @@ def test_rows_that_nobody_may_enter_are_told_with_the_time_until_which(served, s
     day = json.loads(day_document(season, scout, BEGINS + timedelta(days=1)))
     jsonschema.validate(day, description.DAY)
     until = "2026-04-08T09:30"
-    assert day["closed"] == [{"rows": [3, 4], "until": until}, {"rows": [7, 7], "until": until}]
+    told = [(one["rows"], one["until"]) for one in day["closed"]]
+    assert told == [([3, 4], until), ([7, 7], until)]
+    closed = [p for one in day["closed"] for a, b in one["plants"] for p in range(a, b + 1)]
+    assert sorted(closed) == np.flatnonzero(np.isin(line, [3, 4, 7])).tolist()
+    assert sum(one["own"] for one in day["closed"]) == len(closed)
+    assert not {*closed} & {*day["route"]["plants"]}
     assert json.loads(day_document(season, scout, BEGINS + timedelta(days=3)))["closed"] == []
 
 

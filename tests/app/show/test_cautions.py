@@ -1,5 +1,6 @@
 """What to beware of after treatments is said in the page's words."""
 
+from datetime import time
 from types import SimpleNamespace
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from app.show import cautions
 from app.words import texts
 from app.words.units import UnitsInLanguage
+from fieldmon.monitoring.applications import Application
 from tests.monitoring.seasons import BEGINS, a_season
 
 
@@ -34,7 +36,7 @@ def choices(season):
 
 def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     cautions.show(choices(None))
-    cautions.show_today(choices(None))
+    cautions.show_today(choices(None), None)
     season = a_season(tmp_path / "season.gpkg")
     cautions.show(choices(season))
     cautions.show_treatments(choices(season))
@@ -43,3 +45,23 @@ def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     cautions.show_treatments(choices(season))
     assert ("markdown", f"**{texts.EFFECTS}**") in shown
     assert shown[-1] == ("caption", texts.EFFECTS_TREATED)
+
+
+def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(shown, tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    given = season.plan(BEGINS).route.plant
+    line = season.label.line
+    row = int(line[given[0]])
+    waits = Application("soap", reentry_hours=24.0, ended=time(5))
+    season.treat(BEGINS, 0.0, plants=line == row, application=waits)
+    today = SimpleNamespace(
+        **vars(choices(season)), plot=season.plot, who=None, day=f"{BEGINS}", key=f"{tmp_path}",
+        revision=season.revision, plan=lambda: season.plan(BEGINS, keep=False),
+    )  # fmt: skip
+    cautions.show_today(today, today.plan())
+    (_, off), (_, entry) = shown
+    first, second = off.splitlines()
+    assert first.startswith("- Closed until 05:00 on")
+    n = int((line[given] == row).sum())
+    assert second == f"- {texts.KEPT_CLOSED.format(n=n)}"
+    assert "Do not enter before 05:00" in entry

@@ -1,0 +1,139 @@
+"""Plants that people must not come to yet after a treatment, and how that is said of a plan."""
+
+from __future__ import annotations
+
+from datetime import datetime, time, timedelta
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.wording import counted, runs, worded
+from fieldmon.monitoring.cautions import label_of, waits
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from datetime import date
+
+    from numpy.typing import NDArray
+
+    from fieldmon.compute.units import Units
+    from fieldmon.compute.wording import Worded
+    from fieldmon.decisions.labels import ProductLabel
+    from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.plot.grid import PlantGrid, RowLabel
+
+
+class Closure(NamedTuple):
+    """Plants that people may not come to before a time.
+
+    Parameters
+    ----------
+    plants
+        ``(n,)`` which they are.
+    until
+        Local time.
+    product
+        What was applied there; empty: nobody said.
+    opens
+        Whether that time is within the working hours: a later plan may have them.
+    """
+
+    plants: NDArray[np.bool_]
+    until: datetime
+    product: str
+    opens: bool = False
+
+
+class EntryWait(NamedTuple):
+    """A treatment after which people have to wait: from when on, and until when."""
+
+    plants: NDArray[np.bool_]
+    began: datetime
+    until: datetime
+    product: str
+
+    def closes(self, begins: datetime, ends: datetime) -> Closure | None:
+        """Return what it closes to work between two local times; None: nothing."""
+        if self.until <= begins or self.began >= max(begins, ends):
+            return None
+        return Closure(self.plants, self.until, self.product, self.until < ends)
+
+
+def entry_waits(
+    done: Iterable[KeptTreatment], labels: Sequence[ProductLabel], grid: PlantGrid
+) -> tuple[EntryWait, ...]:
+    """Return the treatments after which people have to wait, as was said or as labels say.
+
+    They close whole rows: whoever goes to another plant of a row may pass those that were treated.
+    One whose begin nobody said began with its day.
+    """
+    known = ((one, waits(one, label_of(one, labels)).entry_from) for one in done)
+    return tuple(
+        EntryWait(
+            _of_their_rows(one.place.plants, grid),
+            datetime.combine(one.on, one.application.began or time()),
+            until,
+            one.application.product,
+        )
+        for one, until in known
+        if until is not None
+    )
+
+
+def _of_their_rows(plants: NDArray[np.bool_], grid: PlantGrid) -> NDArray[np.bool_]:
+    if not grid.in_rows:
+        return plants
+    return np.isin(grid.row, grid.row[plants])
+
+
+def closed_on(
+    waits: Iterable[EntryWait], on: date, begins_s: float, ends_s: float
+) -> tuple[Closure, ...]:
+    """Return what is closed to work between two seconds of a day."""
+    midnight = datetime.combine(on, time())
+    begins, ends = (midnight + timedelta(seconds=round(s)) for s in (begins_s, ends_s))
+    closed = (one.closes(begins, ends) for one in waits)
+    return tuple(one for one in closed if one is not None)
+
+
+def any_closed(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
+    """Return ``(n,)`` which plants people may not come to."""
+    return np.any([one.plants for one in closed], axis=0) if closed else np.zeros(n, np.bool_)
+
+
+def left_off_in_words(
+    closed: Sequence[Closure], plot: tuple[PlantGrid, RowLabel], units: Units
+) -> tuple[Worded, ...]:
+    """Return which plants are left off a plan, and until when: the last to open first.
+
+    A plant that several treatments close is said once, with the last time.
+    """
+    grid, label = plot
+    said, told = [], np.zeros(len(grid), np.bool_)
+    for one in sorted(closed, key=lambda one: one.until, reverse=True):
+        plants = one.plants & ~told
+        told |= plants
+        if plants.any():
+            said.append(_in_words(one, np.unique(label.line[plants]) if grid.in_rows else None,
+                                  int(np.count_nonzero(plants)), units))  # fmt: skip
+    return tuple(said)
+
+
+def _in_words(one: Closure, rows: NDArray[np.integer] | None, n: int, units: Units) -> Worded:
+    which = counted(n, "plant")
+    if rows is not None:
+        which = worded("{plants} in rows {rows}", plants=which, rows=runs(rows.tolist()))
+    values = {
+        "time": f"{one.until:%H:%M}",
+        "date": units.day(one.until.date()),
+        "product": one.product or worded("a product that nobody named"),
+        "which": which,
+    }
+    if one.opens:
+        return worded(
+            "Closed until {time} on {date} after {product}, so not on the route: {which}. A plan "
+            "made from then on may have them.", **values,
+        )  # fmt: skip
+    return worded(
+        "Closed until {time} on {date} after {product}, so not on the route: {which}.", **values
+    )

@@ -1,0 +1,138 @@
+"""People are not sent to plants where they may not be yet; robots are."""
+
+from dataclasses import replace
+from datetime import date, datetime, time, timedelta
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fieldmon.compute.units import Units
+from fieldmon.decisions.labels import ProductLabel
+from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.closures import any_closed, closed_on, entry_waits, left_off_in_words
+from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.planning.members import team_of
+from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.robot import scout
+from tests.monitoring.seasons import BEGINS
+from tests.monitoring.test_cautions import EAST, WEST, treated
+
+ON = BEGINS + timedelta(1)
+TREES = SimpleNamespace(in_rows=False)
+
+
+def sprayed(season, rows, hours, at=time(9), on=BEGINS, product="Acarol"):
+    """Treat rows, which then are closed for so many hours from `at` on; return their plants."""
+    plants = np.isin(season.label.line, rows)
+    season.treat(on, 0.5, plants=plants, application=Application(
+        product, reentry_hours=float(hours), ended=at))  # fmt: skip
+    return plants
+
+
+@pytest.mark.parametrize(
+    ("from_h", "to_h", "closed"), [(6, 18, True), (9, 18, False), (8.99, 9.5, True)]
+)
+def test_plants_are_closed_to_work_that_begins_before_their_time(from_h, to_h, closed):
+    waits = entry_waits([treated(0, reentry_hours=24.0)], (), TREES)
+    found = closed_on(waits, date(2026, 4, 7), from_h * 3600, to_h * 3600)
+    assert [(one.until, one.opens) for one in found] == (
+        [(datetime(2026, 4, 7, 9), True)] if closed else []
+    )
+
+
+def test_a_label_counts_and_what_begins_after_the_hours_closes_nothing():
+    label = ProductLabel("Acarol", reentry_hours=12.0)
+    late = treated(0, began=time(18), ended=time(19))
+    assert entry_waits([late], (), TREES) == ()
+    waits = entry_waits([late], [label], TREES)
+    assert closed_on(waits, BEGINS, 6 * 3600, 18 * 3600) == ()
+    assert len(closed_on(waits, BEGINS, 6 * 3600, 19 * 3600)) == 1
+    assert len(closed_on(waits, date(2026, 4, 7), 6 * 3600, 18 * 3600)) == 1
+
+
+def test_what_is_left_off_is_said_once_with_its_last_time(season):
+    n, rows = len(season.plot.grid), (season.plot.grid, season.label)
+    assert not any_closed((), n).any()
+    for wait, lines in ((24, [1, 2, 3, 7]), (72, [3, 4])):
+        sprayed(season, lines, wait, product="Acarol" if wait == 24 else "")
+    first, second = left_off_in_words(season.closed(ON), rows, Units())
+    low, high = (np.count_nonzero(np.isin(season.label.line, some)) for some in ([1, 2, 7], [3, 4]))
+    assert first == (
+        "Closed until 09:00 on 2026-04-09 after a product that nobody named, so not on the route: "
+        f"{high} plants in rows 3–4."
+    )
+    assert second == (
+        "Closed until 09:00 on 2026-04-07 after Acarol, so not on the route: "
+        f"{low} plants in rows 1–2, 7."
+        + " A plan made from then on may have them."
+        * (season.settings.robot.hours > 3)
+    )
+
+
+def test_a_plan_leaves_closed_plants_out_until_their_time(season):
+    given = season.plan(ON, keep=False).route.plant
+    rows = np.unique(season.label.line[given[:40]])[:2]
+    plants = sprayed(season, rows, 24, at=time(6, 30))
+    left = season.plan(ON, keep=False)
+    assert plants[given].any()
+    assert len(left.route)
+    assert not plants[left.route.plant].any()
+    assert any_closed(season.closed(ON), len(plants)).tolist() == plants.tolist()
+    assert plants[season.plan(ON, time(6, 30), keep=False).route.plant].any()
+    assert plants[season.plan(BEGINS + timedelta(2), keep=False).route.plant].any()
+    with season.entering_treated():
+        assert plants[season.plan(ON, keep=False).route.plant].any()
+    assert not plants[season.plan(ON, keep=False).route.plant].any()
+    season.undo()
+    assert season.plan(ON, keep=False).route.plant.tolist() == given.tolist()
+
+
+def test_one_plant_closes_its_row_for_the_way_to_the_others_passes_it(season):
+    one = np.arange(len(season.plot.grid)) == 30
+    wait = Application("soap", reentry_hours=48.0, ended=time(9))
+    season.treat(BEGINS, 0.5, plants=one, application=wait)
+    (closed,) = season.closed(ON)
+    assert closed.plants.tolist() == (season.plot.grid.row == season.plot.grid.row[30]).tolist()
+
+
+def test_a_plot_that_is_wholly_closed_has_an_empty_route(season):
+    sprayed(season, np.unique(season.label.line), 48)
+    assert len(season.plan(ON).route) == 0
+    assert len(route_ahead(season, ON, Part(name="Ann"))) == 0
+
+
+@pytest.mark.parametrize("part", [Part(), Part(name="Ann"), Part((1, 6), "Ann"), Part((1, 6))])
+def test_a_route_kept_of_before_is_planned_anew_and_the_rest_goes_elsewhere(season, part):
+    given = route_ahead(season, ON, part).plant
+    plants = sprayed(season, [int(season.label.line[given[0]])], 48)
+    ahead = route_ahead(season, ON, part).plant
+    assert len(ahead)
+    assert not plants[ahead].any()
+    assert route_ahead(season, ON, part).plant.tolist() == ahead.tolist()
+    assert not plants[planned_again(season, ON, part, 3000.0).plant].any()
+
+
+def test_nobody_of_a_team_is_sent_there(season):
+    before = season.settings
+    walk = tuple(replace(one, robot=scout()) for one in team_of(2))
+    season.change(replace(before, team=walk), before)
+    plants = sprayed(season, [1, 2, 3], 48)
+    days = season.plan_each(ON)
+    assert all(len(one.route) for one in days)
+    assert not any(plants[one.route.plant].any() for one in days)
+    assert not plants[season.scene(ON, who="robot-2").last_inspected != 1].any()
+
+
+def test_today_begins_now_at_the_earliest(season, monkeypatch):
+    plants = sprayed(season, [1, 2], 24)
+    moment = local_clock(season.plot.field).moment(ON, time(10))
+    monkeypatch.setattr("fieldmon.plot.local_clock.utc_now", lambda: moment)
+    assert season.closed(ON) == ()
+    assert plants[season.plan(ON, keep=False).route.plant].any()
+
+
+def test_east_and_west_are_closed_each_until_their_time():
+    done = [treated(0, EAST, reentry_hours=24.0), treated(0, WEST, reentry_hours=48.0)]
+    closed = closed_on(entry_waits(done, (), TREES), date(2026, 4, 7), 9 * 3600, 12 * 3600)
+    assert any_closed(closed, 20).tolist() == WEST.tolist()

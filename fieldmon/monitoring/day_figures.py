@@ -11,6 +11,7 @@ import numpy as np
 from fieldmon.compute.wording import Worded, estimate, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.monitoring.transactions import get_meta, set_meta
 from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.history import History
+
+
+# by which rules the figures of days were worked out, and from which day on
+_RULES = "rules of figures"
 
 
 def found_pct(found: int, left: float) -> float:
@@ -183,6 +188,25 @@ class PlannedAndDone:
             planned |= {*last.tolist()} | (seen & {*of_all.tolist()})
         done = len(planned & seen)
         return cls(len(planned), done, len(seen) - done, sum(hours), len(hours))
+
+
+def note_rules(db: sqlite3.Connection, rules: str, since: int) -> None:
+    """Note that the figures of days from `since` on were worked out by these rules."""
+    before = _noted(db)
+    if before is not None and before[0] == rules:
+        since = min(since, before[1])
+    set_meta(db, _RULES, f"{rules} {since}")
+
+
+def holds(db: sqlite3.Connection, rules: str, day: int) -> bool:
+    """Return whether the figures kept of a day are what these rules make of it."""
+    noted = _noted(db)
+    return noted is not None and noted[0] == rules and day >= noted[1]
+
+
+def _noted(db: sqlite3.Connection) -> tuple[str, int] | None:
+    rules, _, since = (get_meta(db, _RULES) or "").partition(" ")
+    return (rules, int(since)) if since else None
 
 
 def kept(db: sqlite3.Connection) -> tuple[DayFigures, ...]:

@@ -13,9 +13,9 @@ from shapely import MultiPolygon
 from fieldmon.compute.digest import digest
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import day_figures, schema
 from fieldmon.monitoring.geopackage import blob, insert, touch
-from fieldmon.monitoring.mornings import causes_of
+from fieldmon.monitoring.mornings import causes_of, rules
 
 if TYPE_CHECKING:
     import sqlite3
@@ -60,6 +60,7 @@ def refresh(
     db.execute("DELETE FROM days WHERE day >= ?", (since,))
     rows = [_day_row(history, morning(day), day) for day in days if day not in kept]
     insert(db, schema.DAYS, rows)
+    day_figures.note_rules(db, rules(), since)
     _name_causes(db, history, morning(days[-1]), days[-1])
     spots = _write_spots(db, plot, history, days[-1])
     _write_states(db, history, spots, (days[-1], morning(days[-1])))

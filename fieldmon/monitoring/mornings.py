@@ -178,7 +178,7 @@ def _causes(history: History, day: int) -> str:
         digest(one.day, one.plants, one.efficacy) for one in history.treatments if one.day < day
     ]
     return digest(
-        *(_rules(), first.chance, first.pair_chance, _learnt_before(first), said, day, treated),
+        *(rules(), first.chance, first.pair_chance, _learnt_before(first), said, day, treated),
         *(done.plant, done.result, done.date, told),
     )
 
@@ -191,7 +191,7 @@ def _learnt_before(first: Belief) -> bytes:
 
 
 @cache
-def _rules() -> str:
+def rules() -> str:
     """Return a name for the program that works mornings out: another one begins at the first."""
     folder = Path(fieldmon.infestation.__file__).parent
     files = [*sorted(folder.glob("*.py")), Path(causes_of_a_morning.__file__)]

@@ -18,6 +18,7 @@ from fieldmon.monitoring import day_figures
 from fieldmon.monitoring.advice import AdviceSettings, InspectAgain, advice
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import in_sight
+from fieldmon.monitoring.mornings import rules
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status
 from fieldmon.monitoring.told_detection import told_at_first
@@ -208,8 +209,14 @@ class SeasonEstimates(OpenSeason):
         return Progress.of(now.history, now.settings.day(on))
 
     def day_figures(self, on: date) -> DayFigures:
-        """Return the day `on` in figures: those kept with it, or worked out in seconds."""
-        for kept in self.days():
+        """Return the day `on` in figures: those kept with it, or worked out in seconds.
+
+        What another version of fieldmon kept is worked out anew.
+        """
+        day = self.settings.day(on)
+        with self.store.reading() as db:
+            days = day_figures.kept(db) if day_figures.holds(db, rules(), day) else ()
+        for kept in days:
             if kept.on == on:
                 return kept
         with self._asked(on) as (contents, morning, day):

@@ -13,7 +13,7 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, day_figures
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.mornings import Mornings, _causes, _packed, _unpacked
 from fieldmon.plot.layout import rectangle
@@ -144,7 +144,7 @@ def test_a_plan_that_is_kept_already_keeps_the_mornings_of_a_new_version(path, m
     was = path.read_bytes()
     Season(path).plan(on)
     assert path.read_bytes() == was
-    monkeypatch.setattr(mornings, "_rules", lambda: "of another version")
+    monkeypatch.setattr(mornings, "rules", lambda: "of another version")
     with closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         Season(path).plan(on)  # waits for nobody
@@ -157,7 +157,7 @@ def test_a_plan_that_is_kept_already_keeps_the_mornings_of_a_new_version(path, m
 def test_another_program_version_does_not_believe_the_kept_ones(path, monkeypatch):
     from fieldmon.monitoring import mornings
 
-    monkeypatch.setattr(mornings, "_rules", lambda: "of another version")
+    monkeypatch.setattr(mornings, "rules", lambda: "of another version")
     contents = Season(path)._now()
     assert contents.mornings.last_until(LAST) == 0
 
@@ -276,3 +276,27 @@ def test_mornings_are_forgotten_from_the_day_on_that_changed(path):
     assert after.last_until(LAST) == 9
     assert {*after.known} == {day for day in mornings.known if day <= 9}
     assert mornings.last_until(8) == max(day for day in mornings.known if day <= 8)
+
+
+@pytest.mark.parametrize("days_before", [0, 9])
+def test_figures_that_another_version_kept_are_worked_out_anew(path, monkeypatch, days_before):
+    from fieldmon.monitoring import season_estimates
+
+    on = BEGINS + timedelta(days=LAST - days_before)
+    true = Season(path).status(on).estimate
+    change(path, "UPDATE days SET low = 0, expected_left = 1")
+    assert Season(path).day_figures(on).expected == 1.0
+    monkeypatch.setattr(season_estimates, "rules", lambda: "of another version")
+    now = Season(path).day_figures(on)
+    assert (now.expected, now.low, now.high) == (true.expected, true.low, true.high)
+
+
+def test_of_a_change_the_days_before_it_stay_figures_of_the_version_before(path):
+    with closing(sqlite3.connect(path)) as db, db:
+        day_figures.note_rules(db, "before", 0)
+        day_figures.note_rules(db, "now", 7)
+        assert [day_figures.holds(db, "now", day) for day in (6, 7)] == [False, True]
+        day_figures.note_rules(db, "now", 12)
+        day_figures.note_rules(db, "now", 3)
+        assert [day_figures.holds(db, "now", day) for day in (2, 3, 12)] == [False, True, True]
+        assert not day_figures.holds(db, "before", 12)

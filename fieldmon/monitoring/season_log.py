@@ -262,6 +262,12 @@ def entries(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
     return tuple(made)
 
 
+def first(db: sqlite3.Connection) -> str:
+    """Return the digest of the first entry: it tells of the plot and the moment it was made."""
+    row = db.execute("SELECT digest FROM log WHERE fid = 1").fetchone()
+    return "" if row is None else str(row[0])
+
+
 class PlannedOrSeen(NamedTuple):
     """What the log says of some days: that they were planned, or recorded.
 

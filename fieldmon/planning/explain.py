@@ -70,7 +70,7 @@ def _told_finds(
         if not scene.grid.in_rows:
             sentence = worded("{plants} around the find at plant {number}.", **words)
         elif len(found_on):
-            sentence = worded("{plants} around {day}'s find in row {row}, plant {number}.",
+            sentence = worded("{plants} around the find of {day} in row {row}, plant {number}.",
                               day=found_on[find], **words)  # fmt: skip
         else:
             sentence = worded("{plants} around the find in row {row}, plant {number}.", **words)

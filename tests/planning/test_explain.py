@@ -40,7 +40,9 @@ def test_stops_near_a_find_are_told_by_its_day_row_and_plant():
     find = work.plant[:1].astype(np.int32)
     said = explain(scene, work, find, ["Tuesday"])[0]
     row, number = int(find[0]) // 30 + 1, int(find[0]) % 30 + 1
-    assert re.fullmatch(rf"\d+ plants? around Tuesday's find in row {row}, plant {number}\.", said)
+    assert re.fullmatch(
+        rf"\d+ plants? around the find of Tuesday in row {row}, plant {number}\.", said
+    )
 
 
 def test_many_finds_are_told_together_the_most_plants_first():

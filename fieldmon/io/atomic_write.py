@@ -84,7 +84,7 @@ def write_whole(path: str | Path, data: bytes) -> None:
 def why_not_written(error: Exception) -> str:
     """Return why something could not be written, in the system's words if it has any."""
     said = error.strerror if isinstance(error, OSError) else None
-    return said or worded("it is full, or cannot be written to")
+    return said or worded("no room, or no leave to write")
 
 
 def _may_be_season(file: Path) -> bool:

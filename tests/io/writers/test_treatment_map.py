@@ -67,5 +67,5 @@ def test_what_cannot_be_written_is_refused(tmp_path, monkeypatch):
         raise pyogrio.errors.DataSourceError("sqlite3_exec(COMMIT) failed")
 
     monkeypatch.setattr(pyogrio, "write_dataframe", full)
-    with pytest.raises(FileProblem, match=r"\(it is full, or cannot be written to\)\. Make room"):
+    with pytest.raises(FileProblem, match=r"\(no room, or no leave to write\)\. Make room"):
         write_treatment_map(MAP, tmp_path / "t.gpkg")

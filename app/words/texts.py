@@ -979,12 +979,8 @@ ONE_SEASON = "(one season: no interval)"
 INTERVAL_OF = "{value} ({low} to {high})"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
-COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = (
-    "inspected a day",
-    "half found first on day",
-    "verdict",
-)
-COLUMN_VISITED_EACH = "inspected a visit"
+COLUMN_VISITED, COLUMN_VISITED_EACH = "inspected a day", "inspected a visit"
+COLUMN_HALF, COLUMN_VERDICT = "half found first on day", "verdict"
 COLUMN_MOST, COLUMN_WORKED = "80 % found first on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"

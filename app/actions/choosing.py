@@ -143,7 +143,7 @@ def _from_season(name: str, work: Work) -> Choices:
     with work.foot:  # the boxes above are folded on a phone
         held.wait(seasons_folder.path_of(name))
     season = cached.season(seasons_folder.path_of(name))
-    settings, key, units = season.settings, str(season.path), chosen_units.units()
+    settings, key, units = season.settings, season.key, chosen_units.units()
     clock = local_clock(season.plot.field)
     last = settings.begins + timedelta(days=MOST_DAYS)
     calendar = Calendar(clock.today(), settings.begins, last)

@@ -170,16 +170,13 @@ def _dashes(styles: Styles) -> alt.Scale:
 @_in_language
 def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
     """Return the plants found on each day."""
-    table = pd.DataFrame({"day": range(1, len(figures.found) + 1), "found": figures.found})
+    days = [str(day) for day in range(1, len(figures.found) + 1)]
+    table = pd.DataFrame({"day": days, "found": figures.found})
     return (
         alt.Chart(table)
         .mark_bar(color=_COLOURS[0])
         .encode(
-            x=alt.X(
-                "day:O",
-                title=axes[0],
-                axis=alt.Axis(labelAngle=0, labelOverlap=True, labelSeparation=4),
-            ),
+            x=_days(days, axes[0]),
             y=alt.Y("found:Q", title=axes[1]),
             tooltip=[alt.Tooltip("day", title=axes[0]), alt.Tooltip("found", title=axes[1])],
         )

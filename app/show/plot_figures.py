@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import shapely
 import streamlit as st
+
+from fieldmon.io.parse.geometry import area_m2
 
 from ..words import texts
 from ..words.language import number
@@ -20,14 +21,13 @@ if TYPE_CHECKING:
 def show(plot: Plot, units: UnitsInLanguage) -> None:
     """Show the figures side by side."""
     grid = plot.grid
-    area_m2 = shapely.area(grid.frame.geometry_m(plot.field.drivable()))
     apart = f"{units.metres(grid.row_spacing_m, 1)} / {units.metres(grid.plant_spacing_m, 1)}"
     rows = ("row_spacing_m", "plant_spacing_m")
     plants, spacing = (
         mark(name, plot.assumed, rows) for name in (texts.PLANTS_ARE, texts.SPACING_IS)
     )
     with st.container(horizontal=True):
-        st.metric(texts.AREA_IS, units.square(float(area_m2)), width="content")
+        st.metric(texts.AREA_IS, units.square(area_m2(plot.field.boundary)), width="content")
         st.metric(plants, number(len(grid), ","), width="content")
         st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
         if grid.aisles_m is None:  # rows that bend, or blocks that turn, have no one direction

@@ -128,14 +128,14 @@ def revision_on(season: Season, on: date, who: str | None = None) -> str:
 
 
 @st.cache_resource(max_entries=FEW)
-def import_messages(path: str, _season: Season) -> tuple[KeptMessage, ...]:
+def import_messages(key: str, _season: Season) -> tuple[KeptMessage, ...]:
     """Return what the imports had to say when a season began."""
     return _season.messages()
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)
 def season_plan(
-    path: str,
+    key: str,
     revision: str,
     of: tuple[str, str | None],
     _season: Season,
@@ -147,7 +147,7 @@ def season_plan(
 
 
 @st.cache_resource(max_entries=FEW)
-def season_scene(path: str, revision: str, day: str, _season: Season) -> Scene:
+def season_scene(key: str, revision: str, day: str, _season: Season) -> Scene:
     """Return what is known and believed on a season's day before it is planned."""
     return _season.plan(np.datetime64(day).item(), keep=False).scene
 
@@ -160,7 +160,7 @@ def turn_plan(key: str, robot: Robot, _scene: Scene, _sampler: Sampler) -> DayPl
 
 @st.cache_resource(max_entries=FEW)
 def kept_route(
-    path: str,
+    key: str,
     revision: str,
     of: tuple[str, str | None],
     _season: Season,
@@ -171,14 +171,14 @@ def kept_route(
 
 
 @st.cache_resource(max_entries=_DAYS)
-def planned_only(path: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
+def planned_only(key: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
     """Return the planned days up to a day of which nothing is recorded."""
     return _season.planned_only(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=FEW)
 def planned_and_done(
-    path: str,
+    key: str,
     revision: str,
     of: tuple[str, str | None],
     _season: Season,
@@ -190,7 +190,7 @@ def planned_and_done(
 
 @st.cache_resource(max_entries=FEW)
 def worked(
-    path: str,
+    key: str,
     revision: str,
     of: tuple[str, str | None],
     _season: Season,
@@ -201,38 +201,38 @@ def worked(
 
 
 @st.cache_resource(max_entries=FEW)
-def kept_days(path: str, revision: str, _season: Season) -> tuple[DayFigures, ...]:
+def kept_days(key: str, revision: str, _season: Season) -> tuple[DayFigures, ...]:
     """Return the figures of a season's days on which something happened, in order."""
     return _season.days()
 
 
 @st.cache_resource(max_entries=_DAYS)
-def day_figures(path: str, revision: str, day: str, _season: Season) -> DayFigures:
+def day_figures(key: str, revision: str, day: str, _season: Season) -> DayFigures:
     """Return a day of a season in figures."""
     return _season.day_figures(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def progress(path: str, revision: str, day: str, _season: Season) -> Progress:
+def progress(key: str, revision: str, day: str, _season: Season) -> Progress:
     """Return how far the inspections are after a day of a season."""
     return _season.progress(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def flagged(path: str, revision: str, day: str, _season: Season) -> float:
+def flagged(key: str, revision: str, day: str, _season: Season) -> float:
     """Return how many plants found are still infested after a day of a season."""
     return _season.flagged(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def learnt(path: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
+def learnt(key: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)
 def learnt_efficacy(
-    path: str, revision: str, day: str, product: str, _season: Season
+    key: str, revision: str, day: str, product: str, _season: Season
 ) -> TreatmentEffect | None:
     """Return what a season learnt until a day of how well a product works."""
     return _season.learnt_efficacy(np.datetime64(day).item(), product)
@@ -240,7 +240,7 @@ def learnt_efficacy(
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)
 def advice(
-    path: str,
+    key: str,
     revision: str,
     day: str,
     settings: AdviceSettings,
@@ -251,39 +251,39 @@ def advice(
 
 
 @st.cache_resource(max_entries=_MAPS)
-def forecast(path: str, revision: str, day: str, _season: Season) -> Forecast:
+def forecast(key: str, revision: str, day: str, _season: Season) -> Forecast:
     """Return how many plants are infested on the mornings after a day of a season."""
     return _season.forecast(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def season_hot_spots(path: str, revision: str, day: str, _season: Season) -> HotSpots:
+def season_hot_spots(key: str, revision: str, day: str, _season: Season) -> HotSpots:
     """Return where finds cluster on a day of a season."""
     number = _season.settings.day(np.datetime64(day).item())
     return hot_spots(_season.plot.grid, _season.history.known(number))
 
 
 @st.cache_resource(max_entries=_MAPS)
-def evening(path: str, revision: str, day: str, _season: Season) -> Array:
+def evening(key: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a day after what was recorded of it."""
     return _season.evening(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def level_range(path: str, revision: str, day: str, _season: Season) -> LevelRange:
+def level_range(key: str, revision: str, day: str, _season: Season) -> LevelRange:
     """Return how far that chance map may be off as a whole."""
     return _season.level_range(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)
-def morning(path: str, revision: str, day: str, _season: Season) -> Array:
+def morning(key: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a morning."""
     return _season.morning(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)
 def season_report(
-    path: str,
+    key: str,
     revision: str,
     day: str,
     units: Units,

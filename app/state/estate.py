@@ -113,7 +113,7 @@ def _of_season(name: str, season: Season) -> PlotState:
     today = local_clock(season.plot.field).today()
     # nothing is known of a season before its first day
     on = max(today, season.settings.begins)
-    of = str(season.path), season.revision, str(on), season
+    of = season.key, season.revision, str(on), season
     expected = cached.day_figures(*of).expected + cached.flagged(*of)
     dates = season.history.inspections.date
     seen = None

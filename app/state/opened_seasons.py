@@ -49,6 +49,9 @@ def opened(path: Path) -> Season:
         _open(file, opening)
     season = opening.result()  # two who ask at once get the same
     if known is not None:
+        if _is_another(season):
+            _forget(file, opening)
+            return opened(path)
         # what was added in QGIS since; a file in trouble says so to what is asked of it next
         with suppress(FileProblem):
             season.drafts = season.take_drafts()
@@ -60,10 +63,22 @@ def _open(file: tuple[Path, int], opening: Opening) -> None:
     try:
         opening.set_result(Season(file[0]))
     except BaseException as error:  # noqa: BLE001 - raised by all who wait
-        with _LOCK:
-            if _OPEN.get(file) is opening:
-                del _OPEN[file]
+        _forget(file, opening)
         opening.set_exception(error)
+
+
+def _forget(file: tuple[Path, int], opening: Opening) -> None:
+    with _LOCK:
+        if _OPEN.get(file) is opening:
+            del _OPEN[file]
+
+
+def _is_another(season: Season) -> bool:
+    """Return whether another season was copied into the file, which keeps its inode then."""
+    try:
+        return season.is_another_now()
+    except FileProblem:  # it says so to what is asked of it next
+        return False
 
 
 def _file(path: Path) -> tuple[Path, int]:

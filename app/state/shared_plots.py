@@ -159,8 +159,8 @@ def _of_season(plot: PlotState) -> _Ready:
     settings = season.settings
     on = max(local_clock(season.plot.field).today(), settings.begins)
     now = cached.revision_on(season, on)
-    key = f"{season.path} {now} {on}"
-    scene = cached.season_scene(str(season.path), now, str(on), season)
+    key = f"{season.key} {now} {on}"
+    scene = cached.season_scene(season.key, now, str(on), season)
     return _Ready(plot, key, on, scene, settings.sampler, settings.decides())
 
 

@@ -769,15 +769,15 @@ ONE_UNSAID = (
     "in all three."
 )
 _CONTRADICTING = (
-    "what is recorded of the same plants and day. Nothing is recorded yet, nor are the {others} "
-    "others. Which holds?"
+    "what is recorded or brought of the same plants and day. Nothing is recorded yet, nor are the "
+    "{others} others. Which holds?"
 )
 CONTRADICTING = Plural(
     "{n} result from {source} contradicts " + _CONTRADICTING,
     "{n} results from {source} contradict " + _CONTRADICTING,
 )
 _CONTRADICTING_ALL = (
-    "what is recorded of the same plants and day. Nothing is recorded yet. Which holds?"
+    "what is recorded or brought of the same plants and day. Nothing is recorded yet. Which holds?"
 )
 CONTRADICTING_ALL = Plural(
     "{n} result from {source} contradicts " + _CONTRADICTING_ALL,
@@ -979,9 +979,9 @@ ONE_SEASON = "(one season: no interval)"
 INTERVAL_OF = "{value} ({low} to {high})"
 COLUMN_STRATEGY, COLUMN_LOSS = "strategy", "infested plant-days"
 COLUMN_FOUND = "found at the end"
-COLUMN_VISITED, COLUMN_HALF, COLUMN_VERDICT = "inspected a day", "half found on day", "verdict"
-COLUMN_VISITED_EACH = "inspected a visit"
-COLUMN_MOST, COLUMN_WORKED = "80 % found on day", "hours worked"
+COLUMN_VISITED, COLUMN_VISITED_EACH = "inspected a day", "inspected a visit"
+COLUMN_HALF, COLUMN_VERDICT = "half found first on day", "verdict"
+COLUMN_MOST, COLUMN_WORKED = "80 % found first on day", "hours worked"
 STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (

@@ -135,8 +135,10 @@ def _finished(folder: Path, files: dict[str, str], digests: dict[str, str]) -> d
     except FileNotFoundError:
         return {}
     except (OSError, UnicodeDecodeError) as error:
+        why = "it is no text in UTF-8" if isinstance(error, ValueError) else error.strerror
         raise FileProblem(
-            f"{folder / SUMMARY} must be readable, but it is not ({error})."
+            f"{folder / SUMMARY} must be readable, but it is not: {why}. Delete it, and all plots "
+            "are planned anew."
         ) from error
     same = {
         name: row | {"file": name}

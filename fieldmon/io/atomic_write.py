@@ -73,12 +73,18 @@ def write_whole(path: str | Path, data: bytes) -> None:
                 "{target} could not be written ({value}); nothing was "
                 "changed. Make room or choose another place.",
                 target=target,
-                value=error.strerror or error,
+                value=why_not_written(error),
             )
         ) from error
     finally:
         with suppress(OSError):
             half.unlink(missing_ok=True)
+
+
+def why_not_written(error: Exception) -> str:
+    """Return why something could not be written, in the system's words if it has any."""
+    said = error.strerror if isinstance(error, OSError) else None
+    return said or worded("no room, or no leave to write")
 
 
 def _may_be_season(file: Path) -> bool:

@@ -17,7 +17,7 @@ from fieldmon.io.read import (
     read_records,
     read_records_by_plot,
 )
-from fieldmon.io.readers.nearby import on_other_plots, on_plants
+from fieldmon.io.readers.nearby import on_other_plots, on_plants, without_corners
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 
 if TYPE_CHECKING:
@@ -98,7 +98,9 @@ def records_of(
         if question.option != "plants":
             raise
         return _by_plant(fields, source, lay, question.choices)
-    return read.having(EstateRecords(read.value), _far_from_all(fields, source, read.value))
+    records, corners = without_corners(read.value, fields)
+    far = _far_from_all(fields, source, records)
+    return read.having(EstateRecords(records), [*corners, *far])
 
 
 def _far_from_all(

@@ -142,11 +142,23 @@ class OpenSeason:
             self.plot: Plot = tables.read_plot(db)
             self.observations: Observations = tables.read_observations(db)
             self.risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
+            self._first_entry = season_log.first(db)
 
     @property
     def path(self) -> Path:
         """Return the file."""
         return self.store.path
+
+    @property
+    def key(self) -> str:
+        """Return what stands for this season in keys of what is kept: no other file has it."""
+        return f"{self.path} {self._first_entry}"
+
+    def is_another_now(self) -> bool:
+        """Return whether another season's file, or one of an earlier version, took its place."""
+        with self.store.reading() as db:
+            is_ours = get_meta(db, "version") == str(schema.VERSION)
+            return not is_ours or season_log.first(db) != self._first_entry
 
     def one_moment(self) -> AbstractContextManager[None]:
         """Let all answers within this block be of one moment, whoever writes meanwhile waits."""

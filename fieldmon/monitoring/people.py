@@ -31,6 +31,11 @@ def names_written(db: sqlite3.Connection) -> dict[str, str]:
     return known
 
 
+def written_in(db: sqlite3.Connection, name: str) -> str:
+    """Return a name as a season writes it, or as it is."""
+    return as_written(names_written(db), name)
+
+
 def as_written(known: dict[str, str], name: str) -> str:
     """Return a name as it is known; one that is not is known as it is from now on."""
     return known.setdefault(person(name), name.strip())

@@ -17,7 +17,7 @@ from fieldmon.errors import AccessError, SettingError
 from fieldmon.monitoring import phone_tables, season_log
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.open_season import settings_of
-from fieldmon.monitoring.people import as_written, names_written
+from fieldmon.monitoring.people import written_in
 from fieldmon.planning.members import person
 from fieldmon.plot.local_clock import utc_text
 
@@ -94,7 +94,7 @@ def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -
     key = secrets.token_urlsafe(_KEY_BYTES)
     first, last = rows or (None, None)
     with season.store.writing() as db:
-        name = as_written(names_written(db), name)
+        name = written_in(db, name)
         if settings_of(db).named(name) is None:
             _must_be_own(db, name, rows, lines)
         elif rows is not None:

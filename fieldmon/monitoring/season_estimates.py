@@ -179,11 +179,11 @@ class SeasonEstimates(OpenSeason):
         return belief.earlier.sentence(belief.believed(self.plot.grid, settings.pest, told))
 
     def as_earlier(self) -> EarlierSeason:
-        """Return what the season learnt until its last day, as a next one may begin with it.
+        """Return what the season learnt until its last day, or today, as a next one may begin so.
 
         Raise `SettingError` if it learnt nothing: nothing was inspected, or finds are not traced.
         """
-        on = self.last_date()
+        on = self.day_meant()
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.evening(morning, day)
         inspected = (contents.history.inspections.result != SKIPPED).any()

@@ -33,6 +33,7 @@ from fieldmon.monitoring.open_season import (
     nothing_yet,
     settings_of,
 )
+from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.season_estimates import SeasonEstimates
 from fieldmon.monitoring.season_plans import SeasonPlans
 from fieldmon.monitoring.season_records import SeasonRecords
@@ -257,7 +258,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         now = settings_log.as_written_now(settings_log.now(db))
         names = [name for name in now if now[name] != before.get(name)]
         season_log.append(
-            db, "changed", who,
+            db, "changed", written_in(db, who),
             states={"settings": season_log.settings_state(db)},
             names=", ".join(names), now={name: now[name] for name in names},
             said="; ".join(settings_log.differences(before, now)),
@@ -289,7 +290,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                 return
         with self._lock, self.store.writing() as db:
             if _advised(db, on)[-1:] != [said]:  # nor has anybody else written it meanwhile
-                season_log.append(db, "advised", who, date=str(on), said=said)
+                season_log.append(db, "advised", written_in(db, who), date=str(on), said=said)
 
     def log(self) -> tuple[LogEntry, ...]:
         """Return the log, the first entry first.

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -262,6 +262,12 @@ def entries(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
     return tuple(made)
 
 
+def first(db: sqlite3.Connection) -> str:
+    """Return the digest of the first entry: it tells of the plot and the moment it was made."""
+    row = db.execute("SELECT digest FROM log WHERE fid = 1").fetchone()
+    return "" if row is None else str(row[0])
+
+
 class PlannedOrSeen(NamedTuple):
     """What the log says of some days: that they were planned, or recorded.
 
@@ -339,6 +345,34 @@ def worked_by(db: sqlite3.Connection, on: date, clock: LocalClock) -> Marks | No
         return of_day[-1].chosen(db) if of_day else None
     plans = [one for one in of_day[: (that_day or seen[:1])[-1]] if one.kind == "planned"]
     return (plans[-1] if plans else of_day[seen[0]]).chosen(db)
+
+
+def to_be_worked(
+    db: sqlite3.Connection, days: Sequence[date], clock: LocalClock
+) -> tuple[date, ...]:
+    """Return the days of some planned ones that were planned to be worked, as far as is known.
+
+    The others were planned afterwards, or to look ahead: the last plan was made days before, and
+    more was recorded since of which it knew nothing. Where an earlier version planned a day before
+    the file had a log, nothing is known.
+    """
+    said = planned_and_seen(db)
+
+    def is_for(one: PlannedOrSeen, on: date) -> bool:
+        made = clock.at(datetime.fromisoformat(one.at)).date()
+        if made >= on - timedelta(days=1):
+            return made <= on
+        return not any(
+            other.kind == "seen" and other.at > one.at and other.low < str(on) for other in said
+        )
+
+    plans: dict[str, list[PlannedOrSeen]] = {}
+    for one in said:
+        if one.kind == "planned":
+            plans.setdefault(one.low, []).append(one)
+    return tuple(
+        on for on in days if str(on) not in plans or any(is_for(one, on) for one in plans[str(on)])
+    )
 
 
 def refuse_changed(

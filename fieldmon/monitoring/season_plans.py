@@ -170,15 +170,18 @@ class SeasonPlans(OpenSeason):
     def planned_only(self, until: date) -> tuple[date, ...]:
         """Return the planned days `until` a date of which nothing is recorded, in order.
 
-        Each is over on the plot. That a plant could not be inspected is a record, too.
+        Each is over on the plot, and was planned to be worked, see `season_log.to_be_worked`.
+        That a plant could not be inspected is a record, too.
         """
-        today = local_clock(self.plot.field).today()
+        clock = local_clock(self.plot.field)
+        last = min(until, clock.today() - timedelta(days=1))
         with self._lock, self.store.reading() as db:  # both of one moment
             contents = self._read(db)
             planned = routes.days(db)
-        missing = planned[~np.isin(planned, contents.history.days)]
-        dates = map(contents.settings.date, missing.tolist())
-        return tuple(day for day in dates if day <= until and day < today)
+            missing = planned[~np.isin(planned, contents.history.days)]
+            dates = [contents.settings.date(day) for day in missing.tolist()]
+            over = [day for day in dates if day <= last]
+            return season_log.to_be_worked(db, over, clock) if over else ()
 
     def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
         """Return who has a code for work on the day `on` now, by name, and of which rows."""

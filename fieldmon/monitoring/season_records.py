@@ -25,7 +25,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
-from fieldmon.monitoring.people import as_written, names_written
+from fieldmon.monitoring.people import as_written, names_written, written_in
 from fieldmon.monitoring.recorded_before import (
     Contradictions,
     contradicting,
@@ -140,8 +140,7 @@ class SeasonRecords(OpenSeason):
             known = names_written(db)
             who = as_written(known, who)
             for told, source in brought:
-                names = [as_written(known, str(name)) for name in told.who]
-                inspections = replace(told, who=np.array(names, object))
+                inspections = _by_those_known(known, told)
                 if not confirmed:
                     contradictions(inspections, held).refuse(self.label)
                 batch, news = self._add(db, inspections, held, (source, who, into))
@@ -176,7 +175,9 @@ class SeasonRecords(OpenSeason):
         """
         with self._writing() as db:
             before = self._read(db)
-            held = before.history.inspections
+            held, known = before.history.inspections, names_written(db)
+            who = as_written(known, who)
+            inspections = _by_those_known(known, inspections)
             against = contradictions(inspections, held).which
             others = inspections.take(np.setdiff1d(np.arange(len(inspections)), against))
             batch, news = self._add(db, others, held, (source, who, None))
@@ -236,7 +237,7 @@ class SeasonRecords(OpenSeason):
             else:
                 changed, said = batches.undo_one(db, inspection)
             states = season_log.states(db, changed)
-            season_log.append(db, "undone", who, states=states, said=said)
+            season_log.append(db, "undone", written_in(db, who), states=states, said=said)
             self._refresh(db, min(batches.first_day(db, one) for one in changed))
         return said
 
@@ -249,6 +250,7 @@ class SeasonRecords(OpenSeason):
         with self._lock, self.store.writing() as db:
             outside_changes.refuse_more(db)
             settings, plot = settings_of(db), (self.plot.grid, self.label)
+            who = written_in(db, who)
             taken = outside_changes.correct(db, plot, settings, who)
             self._corrected(db, taken, who)
         return len(taken)
@@ -324,9 +326,9 @@ class SeasonRecords(OpenSeason):
                 )
             )
         with self._lock, self.store.writing() as db, Store(copy).reading() as theirs:
-            plot = self.plot.grid, self.label
-            taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who.strip()))
-            self._corrected(db, taken, who.strip())
+            plot, who = (self.plot.grid, self.label), written_in(db, who)
+            taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who))
+            self._corrected(db, taken, who)
         return len(taken)
 
     def _corrected(self, db: sqlite3.Connection, taken: tuple[str, ...], who: str) -> None:
@@ -385,3 +387,9 @@ class SeasonRecords(OpenSeason):
         """Return what the imports had to say."""
         with self.store.reading() as db:
             return tables.read_messages(db)
+
+
+def _by_those_known(known: dict[str, str], told: Inspections) -> Inspections:
+    """Return inspections whose people are written as they are known."""
+    names = [as_written(known, str(name)) for name in told.who]
+    return replace(told, who=np.array(names, object))

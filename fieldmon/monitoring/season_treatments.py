@@ -26,7 +26,7 @@ from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
-from fieldmon.monitoring.people import as_written, names_written
+from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot.local_clock import local_clock
 
@@ -95,7 +95,7 @@ class SeasonTreatments(OpenSeason):
         with self._writing() as db:
             before = self._read(db)
             day = settings_of(db).day(on)
-            said = replace(said, operator=as_written(names_written(db), said.operator))
+            said = replace(said, operator=written_in(db, said.operator))
             said = said.by_label(
                 label_for(label_table.read(db), said.product, said.crop, said.pest)
             )
@@ -180,8 +180,8 @@ class SeasonTreatments(OpenSeason):
             if kept != label_table.read(db):
                 label_table.write(db, kept)
                 season_log.append(
-                    db, "labels", who, states={"labels": season_log.labels_state(db)},
-                    labels=len(kept), source=source,
+                    db, "labels", written_in(db, who), labels=len(kept), source=source,
+                    states={"labels": season_log.labels_state(db)},
                 )  # fmt: skip
         return len(kept)
 

@@ -30,9 +30,10 @@ if TYPE_CHECKING:
 def day_was_worked(season: Season, on: date, ahead: Route, today: date | None = None) -> bool:
     """Tell whether a day is over, given what is left of its route: it is shown as it was worked.
 
-    `today` by the calendar; None: somebody may still go on with a day that has passed.
+    A day planned ahead ends none. `today` by the calendar; None: somebody may still go on with a
+    day that has passed.
     """
-    passed = on < season.last_date() or (today is not None and on < today)
+    passed = on < season.day_meant() or (today is not None and on < today)
     return (not len(ahead) or passed) and bool(len(season.history.on(season.settings.day(on))))
 
 

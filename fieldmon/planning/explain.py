@@ -69,6 +69,9 @@ def _told_finds(
         }  # fmt: skip
         if not scene.grid.in_rows:
             sentence = worded("{plants} around the find at plant {number}.", **words)
+        elif len(found_on) and any(map(str.isdigit, found_on[find])):  # a date
+            sentence = worded("{plants} around the find of {day} in row {row}, plant {number}.",
+                              day=found_on[find], **words)  # fmt: skip
         elif len(found_on):
             sentence = worded("{plants} around {day}'s find in row {row}, plant {number}.",
                               day=found_on[find], **words)  # fmt: skip

@@ -96,10 +96,11 @@ def begun(folder):
 def compared(page):
     """Compare the strategies that are chosen, and turn to what it came to."""
     page.locator(".st-key-run button").click()
-    page.locator("[data-testid=stDataFrame]").wait_for(timeout=600_000)
+    page.locator("[data-testid=stTable]").first.wait_for(timeout=600_000)
     page.locator(".st-key-run_stop button:disabled").wait_for(timeout=600_000)
     page.wait_for_selector(pictures.STILL)
-    page.locator(".st-key-use_this button").scroll_into_view_if_needed()
+    curves = page.locator("[data-testid=stVegaLiteChart]").first
+    curves.evaluate("one => one.scrollIntoView({ block: 'end' })")
 
 
 def bring(page, box, file):

@@ -115,6 +115,8 @@ def test_what_is_finished_is_not_planned_again_unless_something_changed(run, par
     assert files[1].read_text() == "left alone"
     assert "already" not in run(*words[:-1], 3)[1]
     assert properties(files[1])["plot"] == "Plot 2"
+    (parcels.parent / "routes" / "summary.csv").write_bytes(b"\xff")
+    assert "not: it is no text in UTF-8. Delete it" in " ".join(run(*words)[2].split())
 
 
 def test_a_day_that_starts_later_is_planned_again_with_its_own_times(run, parcels, summary):

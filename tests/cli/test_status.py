@@ -13,7 +13,7 @@ from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.local_clock import LocalClock, local_clock
 from tests.cli.estate import BEGINS
-from tests.monitoring.seasons import a_season
+from tests.monitoring.seasons import a_season, all_on
 
 
 def test_a_season_is_told_in_the_lines_of_its_status(run, season):
@@ -55,15 +55,16 @@ def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
     assert "About 10 more plants, which were found and only flagged, are still" in treated
 
 
-def test_planned_days_of_which_nothing_is_recorded_are_told_the_last_three(tmp_path):
+def test_planned_days_of_which_nothing_is_recorded_are_told_the_last_three(tmp_path, monkeypatch):
     kept = a_season(tmp_path / "s.gpkg")
     days = [kept.settings.begins + timedelta(days=k) for k in range(5)]
-    for n, day in enumerate(days[:2]):
+    all_on(monkeypatch, 0)
+    for day in days:
         kept.plan(day)
+    all_on(monkeypatch, 5)
+    for n, day in enumerate(days[:2]):
         told = [one for one in lines(kept, kept.status(day)) if "not recorded" in one]
         assert told == [f"  planned, not recorded  {', '.join(map(str, days[: n + 1]))}"]
-    for day in days[2:]:
-        kept.plan(day)
     said = "\n".join(lines(kept, kept.status(days[-1])))
     assert f"planned, not recorded  2 days and {days[2]}, {days[3]}, {days[4]}\n" in said
 

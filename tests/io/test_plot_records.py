@@ -186,3 +186,14 @@ def test_a_plot_whose_file_is_not_known_takes_records_of_its_rows():
     plot = Plot.of(Field("drawn", area(0, 0)))
     read = records_on(plot, RecordSource(ROWS))
     np.testing.assert_allclose(read.value.lonlat, [place(plot, 3, 7)], atol=1e-12)
+
+
+def test_corners_of_plots_among_the_records_of_an_estate_are_left_out(parcels):
+    fields = prepare_estate(one(parcels)).fields
+    corners = shapely.get_coordinates(fields[1].boundary)[:-1]
+    middle = fields[1].boundary.representative_point().coords[0]
+    inside = np.add(middle, 1e-6 * np.arange(9)[:, None])
+    rows = "".join(f"{float(x)},{float(y)},{DAY},1\n" for x, y in [*corners, *inside])
+    estate = prepare_estate(one(parcels, records=csv(f"lon,lat,date,found\n{rows}")))
+    assert len(estate.records.on(fields[1])) == len(inside)
+    assert any("corners of plots" in line for line in said(estate, "records"))

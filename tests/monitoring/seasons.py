@@ -10,7 +10,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.spread import night
-from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.monitoring import MonitoringSettings, Season, season_log
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot import local_clock
 from fieldmon.plot.field import Field
@@ -31,6 +31,17 @@ def clock_on(monkeypatch, day):
     """Let it be noon of a day of the season."""
     noon = datetime.combine(on(day), time(12), UTC)
     monkeypatch.setattr(local_clock, "utc_now", lambda: noon)
+
+
+def all_on(monkeypatch, day):
+    """Let it be noon of a day of the season for the log, too: it is said when it was planned."""
+    clock_on(monkeypatch, day)
+    logged_at(monkeypatch, local_clock.utc_now())
+
+
+def logged_at(monkeypatch, moment):
+    """Let the log say that this is the moment."""
+    monkeypatch.setattr(season_log, "utc_text", lambda: local_clock.utc_text(moment))
 
 
 def a_plot(width=0.0008, height=0.0007, **planting):

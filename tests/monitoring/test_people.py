@@ -25,8 +25,15 @@ def test_a_person_is_written_as_at_first_whoever_types_it(path):
     assert season.treat(BEGINS, 0.5, application=Application("soap", operator="ann")).new == 0
     (treated,) = season.treatments()
     assert (treated.application.operator, season.batches()[0].who) == ("Ann", "Ann")
-    season.undo()
-    season.undo()
+    season.undo(who="ANN")
+    season.undo(who="ben")
+    season.change(replace(season.settings, sampler="naive"), season.settings, "aNN")
+    season.undo_change("ben ")
+    season.advise(BEGINS, "wait", "BEN")
+    otherwise = replace(three_results(), result=np.array([0, 1, 1], np.int8), who=theirs)
+    season.record_instead(otherwise, "h", "ANN")
+    assert {*season.history.inspections.who.tolist()[-3:]} <= {"Ann", "Ben"}
+    assert {entry.who for entry in season.log()[-6:]} == {"Ann", "Ben"}
     scouts.take_back(season, "ANN")
     assert scouts.who(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"
 

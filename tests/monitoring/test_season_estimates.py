@@ -14,6 +14,7 @@ from fieldmon.pests.weather import weather_of
 from tests.monitoring.seasons import (
     BEGINS,
     a_season,
+    clock_on,
     on,
     some_results,
 )
@@ -131,9 +132,11 @@ def test_advice_is_asked_with_settings_or_a_sentence(season):
         season.advice(BEGINS, 0.05)
 
 
-def test_a_season_begins_with_what_an_earlier_one_learnt_and_keeps_it(tmp_path):
+def test_a_season_begins_with_what_an_earlier_one_learnt_and_keeps_it(tmp_path, monkeypatch):
     last = a_season(tmp_path / "last.gpkg")
     last.record(some_results(last, n=40, found=range(12)), "x")
+    clock_on(monkeypatch, 0)
+    last.plan(on(2))  # only ahead
     earlier = last.as_earlier()
     with pytest.raises(SettingError, match=f"begins on {BEGINS}, but that on .* until {BEGINS}"):
         a_season(tmp_path / "s.gpkg", belief=BeliefSettings(earlier=earlier))

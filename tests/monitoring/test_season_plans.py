@@ -20,6 +20,7 @@ from tests.monitoring.seasons import (
     ROBOT,
     a_plot,
     a_season,
+    all_on,
     clock_on,
     on,
     some_records,
@@ -184,15 +185,36 @@ def test_a_kept_plan_is_held_to_what_was_done_be_it_that_a_plant_could_not_be_in
 
 def test_planned_days_that_are_over_and_of_which_nothing_is_recorded_are_told(season, monkeypatch):
     for day in (0, 2, 3, 6):
+        all_on(monkeypatch, day)
         season.plan(on(day))
+    all_on(monkeypatch, 7)
     season.record(some_results(season, n=1, day=2))
     closed = Inspections.of(np.array([3]), np.array([SKIPPED], np.int8), np.datetime64(on(3)))
     assert season.planned_only(on(6)) == (on(0), on(3), on(6))
     season.record(closed)
     assert season.planned_only(on(6)) == (on(0), on(6))
     assert season.planned_only(on(5)) == (on(0),)
-    clock_on(monkeypatch, 6)
+    all_on(monkeypatch, 6)
     assert season.planned_only(on(6)) == (on(0),), "the last one is not over"
+
+
+def test_a_day_planned_to_look_ahead_or_afterwards_is_none_that_lacks_its_records(
+    season, monkeypatch
+):
+    all_on(monkeypatch, 1)
+    for day in (2, 3, 4):
+        season.plan(on(day))
+    all_on(monkeypatch, 3)
+    season.record(some_results(season, n=1, day=2))
+    season.plan(on(1))
+    season.plan(on(6))
+    all_on(monkeypatch, 5)
+    assert season.planned_only(on(6)) == (), "not what was planned before the finds of day 2"
+    all_on(monkeypatch, 7)
+    assert season.planned_only(on(6)) == (on(6),), "nothing was recorded since"
+    with season.changing() as change:
+        change.db.execute("DELETE FROM log")
+    assert season.planned_only(on(6)) == (on(1), on(3), on(4), on(6)), "an old file had no log"
 
 
 @pytest.mark.parametrize(("name", "off_s"), [("", 4200.0), ("", -3600.0), ("Ann", 4200.0)])

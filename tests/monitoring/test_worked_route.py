@@ -14,7 +14,7 @@ from fieldmon.monitoring.worked_route import day_was_worked
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, driven_s
-from tests.monitoring.seasons import BEGINS, a_season, on
+from tests.monitoring.seasons import BEGINS, a_season, clock_on, on
 
 PLANTS = np.array([90, 5, 40])
 
@@ -81,7 +81,7 @@ def test_a_day_of_which_nothing_was_recorded_has_no_route(tmp_path):
 
 
 def test_a_day_is_over_when_nothing_is_left_or_a_later_one_was_worked_and_never_before_it_began(
-    tmp_path,
+    tmp_path, monkeypatch
 ):
     season, _ = worked(tmp_path, [21_700.0, 21_660.0, 21_800.0])
     ahead, nothing = season.plan(BEGINS, keep=False).route, worked_route(season, on(3))
@@ -92,6 +92,10 @@ def test_a_day_is_over_when_nothing_is_left_or_a_later_one_was_worked_and_never_
     assert not day_was_worked(season, BEGINS, ahead, today=BEGINS)
     assert day_was_worked(season, BEGINS, ahead, today=on(1))
     assert not day_was_worked(season, on(1), ahead, today=on(2))
+    clock_on(monkeypatch, 0)
+    season.plan(on(2))
+    assert not day_was_worked(season, BEGINS, ahead), "a later day is planned only"
+    clock_on(monkeypatch, 2)
     season.record(Inspections.of(PLANTS, np.ones(3, np.int8), np.datetime64(on(2))), "later")
     assert day_was_worked(season, BEGINS, ahead)
     assert not day_was_worked(season, on(1), ahead)

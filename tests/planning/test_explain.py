@@ -38,9 +38,11 @@ def test_stops_near_a_find_are_told_by_its_day_row_and_plant():
     scene = day()
     work = plan_work(scene, Adaptive())
     find = work.plant[:1].astype(np.int32)
-    said = explain(scene, work, find, ["Tuesday"])[0]
+    said, of_date = (explain(scene, work, find, [when])[0] for when in ("Tuesday", "22 Nov"))
     row, number = int(find[0]) // 30 + 1, int(find[0]) % 30 + 1
-    assert re.fullmatch(rf"\d+ plants? around Tuesday's find in row {row}, plant {number}\.", said)
+    place = f"in row {row}, plant {number}"
+    assert re.fullmatch(rf"\d+ plants? around Tuesday's find {place}\.", said)
+    assert re.fullmatch(rf"\d+ plants? around the find of 22 Nov {place}\.", of_date)
 
 
 def test_many_finds_are_told_together_the_most_plants_first():

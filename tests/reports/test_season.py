@@ -17,7 +17,7 @@ from fieldmon.plot.grid import row_label
 from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
 from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import hot_spot_meanings
-from tests.monitoring.seasons import BEGINS, a_season, some_results
+from tests.monitoring.seasons import BEGINS, a_season, all_on, clock_on, some_results
 from tests.reports.reading import one, table
 
 
@@ -171,9 +171,11 @@ def test_all_days_are_held_to_their_plans(of_season, worked):
     )
 
 
-def test_a_planned_day_of_which_nothing_is_recorded_is_told_beside_them(tmp_path):
+def test_a_planned_day_of_which_nothing_is_recorded_is_told_beside_them(tmp_path, monkeypatch):
     season = a_season(tmp_path / "s.gpkg")
+    all_on(monkeypatch, 0)
     season.plan(BEGINS)
+    clock_on(monkeypatch, 4)
     report = season_report(season, BEGINS + timedelta(days=4), Units())
     (said,) = on_sheet(report, 1, Paragraph)
     assert said.text == f"Planned, and nothing recorded: {Units().day(BEGINS)}."

@@ -17,7 +17,7 @@ from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped, 
 from fieldmon.plot.grid import nearest_plants
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -90,13 +90,12 @@ def records_on_plot(observations: Observations, field: Field) -> Observations:
 
 def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[ImportMessage]]:
     """Return the records of one plot; ask or refuse where not one is there."""
-    corner = _corners(observations.lonlat, field)
-    observations = observations.take(~corner)
+    observations, corners = without_corners(observations, (field,))
     split = near_plot(observations, field)
     if len(split.inside):
         beyond = split.outside.lonlat
         doubts = doubt_of_order(split.outside_m, distance_m(beyond[:, ::-1], field))
-        return split.inside, [*_said_of(corner), *split.messages(field.name), *doubts]
+        return split.inside, [*corners, *split.messages(field.name), *doubts]
     nearest = distance_figure(split.outside_m.min())
     swapped_m = distance_m(observations.lonlat[:, ::-1], field)
     if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
@@ -124,21 +123,28 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
     )
 
 
-def _corners(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.bool_]:
-    """Return which records are the plot's corners, in a file that holds both: all, or none."""
-    corners = np.unique(shapely.get_coordinates(field.boundary), axis=0)
+def without_corners(
+    observations: Observations, fields: Sequence[Field]
+) -> tuple[Observations, list[ImportMessage]]:
+    """Return the records besides the corners of plots, in a file that holds both.
+
+    Of each plot all are left out, or none; none at all where they are not fewer than the others.
+    """
+    xy, of = shapely.get_coordinates([one.boundary for one in fields], return_index=True)
+    corners, number = np.unique(xy, axis=0, return_inverse=True)
     from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
 
-    away_deg, corner = cKDTree(corners).query(lonlat)
-    met = away_deg < _SAME_DEG
-    every = len(np.unique(corner[met])) == len(corners)
-    return met if every and 2 * np.count_nonzero(met) < len(met) else np.zeros_like(met)
-
-
-def _said_of(corner: NDArray[np.bool_]) -> list[ImportMessage]:
-    n = int(np.count_nonzero(corner))
-    said = worded("{n} records are the corners of the plot and were left out.", n=n)
-    return [dropped(said)] if n else []
+    away_deg, nearest = cKDTree(corners).query(observations.lonlat)
+    met, number = away_deg < _SAME_DEG, number.ravel()
+    missed = ~np.isin(number, nearest[met])
+    met &= np.isin(nearest, number[~np.isin(of, of[missed])])
+    n = int(np.count_nonzero(met))
+    if n == 0 or 2 * n >= len(met):
+        return observations, []
+    said = worded("{n} records are the corners of plots and were left out.", n=n)
+    if len(fields) == 1:
+        said = worded("{n} records are the corners of the plot and were left out.", n=n)
+    return observations.take(~met), [dropped(said)]
 
 
 def on_other_plots(

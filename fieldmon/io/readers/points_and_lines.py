@@ -64,7 +64,7 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
     found = located(layer, options)
     messages = list(found.messages)
     taken: set[str] = set()
-    labels = []
+    labels, columns = [], {}
     for role in ("block", "row", "plant"):
         named = options.column(role) or find(role, found.layer.columns, frozenset(taken))
         if named is None and role == "plant":
@@ -73,6 +73,7 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
             labels.append(np.full(len(found.layer), "", dtype=np.str_))
             continue
         taken.add(named)
+        columns[role] = named
         messages.append(seen(worded("Column {named!r} names the {role}s.", named=named, role=role)))
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
     gone = _elsewhere(found.lonlat)
@@ -102,7 +103,23 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
     named_blocks = block if (block != "").any() else None
     plants = Plants(found.lonlat[kept], row, plant, named_blocks)
     messages += said_of_strays
+    for role, names in (("block", block), ("row", row)):
+        if role in columns and (names == "").any():
+            messages.append(_of_blanks(names, columns[role]))
     return Imported(plants, (*layer.messages, *messages))
+
+
+def _of_blanks(names: NDArray[np.str_], column: str) -> ImportMessage:
+    """Return what to say of names that some plants do not have."""
+    return doubtful(
+        worded(
+            "Column {column!r} is empty for {n} of {all} plants: none of its names is used. Fill "
+            "it in for all.",
+            column=column,
+            n=int((names == "").sum()),
+            all=len(names),
+        )
+    )
 
 
 def _elsewhere(lonlat: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -17,6 +17,7 @@ from shapely import LineString, Point
 from fieldmon.compute.wording import worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem
+from fieldmon.io.atomic_write import why_not_written
 from fieldmon.io.writers import qml
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
@@ -116,7 +117,7 @@ def _made(write: Callable[[Path], bytes]) -> bytes:
             worded(
                 "The route could not be made in the folder for temporary "
                 "files ({error}). Make room there.",
-                error=error,
+                error=why_not_written(error),
             )
         ) from error
 

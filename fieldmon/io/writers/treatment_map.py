@@ -12,7 +12,7 @@ from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.wording import worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.atomic_write import why_not_written, write_whole
 from fieldmon.io.writers.isoxml import isoxml_taskdata
 from fieldmon.io.writers.zone_cells import ZoneCells, narrowest_m, rates_geotiff, zone_cells
 
@@ -182,7 +182,7 @@ def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: str) -> Non
             worded(
                 "The treatment map could not be made in the folder for temporary files "
                 "({error}). Make room there.",
-                error=error,
+                error=why_not_written(error),
             )
         ) from error
 

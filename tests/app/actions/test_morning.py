@@ -12,6 +12,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.plot import local_clock
 from tests.app.chosen import in_season
 from tests.app.driving import boxed, go, headline, opened, press, tap, texts_of
+from tests.monitoring.seasons import logged_at
 
 
 def test_without_a_season_one_button_begins_it(app):
@@ -116,6 +117,7 @@ def test_a_planned_day_that_was_forgotten_is_recorded_from_any_later_day(
     season_app, season, monkeypatch
 ):
     first = date(2026, 11, 16)
+    logged_at(monkeypatch, datetime(2026, 11, 16, 4, tzinfo=UTC))
     season().plan(first)
     monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 20, 4, tzinfo=UTC))
     season_app.run()

@@ -28,6 +28,9 @@ def metrics(monkeypatch):
 
 def test_figures_are_the_plot_s_in_the_units_chosen(metrics):
     plot = a_plot(row_bearing_deg=200.0, row_spacing_m=5.0, plant_spacing_m=2.0)
+    low = plot.field.boundary.bounds[:2]
+    shed = shapely.MultiPolygon([shapely.box(*low, *np.add(low, 0.0001))])
+    plot = replace(plot, field=replace(plot.field, no_go=shed))
     plot_figures.show(plot, UnitsInLanguage())
     assert metrics == {
         "Area": f"{area_m2(plot.field.boundary) / 1e4:.2f} ha",

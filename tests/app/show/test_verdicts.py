@@ -79,7 +79,7 @@ def test_the_table_says_by_how_much_in_percent_of_the_best():
     assert row["strategy"] == "Naive · 12 h · 40 s"
     assert row["verdict"].startswith("+37\u00a0% loss (+35 to +40)")
     assert row["inspected a day"] == "12.3\u00a0%"
-    assert row["half found on day"] == "7"
+    assert row["half found first on day"] == "7"
 
 
 @pytest.mark.parametrize("found", [(99.0, 100.0, 98.0), (0.0, 1.0, 0.5)])

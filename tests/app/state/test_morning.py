@@ -8,7 +8,7 @@ import pytest
 from app.state import chosen_day, morning
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from tests.app.chosen import DAY, a_plot, chosen, in_season
-from tests.monitoring.seasons import BEGINS, Insects, a_season
+from tests.monitoring.seasons import BEGINS, Insects, a_season, all_on
 
 
 @pytest.fixture
@@ -59,8 +59,10 @@ def test_a_day_that_is_over_asks_for_its_report_then_for_the_next_day(kept):
 
 
 @pytest.mark.usefixtures("session")
-def test_a_plan_that_was_kept_but_not_recorded_comes_first_on_the_day_after(kept):
+def test_a_plan_that_was_kept_but_not_recorded_comes_first_on_the_day_after(kept, monkeypatch):
+    all_on(monkeypatch, 0)
     kept.plan(BEGINS)
+    all_on(monkeypatch, 9)
     after = in_season(kept, BEGINS + timedelta(days=1))
     assert morning.left_unsaid(after) == BEGINS
     assert next_of(after) == morning.LOOK_BACK
@@ -74,9 +76,13 @@ def test_a_plan_that_was_kept_but_not_recorded_comes_first_on_the_day_after(kept
 
 
 @pytest.mark.usefixtures("session")
-def test_a_planned_day_is_asked_for_until_a_later_one_or_that_nobody_went_is_recorded(kept):
-    kept.plan(BEGINS)
-    kept.plan(BEGINS + timedelta(days=3))
+def test_a_planned_day_is_asked_for_until_a_later_one_or_that_nobody_went_is_recorded(
+    kept, monkeypatch
+):
+    for day in (0, 3):
+        all_on(monkeypatch, day)
+        kept.plan(BEGINS + timedelta(days=day))
+    all_on(monkeypatch, 9)
     on = BEGINS + timedelta(days=9)
     assert morning.left_unsaid(in_season(kept, on)) == BEGINS + timedelta(days=3)
     closed = Inspections.of(np.array([5]), np.array([SKIPPED]), np.datetime64(BEGINS) + 3)

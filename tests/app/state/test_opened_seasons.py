@@ -10,7 +10,7 @@ from app.state import cached, opened_seasons
 from app.state.opened_seasons import opened
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import FOUND
-from tests.monitoring.seasons import a_season
+from tests.monitoring.seasons import a_plot, a_season
 from tests.monitoring.test_drafts import PLANT, add
 
 
@@ -64,3 +64,15 @@ def test_a_finding_that_qgis_adds_while_the_season_is_open_counts_when_it_is_ask
     assert season.history.states(0)[PLANT] == FOUND
     add(tmp_path / "a.gpkg", plant=PLANT + 1, date=None)
     assert "no date" in ask(tmp_path / "a.gpkg").drafts[0]
+
+
+def test_another_season_that_is_copied_into_the_file_is_the_one_that_is_shown(tmp_path):
+    was = opened(a_season(tmp_path / "a.gpkg").path)
+    other = a_season(tmp_path / "b.gpkg", a_plot(width=0.0009))
+    assert opened(was.path) is was
+    shutil.copyfile(other.path, was.path)
+    now = opened(was.path)
+    assert len(now.plot.grid) == len(other.plot.grid)
+    assert now is opened(was.path)
+    assert (now.revision, now.path) == (was.revision, was.path)
+    assert now.key != was.key, "nothing that was shown of the other is shown of it"

@@ -1,13 +1,22 @@
 """Which plant a record belongs to, and what is said where that cannot be told."""
 
+from dataclasses import replace
+
 import numpy as np
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, box
 
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.io.import_report import Remedy, Severity, guessed
-from fieldmon.io.readers.nearby import near_plot, of_plot, on_plants, records_on_plot
+from fieldmon.io.readers.nearby import (
+    near_plot,
+    of_plot,
+    on_plants,
+    records_on_plot,
+    without_corners,
+)
 from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
@@ -33,6 +42,11 @@ def test_the_corners_of_the_plot_are_no_records_where_a_file_holds_both():
     assert (said.severity, said.sentence[:9]) == (Severity.DROPPED, "4 records")
     for some in (found.take(np.arange(8)), found.take(np.arange(5, 9))):
         assert len(of_plot(some, field)[0]) == len(some)
+    beside = replace(field, boundary=shapely.transform(field.boundary, lambda xy: xy + 0.001))
+    kept, (said,) = without_corners(found, (field, beside))
+    assert (len(kept), said.sentence) == (
+        5, "4 records are the corners of plots and were left out."
+    )  # fmt: skip
 
 
 def test_a_record_at_its_plant_needs_no_words():

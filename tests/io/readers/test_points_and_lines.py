@@ -35,6 +35,13 @@ def test_what_is_not_called_anything_has_no_label():
     assert len(plants) == 2
 
 
+def test_names_of_rows_that_some_plants_lack_are_not_used_and_that_is_said():
+    shapes = [Point(5.0 + k * 1e-5, 45.0) for k in range(3)]
+    imported = plants_of(layer_of(shapes, row=["1", "", "2"]), ANY)
+    assert "Column 'row' is empty for 1 of 3 plants: none" in sentences(imported)
+    assert "empty" not in sentences(plants_of(layer_of(shapes, row=["1", "1", "2"]), ANY))
+
+
 def test_several_points_in_one_feature_are_a_plant_each():
     shapes = [MultiPoint([(5.0, 45.0), (5.1, 45.0)]), Point(5.2, 45.0)]
     plants = plants_of(layer_of(shapes, row=["1", "2"]), ANY).value

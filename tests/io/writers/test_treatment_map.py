@@ -4,6 +4,7 @@ import io
 import zipfile
 
 import geopandas as gpd
+import pyogrio
 import pytest
 import shapely
 from shapely import MultiPolygon
@@ -52,7 +53,7 @@ def test_a_plot_that_is_all_zone_has_no_rest(tmp_path):
     assert gpd.read_file(path)["ZONE"].tolist() == [1]
 
 
-def test_what_cannot_be_written_is_refused(tmp_path):
+def test_what_cannot_be_written_is_refused(tmp_path, monkeypatch):
     with pytest.raises(SettingError, match=r"must be called \*\.v3\.grid1\.xml\.zip"):
         write_treatment_map(MAP, tmp_path / "t.pdf")
     with pytest.raises(SettingError, match="pays nowhere"):
@@ -61,3 +62,10 @@ def test_what_cannot_be_written_is_refused(tmp_path):
         TreatmentMap("a", PLOT, ZONES, 0.0)
     with pytest.raises(FileProblem, match="must exist"):
         write_treatment_map(MAP, tmp_path / "none" / "t.gpkg")
+
+    def full(*_, **__):
+        raise pyogrio.errors.DataSourceError("sqlite3_exec(COMMIT) failed")
+
+    monkeypatch.setattr(pyogrio, "write_dataframe", full)
+    with pytest.raises(FileProblem, match=r"\(no room, or no leave to write\)\. Make room"):
+        write_treatment_map(MAP, tmp_path / "t.gpkg")

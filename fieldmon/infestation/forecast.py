@@ -155,6 +155,10 @@ def forecast(
         grows = expected / max(float(expected[0]), _LEAST)
         low, high = np.minimum(low, now.low * grows), np.maximum(high, now.high * grows)
         low[0], high[0] = now.low, now.high
+    for night in range(1, len(low)):
+        # without inspections there are no fewer but for those that die
+        left = min(1.0, expected[night] / max(expected[night - 1], _LEAST))
+        low[night] = max(low[night], low[night - 1] * left)
     low, high = np.floor(low), np.minimum(np.ceil(high), len(evening.chance))
     return Forecast(expected, low, high, weather)
 
@@ -226,10 +230,12 @@ def _interval(
     arrives = draws.gamma(known, 1.0 / known, _DRAWS)
     grown, most = so_far
     level = level * np.exp(np.minimum(grown * (faster - 1.0), _MOST_GROWN))
+    # tonight the map knows how doubtful it is, wherever that came from
+    tonight = level * _tonight(inside[0] + arrived[0], 0.0, doubt, draws)
+    ends = [np.quantile(draws.poisson(np.minimum(tonight, most)), (0.05, 0.95))]
     tonight = level * _tonight(inside[0], arrived[0], doubt, draws)
     here = draws.poisson(np.minimum(tonight, most))
     came = draws.poisson(np.minimum(level * arrives * arrived[0], most))
-    ends = [np.quantile(here + came, (0.05, 0.95))]
     for night in range(1, len(inside)):
         grows = max(inside[night], _LEAST) / max(inside[night - 1], _LEAST)
         new = max(arrived[night] - grows * arrived[night - 1], 0.0)

@@ -12,7 +12,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import counted
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT
+from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT, arrivals_known
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
 #: how far ahead
 NIGHTS = 14
-# what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
-# found are not told from others. So it may well be that nothing arrives, or many times as much
-_ARRIVALS_KNOWN, _NOT_TOLD = 0.35, 3.0
 _DRAWS = 4000
 # an interval of 90 % is so many standard deviations wide
 _SIGMAS = 3.29
@@ -223,7 +220,7 @@ def _interval(
         there are.
     """
     draws = RandomStreams(0).of("forecast")
-    known = _ARRIVALS_KNOWN + max(found - _NOT_TOLD, 0.0)
+    known = arrivals_known(found)
     doubt, beyond = doubts
     level = draws.gamma(beyond**-2.0, beyond**2.0, _DRAWS)
     faster = np.exp(draws.normal(0.0, RATE_DOUBT, _DRAWS))

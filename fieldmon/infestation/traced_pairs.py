@@ -259,7 +259,13 @@ class TracedPairs:
     @property
     def _since_inspected(self) -> float:
         """How far the number may be off as nobody inspected for a while."""
-        return float(np.sqrt(self.unwatched.variance(named=self.pest is not None)))
+        return float(np.sqrt(self._variance_since_inspected))
+
+    @property
+    def _variance_since_inspected(self) -> float:
+        return self.unwatched.variance(
+            named=self.pest is not None, arrivals_found=self.arrivals_found
+        )
 
     @property
     def _brought_so_far(self) -> Floats:
@@ -318,7 +324,7 @@ class TracedPairs:
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency and self.latency.inspected(plants, found, told),
             unwatched=self.unwatched.inspected(
-                self._expected_finds(plants, shown), named=self.pest is not None
+                self._expected_finds(plants, shown), self._variance_since_inspected
             ),
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
@@ -388,7 +394,9 @@ class TracedPairs:
         # of those that were not found yet
         unknown = self.chance <= KNOWN
         before, after = (max(float(b.chance[unknown].sum()), LEAST_CHANCE) for b in (self, morning))
-        return replace(morning, unwatched=self.unwatched.overnight(float(np.log(after / before))))
+        anywhere, by_edge = self._from_outside(self.reach, spread)
+        new = float(((1.0 - self.chance) * (anywhere + by_edge))[unknown].sum())
+        return replace(morning, unwatched=self.unwatched.overnight(before, after, new))
 
     def in_hindsight(self, spread: Spread) -> TracedPairs:
         """Return the same as the ancestry of finds has it by now, before the night of a `spread`.
@@ -487,14 +495,19 @@ class TracedPairs:
             brought[JUMPED:] = reach.brought_by_each(moves) * by_jumps[:, None]
         else:
             brought[JUMPED] = reach.brought(moves, by_jumps)
-        brought[ANYWHERE] = max(spread.arrivals_per_day, ARRIVE) * scale[ANYWHERE]
-        by_edge = ARRIVE_BY_EDGE
+        brought[ANYWHERE], brought[BY_EDGE] = self._from_outside(reach, spread)
         if isinstance(spread, PestSpread):
             brought[ANYWHERE] += reach.anywhere * sends * float(moves.mean())
+        return brought
+
+    def _from_outside(self, reach: Reach, spread: Spread) -> tuple[float, Floats]:
+        """Return what a night brings a plant from outside: anywhere, and by the edge ``(n,)``."""
+        scale, by_edge = self.counts.scale, ARRIVE_BY_EDGE
+        if isinstance(spread, PestSpread):
             # told of plants at the edge
             by_edge = max(by_edge, spread.edge_per_day / float(reach.at_edge.max()))
-        brought[BY_EDGE] = by_edge * scale[BY_EDGE] * reach.at_edge
-        return brought
+        anywhere = max(spread.arrivals_per_day, ARRIVE) * float(scale[ANYWHERE])
+        return anywhere, by_edge * scale[BY_EDGE] * reach.at_edge
 
     def _shares_after(self, beside: Floats, gain: Floats, brought: Floats) -> NDArray[np.float32]:
         """Return the shares of the origins after a night that brought so much."""

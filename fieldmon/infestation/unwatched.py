@@ -16,6 +16,14 @@ import numpy as np
 #: our choice)
 LEVEL_DOUBT, OF_A_PEST = 0.3, 0.25
 RATE_DOUBT = 0.5
+# what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
+# found are not told from others. So it may well be that nothing arrives, or many times as much
+_ARRIVALS_KNOWN, _NOT_TOLD = 0.35, 3.0
+
+
+def arrivals_known(found: float) -> float:
+    """Return by how many finds it is known what arrives, of so many that came from outside."""
+    return _ARRIVALS_KNOWN + max(found - _NOT_TOLD, 0.0)
 
 
 class Unwatched(NamedTuple):
@@ -29,6 +37,8 @@ class Unwatched(NamedTuple):
         The logarithm of how many times as many infested plants are expected as on that evening.
     left
         The variance that is left of days without inspections before it.
+    arrived
+        The share of them that arrived from outside since, and of their offspring.
     looked
         Whether somebody inspected today.
     """
@@ -36,45 +46,50 @@ class Unwatched(NamedTuple):
     days: int = 0
     grown: float = 0.0
     left: float = 0.0
+    arrived: float = 0.0
     looked: bool = False
 
-    def variance(self, *, named: bool) -> float:
-        """Return by how much the logarithm of the number varies; `named` tells of a named pest.
+    def variance(self, *, named: bool, arrivals_found: float = 0.0) -> float:
+        """Return by how much the number varies, as a share of it, squared.
+
+        `named` tells of a named pest, and `arrivals_found` of finds that came from outside.
 
         Examples
         --------
-        >>> morning = Unwatched(looked=True).overnight(0.2)
+        >>> morning = Unwatched(looked=True).overnight(10.0, 12.0)
         >>> morning.variance(named=False)
         0.0
-        >>> round(morning.overnight(0.2).variance(named=False), 2)
+        >>> round(morning.overnight(12.0, 15.0).variance(named=False), 2)
         0.13
         """
         if self.days == 0:
             return self.left
         level = OF_A_PEST if named else LEVEL_DOUBT
-        return self.left + level**2 + (RATE_DOUBT * self.grown) ** 2
+        by_arrivals = self.arrived**2 / arrivals_known(arrivals_found)
+        return self.left + level**2 + (RATE_DOUBT * self.grown) ** 2 + by_arrivals
 
-    def inspected(self, found: float, *, named: bool) -> Unwatched:
+    def inspected(self, found: float, variance: float) -> Unwatched:
         """Return the same after inspections that were expected to find so many.
 
         Each find that was to be expected tells as much of the number as in a Poisson law.
         """
-        variance = self.variance(named=named)
         return Unwatched(left=variance / (1.0 + variance * found), looked=True)
 
-    def overnight(self, grown: float) -> Unwatched:
-        """Return the same after a night by whose logarithm the expected number grows."""
+    def overnight(self, before: float, after: float, new: float = 0.0) -> Unwatched:
+        """Return the same after a night in which so many become so many, some from outside."""
+        grown, share = float(np.log(after / before)), min(new / after, 1.0)
         if self.looked:
-            return Unwatched(grown=grown, left=self.left)
-        return Unwatched(self.days + 1, self.grown + grown, self.left)
+            return Unwatched(0, grown, self.left, share)
+        arrived = share + self.arrived * (1.0 - share)
+        return Unwatched(self.days + 1, self.grown + grown, self.left, arrived)
 
     @property
     def array(self) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-        """What to keep of it on a morning, ``(3,)``."""
-        return np.array(self[:3], np.float64)
+        """What to keep of it on a morning, ``(4,)``."""
+        return np.array(self[:4], np.float64)
 
     @classmethod
     def of_array(cls, kept: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Unwatched:
         """Return what such an array has kept."""
-        days, grown, left = map(float, kept)
-        return cls(int(days), grown, left)
+        days, grown, left, arrived = map(float, kept)
+        return cls(int(days), grown, left, arrived)

@@ -63,7 +63,15 @@ def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
     more = [one.doubt**2 - one.watched.doubt**2 for one in mornings]
     grown = [np.log(one.chance.sum() / evening.chance.sum()) for one in mornings]
     assert more[0] == 0.0
-    assert more[1:] == pytest.approx([LEVEL_DOUBT**2 + (RATE_DOUBT * g) ** 2 for g in grown[1:]])
+    shares = [one.unwatched.arrived for one in mornings]
+    assert more[1:] == pytest.approx(
+        [
+            LEVEL_DOUBT**2 + (RATE_DOUBT * g) ** 2 + share**2 / 0.35
+            for g, share in zip(grown[1:], shares[1:], strict=True)
+        ]
+    )
+    assert np.all(np.diff(shares) > 0.0)
+    assert shares[-1] < 0.2
     rates = [one.doubt_of_rates**2 - one.watched.doubt_of_rates**2 for one in mornings]
     assert rates == pytest.approx(more)
 
@@ -78,9 +86,9 @@ def test_of_a_named_pest_a_little_less():
 def test_inspections_take_the_doubt_as_far_as_finds_were_to_be_expected(found, left):
     idle = Unwatched(days=1, grown=0.4)
     assert idle.variance(named=False) == pytest.approx(0.13)
-    after = idle.inspected(found, named=False)
+    after = idle.inspected(found, idle.variance(named=False))
     assert after.variance(named=False) == pytest.approx(0.13 * left, abs=1e-6)
-    assert after.overnight(0.3).variance(named=False) == after.left
+    assert after.overnight(2.0, 3.0).variance(named=False) == after.left
 
 
 def test_a_look_at_one_plant_hardly_narrows_the_interval_and_a_day_does(evening):
@@ -118,3 +126,16 @@ def test_it_is_kept_with_a_morning(evening):
     morning = nights(evening, 3)
     again = replace(morning, unwatched=Unwatched.of_array(morning.unwatched.array))
     assert again.doubt == morning.doubt > morning.watched.doubt
+
+
+def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
+    clean = TracedPairs.of(GRID, np.full(400, 1e-5))
+    clean = clean.learn(
+        np.arange(400, dtype=np.int32), np.zeros(400, np.bool_), Learning(0.8, treated=True)
+    )
+    morning = nights(clean, 25)
+    now = told(morning)
+    assert morning.unwatched.arrived > 0.9
+    assert now.expected > 3.0
+    assert now.low == 0 < 4 * now.expected < now.high
+    assert now.chance_clean > 0.05

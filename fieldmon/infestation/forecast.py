@@ -12,7 +12,13 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import counted
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT, arrivals_known
+from fieldmon.infestation.unwatched import (
+    LEVEL_DOUBT,
+    OF_A_PEST,
+    RATE_DOUBT,
+    Unwatched,
+    arrivals_known,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -133,9 +139,9 @@ def forecast(
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
     named = evening.pest is not None
     # days without inspections until now are drawn as those to come
-    grown, tonight, watched = 0.0, now, evening
+    since, tonight, watched = Unwatched(), now, evening
     if isinstance(evening, TracedPairs) and evening.unwatched.days:
-        grown, tonight, watched = evening.unwatched.grown, None, evening.watched
+        since, tonight, watched = evening.unwatched, None, evening.watched
     if tonight is None:
         tonight = estimate_plot(
             grid, evening.chance, evening.pair_chance, doubt=watched.doubt, named=named
@@ -145,8 +151,7 @@ def forecast(
         inside[0] = min(inside[0] * (now.expected / expected[0]), now.expected)
         expected[0] = now.expected
     doubts = _deviation(tonight), OF_A_PEST if named else LEVEL_DOUBT
-    so_far = grown, len(evening.chance)
-    low, high = _interval(inside, expected - inside, doubts, found, so_far)
+    low, high = _interval((inside, expected - inside), doubts, found, (since, len(evening.chance)))
     if now is not None:
         # it is never surer than what is known this evening
         grows = expected / max(float(expected[0]), _LEAST)
@@ -196,11 +201,10 @@ def _deviation(made: PlotEstimate) -> float:
 
 
 def _interval(
-    inside: Floats,
-    arrived: Floats,
+    expected: tuple[Floats, Floats],
     doubts: tuple[float, float],
     found: float,
-    so_far: tuple[float, int],
+    of: tuple[Unwatched, int],
 ) -> Floats:
     """Return the interval of 90 % on each morning, ``(2, d)``, from whole numbers that are drawn.
 
@@ -209,27 +213,28 @@ def _interval(
 
     Parameters
     ----------
-    inside, arrived
-        ``(d,)`` expected of what is on the plot this evening, and of what came from outside.
+    expected
+        ``(d,)`` each, of what is on the plot this evening, and of what came from outside.
     doubts
         How far tonight's number may be off, as a share: as the chance map says, and beyond that.
     found
         How many finds tell what arrives.
-    so_far
-        By how much it has grown since somebody inspected last, as a logarithm, and how many plants
-        there are.
+    of
+        What came about since somebody inspected last, and how many plants there are.
     """
+    (inside, arrived), (since, most) = expected, of
     draws = RandomStreams(0).of("forecast")
     known = arrivals_known(found)
     doubt, beyond = doubts
     level = draws.gamma(beyond**-2.0, beyond**2.0, _DRAWS)
     faster = np.exp(draws.normal(0.0, RATE_DOUBT, _DRAWS))
     arrives = draws.gamma(known, 1.0 / known, _DRAWS)
-    grown, most = so_far
-    level = level * np.exp(np.minimum(grown * (faster - 1.0), _MOST_GROWN))
-    # tonight the map knows how doubtful it is, wherever that came from
-    tonight = level * _tonight(inside[0] + arrived[0], 0.0, doubt, draws)
-    ends = [np.quantile(draws.poisson(np.minimum(tonight, most)), (0.05, 0.95))]
+    level = level * np.exp(np.minimum(since.grown * (faster - 1.0), _MOST_GROWN))
+    # of what was there when somebody inspected last the map knows how doubtful it is
+    new = since.arrived * (inside[0] + arrived[0])
+    before = _tonight(inside[0] + arrived[0] - new, new, doubt, draws)
+    tonight = draws.poisson(np.minimum(level * (before + arrives * new), most))
+    ends = [np.quantile(tonight, (0.05, 0.95))]
     tonight = level * _tonight(inside[0], arrived[0], doubt, draws)
     here = draws.poisson(np.minimum(tonight, most))
     came = draws.poisson(np.minimum(level * arrives * arrived[0], most))

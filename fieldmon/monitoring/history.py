@@ -51,6 +51,8 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 # from this share of infested plants on, a number and its odds are doubted differently
 _MANY = 0.1
+# and from this share on that arrived since somebody inspected last
+_MOSTLY_NEW = 0.2
 #: who begins later than this after the day's start, or sooner before it, has hours of their own
 LATE_S = 300.0
 
@@ -383,10 +385,12 @@ class History:
         made = estimate_plot(
             self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=left.pest is not None
         )
-        few = made.expected < _MANY * len(self.grid)
-        if few or not isinstance(left, TracedPairs) or left.unwatched.days == 0:
+        if not isinstance(left, TracedPairs) or left.unwatched.days == 0:
             return made
-        # odds know little doubt where most are infested: a forecast since the last inspections does
+        if made.expected < _MANY * len(self.grid) and left.unwatched.arrived < _MOSTLY_NEW:
+            return made
+        # where most are infested, or nothing may have arrived, a forecast from when somebody
+        # inspected last knows better what is in doubt
         drawn = forecast(left, self.grid, ())
         low, high = int(drawn.low[0]), int(drawn.high[0])
         return replace(made, low=min(made.low, low), high=max(made.high, high))

@@ -20,6 +20,7 @@ from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.plot_estimate import PlotEstimate, draw_fields
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.unwatched import Unwatched
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
 
@@ -179,29 +180,31 @@ def test_tonight_s_doubt_is_that_of_an_interval_of_nine_in_ten(low, high, expect
 
 
 # somebody inspected today, and there are so many plants
-NOW = 0.0, 10_000
+NOW = Unwatched(), 10_000
 
 
 def test_nights_ahead_are_drawn_from_what_is_here_and_what_arrives_and_widen_with_each_doubt():
     inside, arrived = np.array([40.0, 50.0, 60.0]), np.array([0.0, 2.0, 5.0])
-    plain = _interval(inside, arrived, (0.1, 0.05), 30.0, NOW)
+    plain = _interval((inside, arrived), (0.1, 0.05), 30.0, NOW)
     low, high = plain
     assert (low < inside + arrived).all()
     assert (inside + arrived < high).all()
     for doubts, found, night in (((0.6, 0.05), 30.0, 0), ((0.1, 0.6), 30.0, 0)):
-        wide = _interval(inside, arrived, doubts, found, NOW)
+        wide = _interval((inside, arrived), doubts, found, NOW)
         assert np.diff(wide[:, night], axis=0)[0] > 1.3 * (high - low)[night]
     # what arrives is known the better the more finds tell of it
     many = np.array([40.0, 40.0, 40.0]), np.array([0.0, 40.0, 80.0])
-    knows, guesses = (_interval(*many, (0.1, 0.05), found, NOW)[:, -1] for found in (300.0, 0.0))
+    knows, guesses = (_interval(many, (0.1, 0.05), found, NOW)[:, -1] for found in (300.0, 0.0))
     assert np.diff(guesses)[0] > 1.5 * np.diff(knows)[0]
     assert knows.mean() == pytest.approx(120.0, rel=0.1)
     # where all is known to be nothing, nothing comes
-    assert not _interval(np.zeros(3), np.zeros(3), (0.5, 0.5), 0.0, NOW).any()
+    assert not _interval((np.zeros(3), np.zeros(3)), (0.5, 0.5), 0.0, NOW).any()
 
 
 def test_after_months_without_inspections_there_are_no_more_than_all_plants():
-    low, high = _interval(np.full(3, 400.0), np.zeros(3), (0.1, 0.3), 0.0, (40.0, 400))
+    low, high = _interval(
+        (np.full(3, 400.0), np.zeros(3)), (0.1, 0.3), 0.0, (Unwatched(50, 40.0), 400)
+    )
     assert np.isfinite(high).all()
     assert high[0] < 500
     # it may have grown more slowly than was thought

@@ -172,7 +172,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         stage = f" ({now.development.stage})" if now.development.stage else ""
         yield f"  its development        {now.development.sentence()}{stage}"
         if guessed := int(now.development.guessed[: now.development.elapsed].sum()):
-            yield f"                         {guessed} of its days are filled in: no weather known"
+            are = "is" if guessed == 1 else "are"
+            yield f"                         {guessed} of its days {are} filled in: no weather known"
     spots = now.hot_spots
     yield f"  hot spots              {len(spots):6d}" + "".join(
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"

@@ -71,7 +71,7 @@ def asked(who: str, own: Callable[..., Any], *given: object) -> Any:  # noqa: AN
         return own(*given)
     except FieldmonError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         called = error.__traceback__ and error.__traceback__.tb_next
         frame = called and called.tb_frame
         if frame and str(frame.f_globals.get("__name__")).startswith("fieldmon."):
@@ -80,7 +80,7 @@ def asked(who: str, own: Callable[..., Any], *given: object) -> Any:  # noqa: AN
         raise _must_run(who, error, file) from error
 
 
-def _must_run(who: str, error: Exception, file: Path | None) -> SettingError:
+def _must_run(who: str, error: BaseException, file: Path | None) -> SettingError:
     """Return what is said of code that ends in an error, and where in its `file`."""
     lines = [
         line
@@ -126,7 +126,7 @@ def _module(file: Path) -> Any:  # noqa: ANN401 - any module
     sys.modules[name] = module  # dataclasses look for their own module there
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise _must_run(str(file), error, file) from error
     return module

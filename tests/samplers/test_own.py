@@ -63,6 +63,7 @@ def on_each_way(plot, sampler):
     [
         ("scene.chances", "AttributeError: 'Scene' object has no attribute 'chances'"),
         ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("raise SystemExit(3)", "SystemExit: 3"),
         *(
             (f"{array}[:] = 0", "ValueError: assignment destination is read-only")
             for array in (

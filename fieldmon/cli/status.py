@@ -173,7 +173,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  its development        {now.development.sentence()}{stage}"
         if guessed := int(now.development.guessed[: now.development.elapsed].sum()):
             are = "is" if guessed == 1 else "are"
-            yield f"                         {guessed} of its days {are} filled in: no weather known"
+            yield f"  {'':22} {guessed} of its days {are} filled in: no weather known"
     spots = now.hot_spots
     yield f"  hot spots              {len(spots):6d}" + "".join(
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"

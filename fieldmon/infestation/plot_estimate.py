@@ -100,7 +100,7 @@ def estimate_plot(
         pair_chance = pair_chances(chance, grid)
     table = _table(chance, pair_chance, grid.adjacent)
     drawn = _drawn(table, _KEY, len(chance))
-    clean = float(np.log1p(-table[-1]).sum())  # the same chain draws no infested plant
+    clean = _clean(table, doubt, named=named)
     expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     counts = (drawn * (expected / max(float(drawn.mean()), 1e-9))).clip(0.0, len(chance))
@@ -110,14 +110,23 @@ def estimate_plot(
         # but where all are infested, odds have no bound, and the least factor may be 0
         share = np.minimum(counts / len(chance), 1.0 - 1e-12)
         counts = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), len(chance))
-        clean = float(np.exp(clean * factors).mean())
-    else:
-        clean = float(np.exp(clean))
     low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
     if doubt > 0.0:
         # to the nearest: outwards, an interval of a few plants would hold far more than is asked
         return PlotEstimate(expected, round(float(low)), round(float(high)), clean)
     return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
+
+
+def chance_clean(
+    grid: PlantGrid, chance: Floats, pair_chance: Floats, doubt: float = 0.0, *, named: bool = False
+) -> float:
+    """Return the chance that no plant is infested; all is as in `estimate_plot`."""
+    return _clean(_table(chance, pair_chance, grid.adjacent), doubt, named=named)
+
+
+def _clean(table: _Table, doubt: float, *, named: bool) -> float:
+    none = float(np.log1p(-table[-1]).sum())  # the chain of plants draws no infested one
+    return float(np.exp(none * (doubted_level(doubt, named=named) if doubt > 0.0 else 1.0)).mean())
 
 
 def doubted(doubt: float) -> Floats:

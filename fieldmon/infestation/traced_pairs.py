@@ -257,6 +257,12 @@ class TracedPairs:
         return replace(self, unwatched=Unwatched(left=self.unwatched.left))
 
     @property
+    def doubt_of_none(self) -> float:
+        """How far what tells whether any plant is infested may be off: not how fast it grows."""
+        arrived = self.unwatched.of_arrivals(self.arrivals_found)
+        return float(np.hypot(self.watched.doubt, np.sqrt(arrived)))
+
+    @property
     def _since_inspected(self) -> float:
         """How far the number may be off as nobody inspected for a while."""
         return float(np.sqrt(self._variance_since_inspected))

@@ -65,8 +65,12 @@ class Unwatched(NamedTuple):
         if self.days == 0:
             return self.left
         level = OF_A_PEST if named else LEVEL_DOUBT
-        by_arrivals = self.arrived**2 / arrivals_known(arrivals_found)
-        return self.left + level**2 + (RATE_DOUBT * self.grown) ** 2 + by_arrivals
+        grows = level**2 + (RATE_DOUBT * self.grown) ** 2
+        return self.left + grows + self.of_arrivals(arrivals_found)
+
+    def of_arrivals(self, found: float) -> float:
+        """Return the part of `variance` that what arrived has."""
+        return self.arrived**2 / arrivals_known(found) if self.days else 0.0
 
     def inspected(self, found: float, variance: float) -> Unwatched:
         """Return the same after inspections that were expected to find so many.

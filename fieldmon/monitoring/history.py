@@ -24,7 +24,7 @@ from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.plot_estimate import chance_clean, estimate_plot
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.members import person
@@ -382,11 +382,17 @@ class History:
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
         left = self._still_out(morning, day)
+        named = left.pest is not None
         made = estimate_plot(
-            self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=left.pest is not None
+            self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=named
         )
         if not isinstance(left, TracedPairs) or left.unwatched.days == 0:
             return made
+        # however slowly it grew, the plot does not become clean by itself
+        clean = chance_clean(
+            self.grid, left.chance, left.pair_chance, left.doubt_of_none, named=named
+        )
+        made = replace(made, chance_clean=clean)
         if made.expected < _MANY * len(self.grid) and left.unwatched.arrived < _MOSTLY_NEW:
             return made
         # where most are infested, or nothing may have arrived, a forecast from when somebody

@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.forecast import forecast
-from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.plot_estimate import chance_clean, estimate_plot
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT, Unwatched
@@ -139,3 +139,13 @@ def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
     assert now.expected > 3.0
     assert now.low == 0 < 4 * now.expected < now.high
     assert now.chance_clean > 0.05
+
+
+def test_while_nobody_inspects_the_plot_becomes_no_cleaner(evening):
+    few = inspected(TracedPairs.of(GRID, np.full(400, 0.002)), 0)
+    for belief in (evening, few):
+        clean = [
+            chance_clean(GRID, one.chance, one.pair_chance, one.doubt_of_none)
+            for one in (nights(belief, number) for number in range(1, 9))
+        ]
+        assert np.all(np.diff(clean) <= 1e-3)

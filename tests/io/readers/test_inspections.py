@@ -113,7 +113,6 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
         "7,x,,Noa,2026-11-18T08:30",
         "7,x,3,Amir,2026-11-18T08:30",
         "7,x,3,Noa,2026-11-18T08:41",
-        "7,x,3,Noa,2026-11-18",
         "7,x,3,Noa,",
     ],
 )
@@ -125,6 +124,7 @@ def test_any_other_inspection_is_another_one(other):
 def test_notes_and_blanks_make_no_other_inspection():
     head = "plant,found,count,who,time,notes\n"
     rows = "7,x,3,Noa,2026-11-18T08:30,leaf\n7,x,3.0, Noa ,2026-11-18T08:30:00,thorns\n"
+    rows += "7,x,3,Noa,2026-11-18,\n"
     assert read(head + rows).value.notes.tolist() == ["leaf"]
 
 

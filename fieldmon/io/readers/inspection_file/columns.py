@@ -63,6 +63,11 @@ def own_column(role: str, layer: Layer, taken: Iterable[str | None] = ()) -> str
     return next((known[name] for name in _PLAIN[role] if name in known), None)
 
 
+def is_own(role: str, name: str) -> bool:
+    """Return whether a column plays by its name one of the roles that only inspections have."""
+    return plain(name) in _PLAIN[role]
+
+
 def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     """Return the columns that matter; raise `ChoiceNeeded` where nothing says what was found."""
     names = list(layer.columns)

@@ -44,6 +44,7 @@ from fieldmon.io.parse.values import (
 )
 from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
 from fieldmon.io.readers.inspection_file.columns import own_column
+from fieldmon.io.readers.species import mixed_species
 from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
@@ -118,7 +119,9 @@ def _records_and_plots(
     visits = _Visits(np.flatnonzero(known), place, at_s)
     first, counted_once = _each_visit_once(observations, table, visits)
     once = observations.take(first)
-    more = (*_species(table), *counted_once, *_same_visit(once, place[first]))
+    species = table.named("species")
+    mixed = [] if species is None else mixed_species(species, table.cells(species))
+    more = (*mixed, *counted_once, *_same_visit(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
 
@@ -497,22 +500,6 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
 def _present(cell: str, words: ResultWords) -> int:
     said = words[cell]
     return presence(cell) if said is None else said
-
-
-def _species(table: _Table) -> list[ImportMessage]:
-    """Return what to say where a file mixes species."""
-    name = table.named("species")
-    if name is None:
-        return []
-    kinds = sorted(cell for cell in set(table.cells(name)) if not is_missing(cell))
-    if len(kinds) < 2:
-        return []
-    shown = first_few(kinds, 5)
-    only = tuple(f"{name}={kind}" for kind in kinds)
-    remedy = Remedy("where", only[0], worded("Only {species}", species=kinds[0]), only[1:])
-    return [
-        doubtful(worded("{n} species are mixed: {shown}.", n=len(kinds), shown=shown), name, remedy)
-    ]
 
 
 class _Visits(NamedTuple):

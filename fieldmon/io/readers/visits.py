@@ -30,8 +30,8 @@ _TELLS_PLANTS_M = 1.0
 _EXACT_M = 0.01
 
 
-def first_of_visits(alike: Iterable[Hashable], at_s: Floats) -> NDArray[np.intp]:
-    """Return the first record of each visit, in the file's order.
+def visits_of(alike: Iterable[Hashable], at_s: Floats) -> NDArray[np.intp]:
+    """Return the first record of the visit of each, ``(k,)``.
 
     Parameters
     ----------
@@ -40,14 +40,19 @@ def first_of_visits(alike: Iterable[Hashable], at_s: Floats) -> NDArray[np.intp]
     at_s
         ``(k,)`` seconds from anywhere; NaN where no time is known: of any visit that there is.
     """
-    keys, first = list(alike), list[int]()
-    began: dict[Hashable, float] = {}
+    keys, first = list(alike), np.arange(len(at_s))
+    began: dict[Hashable, int] = {}
     for k in np.argsort(at_s, kind="stable").tolist():  # those of no time come last
-        at, key = float(at_s[k]), keys[k]
-        if key not in began or at - began[key] > VISIT_S:
-            began[key] = at
-            first.append(k)
-    return np.sort(np.array(first, np.intp))
+        key = keys[k]
+        if key not in began or at_s[k] - at_s[began[key]] > VISIT_S:
+            began[key] = k
+        first[k] = began[key]
+    return first
+
+
+def first_of_visits(alike: Iterable[Hashable], at_s: Floats) -> NDArray[np.intp]:
+    """Return the first record of each visit, in the file's order; see `visits_of`."""
+    return np.unique(visits_of(alike, at_s))
 
 
 def telling(

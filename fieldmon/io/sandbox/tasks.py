@@ -69,7 +69,7 @@ def records(
     source: Source,
     options: RecordOptions,
     places: NamedPlaces | None,
-    apart_m: float | None,
+    apart_m: float | None = None,
 ) -> Imported[Observations]:
     """Return the records of a source."""
     layer = open_layer(source, options, Workroom(Path(folder)))

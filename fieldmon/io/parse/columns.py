@@ -130,7 +130,7 @@ def is_id(name: str, cells: Iterable[str]) -> bool:
 
 # what a file has of its records: detection_id, observation no, recordnumber
 _RECORD_ID = re.compile(
-    r"^(detection|detect|det|record|rec|observation|obs|occurrence|entry|submission|response|row"
+    r"^(detection|detect|det|record|rec|observation|obs|occurrence|entry|submission|response"
     r"|gbif|frame|message|msg)(id|no|nr|num|number|index|uuid|key)$|^(frame|globalid|rownames)$"
 )
 _NO_NAME = re.compile(r"^(unnamed\d*|index|seq|sequence|)$")

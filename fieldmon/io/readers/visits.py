@@ -77,18 +77,20 @@ def telling(
         if is_record_id(name, (text(v) for v in values)):
             continue
         cells = [text(v) for v in values[records]]
+        distinct = list(set(cells))
+        says = distinct
         if is_time(name) or is_own("time", name):
-            cells = _without_times(as_clocks(name, cells))
-        told[name] = [" ".join(cell.casefold().split()) for cell in cells]
+            says = _without_times(as_clocks(name, distinct))
+        known = {c: " ".join(s.casefold().split()) for c, s in zip(distinct, says, strict=True)}
+        told[name] = [known[cell] for cell in cells]
     return told
 
 
 def _without_times(cells: list[str]) -> list[str]:
     """Return cells, empty where they hold a time or a day."""
-    distinct = list(set(cells))
-    days = dates(np.array(distinct, dtype=object)).day
-    read = dict(zip(distinct, ~np.isnat(days), strict=True))
-    return ["" if read[cell] or clock_time(cell) else cell for cell in cells]
+    days = dates(np.array(cells, dtype=object)).day
+    none = np.isnat(days).tolist()
+    return [c if no and not clock_time(c) else "" for c, no in zip(cells, none, strict=True)]
 
 
 def same_places(xy_m: Floats, accuracy_m: Floats) -> NDArray[np.intp]:

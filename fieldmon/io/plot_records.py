@@ -59,14 +59,15 @@ def records_on(
     measured
         The plot's measured plants, whose labels records may name.
     """
+    apart_m = plot.grid.plant_spacing_m
     try:
-        read = read_records(source.file, source.options, near=plot.field)
+        read = read_records(source.file, source.options, plot.field, apart_m=apart_m)
     except ChoiceNeeded as question:
         if question.option not in {"plants", "plots"}:
             raise
         known = (plot.field,) if fields is None else fields()
         places = NamedPlaces.of(known, plot.grid, measured, plot.field.name)
-        read = read_records(source.file, source.options, plot.field, places)
+        read = read_records(source.file, source.options, plot.field, places, apart_m)
     except ObservationError:
         if fields is not None and (elsewhere := _elsewhere(plot.field, source, fields)):
             raise elsewhere from None
@@ -89,8 +90,10 @@ def records_of(
     fields: tuple[Field, ...], source: RecordSource, lay: Callable[[Field], Laid]
 ) -> Imported[EstateRecords]:
     """Return the records of several plots; `lay` makes the plants that records name."""
+    stated = (each.plant_spacing_m for each in fields if each.plant_spacing_m is not None)
+    apart_m = min(stated, default=None)
     try:
-        read = read_records(source.file, source.options)
+        read = read_records(source.file, source.options, apart_m=apart_m)
     except ChoiceNeeded as question:
         if question.option == "plots":
             read = read_records(source.file, source.options, places=NamedPlaces(fields))

@@ -77,6 +77,7 @@ def read_records(
     options: RecordOptions | None = None,
     near: Field | None = None,
     places: NamedPlaces | None = None,
+    apart_m: float | None = None,
 ) -> Imported[Observations]:
     """Return the pest records of a source.
 
@@ -90,16 +91,19 @@ def read_records(
         Only records on this plot or close by; the others are counted in the messages.
     places
         Plots or plants that records may name instead of giving a position.
+    apart_m
+        From plant to plant: positions that are off by half of it tell no plants apart. None: as
+        usual.
     """
     options = options or RecordOptions()
     records: Imported[Observations]
     try:
-        records = _read("records", source, options, places)
+        records = _read("records", source, options, places, apart_m)
     except ChoiceNeeded as question:
         if question.option != "crs" or near is None or options.near is not None:
             raise
         # the plot tells which coordinate systems are likely: ask again with those
-        records = _read("records", source, replace(options, near=_middle(near)), places)
+        records = _read("records", source, replace(options, near=_middle(near)), places, apart_m)
     if near is None:
         return records
     try:
@@ -107,7 +111,7 @@ def read_records(
     except ObservationError:
         if options.near is None:
             # where they lie on another part of the earth, their coordinate system is asked for
-            _read("records", source, replace(options, near=_middle(near)), places)
+            _read("records", source, replace(options, near=_middle(near)), places, apart_m)
         raise
     return records.having(kept, more)
 

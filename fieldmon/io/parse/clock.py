@@ -12,12 +12,15 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.io.parse.columns import plain
 
 _CLOCK = re.compile(
     r"(?:^|[T\s,])(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,]\d+)?)?\s*([AaPp]\.?[Mm]\.?)?\s*"
     r"(Z|UTC|GMT|[-+]\d{2}(?::?\d{2})?)?$"
 )
 _SERIAL = re.compile(r"^\d{5}(\.\d+)?$")
+_HOURS = frozenset({"hour", "hora", "heure", "ora", "שעה"})
+_HOUR = re.compile(r"[01]?\d|2[0-3]")
 _OFFSET = re.compile(r"^([-+])(\d{1,2}):?(\d{2})?$")
 _FARTHEST_ZONE = timedelta(hours=14)
 
@@ -70,6 +73,13 @@ def clock_time(cell: str) -> ClockTime | None:
     except SettingError:
         return None
     return ClockTime(3600 * hour + 60 * minute + second, ahead)
+
+
+def as_clocks(name: str, cells: list[str]) -> list[str]:
+    """Return the cells of a column of times; whole hours of one called so become times of day."""
+    if plain(name) not in _HOURS:
+        return cells
+    return [f"{cell}:00" if _HOUR.fullmatch(cell) else cell for cell in cells]
 
 
 def local_time(day: np.datetime64, clock: ClockTime, zone: tzinfo | None) -> np.datetime64:

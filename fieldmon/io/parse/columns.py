@@ -126,3 +126,44 @@ def is_id(name: str, cells: Iterable[str]) -> bool:
         return True
     whole = [int(cell) for cell in cells if re.fullmatch(r"\d{1,15}", cell)]
     return len(whole) > _FEW and whole == list(range(whole[0], whole[0] + len(whole)))
+
+
+# what a file has of its records: detection_id, observation no, recordnumber
+_RECORD_ID = re.compile(
+    r"^(detection|detect|det|record|rec|observation|obs|occurrence|entry|submission|response"
+    r"|gbif|frame|message|msg)(id|no|nr|num|number|index|uuid|key)$|^(frame|globalid|rownames)$"
+)
+_NO_NAME = re.compile(r"^(unnamed\d*|index|seq|sequence|)$")
+
+
+def is_record_id(name: str, cells: Iterable[str]) -> bool:
+    """Return whether a column numbers records, and no traps, plants or leaves, by its name.
+
+    A plain ``id`` or ``no`` that repeats is of things, not of records.
+    """
+    own = plain(name)
+    if _RECORD_ID.match(own):
+        return True
+    if own not in _IDS and not _NO_NAME.match(own):
+        return False
+    known = [cell for cell in cells if cell]
+    return len(set(known)) == len(known)
+
+
+_TIMES = frozenset(_PLAIN["date"])
+
+
+def is_time(name: str) -> bool:
+    """Return whether a column holds by its name a time or a day."""
+    return plain(name) in _TIMES or plain(name).endswith(("time", "date", "stamp"))
+
+
+_HEIGHTS = frozenset({"z", "ele", "elevation", "alt", "altitude", "hdop", "vdop", "pdop"})
+
+
+def is_position(name: str) -> bool:
+    """Return whether a column holds by its name a part of a position, or its accuracy."""
+    own = plain(name)
+    return own in _HEIGHTS or any(
+        own in _PLAIN[role] for role in ("lon", "lat", "position", "x", "y", "crs", "accuracy")
+    )

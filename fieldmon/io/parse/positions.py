@@ -70,6 +70,8 @@ class LocatedFeatures:
         ``(n,)`` name of the plot that each is on by its own words; None where they name none.
     unread
         What was left out because nobody can read where it is.
+    step_m
+        To which positions are rounded; 0 where they are not.
     """
 
     layer: Layer
@@ -78,6 +80,7 @@ class LocatedFeatures:
     messages: tuple[ImportMessage, ...]
     plot: NDArray[np.str_] | None = None
     unread: Unread | None = None
+    step_m: float = 0.0
 
 
 def located(
@@ -129,7 +132,9 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
     placed = place(xy[~wrong], layer.crs, options)
     accuracy, coarse = _rounding(placed.step_m, len(kept))
     found = (*messages, *placed.messages, *coarse)
-    return LocatedFeatures(kept, placed.lonlat, accuracy, found, unread=unread)
+    return LocatedFeatures(
+        kept, placed.lonlat, accuracy, found, unread=unread, step_m=placed.step_m
+    )
 
 
 def _way(layer: Layer, options: ReadOptions) -> tuple[str, tuple[str, ...]] | None:
@@ -195,6 +200,7 @@ def _by_coordinates(
         accuracy,
         (*found, *placed.messages, *coarse),
         unread=unread,
+        step_m=placed.step_m,
     )
 
 

@@ -145,11 +145,14 @@ def are_fractions(read: Iterable[float]) -> bool:
 
 
 def about_fractions(name: str, read: Iterable[float], *, is_usual: bool) -> list[ImportMessage]:
-    """Return a doubt about counts that could be confidences, unless their column is a usual one."""
+    """Return a doubt about counts or results that could be confidences.
+
+    Counts a leaf are fractions too: none of a column that `is_usual` for them.
+    """
     if (is_usual and not is_confidence(name)) or not are_fractions(read):
         return []
     said = worded(
-        "Its numbers are between 0 and 1, as confidences are. As counts, all above 0 are finds."
+        "Its numbers are between 0 and 1, as confidences are. All above 0 are taken as finds."
     )
     return [doubtful(said, name)]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import joined, worded
+from fieldmon.compute.wording import joined, share_figure, worded
 from fieldmon.infestation.raster_risk import RELATIVE, meaning_of, risk_chance
 from fieldmon.io.import_report import doubtful, seen
 from fieldmon.io.options import source_name
@@ -57,9 +57,15 @@ def read_risk(
         much = worded(
             "By it alone {share} of all plants are infested: check that its numbers are chances, "
             "and no index, order or score.",
-            share=f"{mean:.0%}",
+            share=share_figure(float(mean)),
         )
         told.append(doubtful(much))
+    if settings.meaning == "percent" and 0.0 < 100.0 * high < 1.0:
+        small = worded(
+            "All its percents are below 1: check that they are no chances from 0 to 1 (meaning "
+            "chance), and no index."
+        )
+        told.append(doubtful(small))
     return read.having(chance, told)
 
 

@@ -40,3 +40,19 @@ def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[Imp
         latest=np.nanmax(day),
     )
     return [doubtful(said, where)]
+
+
+def broken_times(cells: list[str]) -> list[ImportMessage]:
+    """Return a doubt about cells for times that hold none."""
+    if not cells:
+        return []
+    shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(cells))[:3])
+    return [
+        doubtful(
+            worded(
+                "{n_broken} {n_broken:time is|times are} none ({shown}); left open.",
+                n_broken=len(cells),
+                shown=shown,
+            )
+        )
+    ]

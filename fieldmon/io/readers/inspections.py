@@ -8,6 +8,7 @@ Decisions
   one asks for them.
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
+- Records of several leaves of a plant in one visit are one inspection, found if any leaf is.
 - Of the inspections of one visit (`visits`) that are the same but for their notes, one is taken. At
   clearly other times of a day each is a look of its own, as the belief has it. What a season
   holds already is told there (`fieldmon.monitoring.inspection_table`).
@@ -15,6 +16,7 @@ Decisions
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -44,7 +46,7 @@ from fieldmon.io.readers.inspection_places import (
     misplaced,
 )
 from fieldmon.io.readers.nearby import doubt_of_order
-from fieldmon.io.readers.visits import first_of_visits
+from fieldmon.io.readers.visits import first_of_visits, visits_of
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
@@ -118,6 +120,7 @@ def look_up(
     plant = np.where(snapped.plant >= 0, snapped.plant, plant)
     problems |= snapped.problems
     doubts = doubts | from_zero(rows, labelled.plant) | snapped.doubts | _own_doubts(rows)
+    problems |= _unknown_faces(rows, grid, plant)
     for i in np.flatnonzero(plant < 0).tolist():
         problems.setdefault(i, _nowhere(str(rows.unread[i]), below_one=rows.line[i] < 0))
     taken = plant >= 0
@@ -139,11 +142,13 @@ def look_up(
         *_about_accuracy(rows, options, open_yet & taken),
         *_too_coarse(rows, grid, options, open_yet),
     ]
-    inspections = _inspections(rows, plant, np.flatnonzero(taken))
-    said += _about_contradictions(rows, grid, plant, np.flatnonzero(taken))
-    once = _once_each(inspections)
-    if len(once) < len(inspections):
-        n_again = len(inspections) - len(once)
+    records = np.flatnonzero(taken)
+    n_rows, n_taken = len(rows), len(records)
+    rows, records, of_leaves = _whole_plants(rows, plant, records)
+    inspections = _inspections(rows, plant, records)
+    said += [*of_leaves, *_about_contradictions(rows, grid, plant, records)]
+    once = _once_each(rows, inspections, records)
+    if n_again := len(inspections) - len(once):
         said.append(
             seen(
                 worded(
@@ -152,20 +157,37 @@ def look_up(
                 )
             )
         )
-    if len(rows) > 1 and len(inspections) < len(rows):
-        said.append(_what_became(len(rows), inspections))
+    if n_rows > 1 and n_taken < n_rows:
+        said.append(_what_became(n_rows, plant[taken]))
     return once, tuple(said)
 
 
-def _what_became(n_records: int, inspections: Inspections) -> ImportMessage:
-    """Return how many records of a file were taken, and of how many plants."""
-    n_out = n_records - len(inspections)
+def _unknown_faces(
+    rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]
+) -> dict[int, str]:
+    """Return which records name a face of a plant ``(m,)`` in a word that nobody knows."""
+    if rows.face_word is None:
+        return {}
+    named = (rows.face_word != "") & (rows.plant < 0) & (rows.face == 0) & (plant >= 0)
+    named[named] = grid.twin[plant[named]] >= 0
+    return {
+        i: worded(
+            "its face is {word!r}, but faces are called 1 and 2, or a and b",
+            word=str(rows.face_word[i]),
+        )
+        for i in np.flatnonzero(named).tolist()
+    }
+
+
+def _what_became(n_records: int, plant: NDArray[np.int64]) -> ImportMessage:
+    """Return how many records of a file were taken, of the plants ``(k,)`` of these."""
+    n_out = n_records - len(plant)
     said = worded(
         "Of {total} {total:record|records} {taken} {taken:was|were} taken, of {plants} "
         "{plants:plant|plants}; {out} {out:was|were} left out.",
         total=n_records,
-        taken=len(inspections),
-        plants=len(np.unique(inspections.plant)),
+        taken=len(plant),
+        plants=len(np.unique(plant)),
         out=n_out,
     )
     return doubtful(said) if 2 * n_out > n_records else seen(said)
@@ -344,14 +366,65 @@ def _inspections(
     )
 
 
-def _once_each(inspections: Inspections) -> Inspections:
+def _at_s(rows: InspectionRows, records: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Return when records were made, seconds from anywhere; NaN where no time is known."""
+    when = rows.when[records]
+    return np.where(np.isnat(when), np.nan, when.astype(np.int64))
+
+
+def _whole_plants(
+    rows: InspectionRows, plant: NDArray[np.int64], records: NDArray[np.intp]
+) -> tuple[InspectionRows, NDArray[np.intp], list[ImportMessage]]:
+    """Return rows and records in which several leaves of a plant are one inspection.
+
+    It is found if any leaf is, with the pests of all leaves. Where a leaf is told of twice, the
+    visit stays as it is.
+    """
+    if rows.leaf is None or not (rows.leaf[records] != "").any():
+        return rows, records, []
+    leaves = records[rows.leaf[records] != ""]
+    columns = (plant[leaves], rows.day[leaves].astype(np.int64), rows.who[leaves])
+    rest = np.full(len(leaves), "") if rows.rest is None else rows.rest[leaves]
+    alike = zip(*(column.tolist() for column in (*columns, rest)), strict=True)
+    visit = visits_of(alike, _at_s(rows, leaves))
+    result, count = rows.result.copy(), rows.count.copy()
+    others, n_plants = list[int](), 0
+    for one in np.unique(visit).tolist():
+        of = leaves[visit == one]
+        if len(of) == 1 or len(set(rows.leaf[of].tolist())) < len(of):
+            continue
+        found = of[rows.result[of] == PRESENT]
+        first = int(leaves[one])
+        if len(found):
+            result[first], count[first] = PRESENT, rows.count[found].sum()
+        elif (rows.result[of] == ABSENT).any():
+            result[first], count[first] = ABSENT, 0.0
+        others += [k for k in of.tolist() if k != first]
+        n_plants += 1
+    if not n_plants:
+        return rows, records, []
+    said = worded(
+        "{n} records of single leaves became {plants} {plants:inspection|inspections} of whole "
+        "plants, found where any leaf is; counts were added.",
+        n=len(others) + n_plants,
+        plants=n_plants,
+    )
+    kept = records[~np.isin(records, others)]
+    return replace(rows, result=result, count=count), kept, [guessed(said)]
+
+
+def _once_each(
+    rows: InspectionRows, inspections: Inspections, records: NDArray[np.intp]
+) -> Inspections:
     """Return the first of each visit that are the same but for their notes."""
+    told = [words[records].tolist() for words in (rows.rest, rows.leaf) if words is not None]
     columns = zip(
         inspections.plant.tolist(),
         inspections.date.astype(np.int64).tolist(),  # a day that is no time is one number too
         inspections.result.tolist(),
         [f"{count:.9g}" for count in inspections.count.tolist()],
         [who.strip() for who in inspections.who],
+        *told,
         strict=True,
     )
     return inspections.take(first_of_visits(columns, inspections.second))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,8 +22,8 @@ from fieldmon.io.import_report import (
     seen,
 )
 from fieldmon.io.options import ROLES
-from fieldmon.io.parse.clock import clock_time, local_time, zone_of
-from fieldmon.io.parse.columns import find, is_confidence, is_id, recognised
+from fieldmon.io.parse.clock import as_clocks, clock_time, local_time, zone_of
+from fieldmon.io.parse.columns import find, is_confidence, is_id, is_position, recognised
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.result_words import (
     ResultWords,
@@ -41,11 +42,13 @@ from fieldmon.io.parse.values import (
     numbers,
     presence,
 )
-from fieldmon.io.readers.date_doubts import in_future, mixed_dates
+from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
 from fieldmon.io.readers.inspection_file.columns import own_column
-from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places
+from fieldmon.io.readers.species import mixed_species
+from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
@@ -58,15 +61,18 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.places import NamedPlaces
 
 _LOOKED_AT, _FEW_WORDS = 200, 12
-# a position that is this far off names no plant: many may be meant by it
-_NO_PLANT_M = 10.0
+# roles of columns that say where a record lies
+_LIES = frozenset({"lon", "lat", "position", "x", "y", "crs", "accuracy"})
 
 
 def records_of(
-    layer: Layer, options: RecordOptions, places: NamedPlaces | None = None
+    layer: Layer,
+    options: RecordOptions,
+    places: NamedPlaces | None = None,
+    apart_m: float | None = None,
 ) -> Imported[Observations]:
-    """Return the records of a layer, each with a position."""
-    return _records_and_plots(layer, options, places)[0]
+    """Return the records of a layer, each with a position; of plants so far apart, if known."""
+    return _records_and_plots(layer, options, places, apart_m)[0]
 
 
 def records_by_plot(
@@ -79,7 +85,10 @@ def records_by_plot(
 
 
 def _records_and_plots(
-    layer: Layer, options: RecordOptions, places: NamedPlaces | None
+    layer: Layer,
+    options: RecordOptions,
+    places: NamedPlaces | None,
+    apart_m: float | None = None,
 ) -> tuple[Imported[Observations], NDArray[np.str_] | None]:
     """Return the records of a layer, and the plot that each names, if they do."""
     if len(layer) == 0:
@@ -103,9 +112,16 @@ def _records_and_plots(
         leaves_sampled=table.numbers("leaves"),
     )
     messages = (*layer.messages, *repeated, *found.messages, *day_messages, *counts.messages)
-    first, visits = _each_visit_once(observations, at_s)
+    place = _places(observations)
+    half_m = (apart_m or Planting().plant_spacing_m) / 2
+    known = ~np.isnat(day) & np.isfinite(found.lonlat).all(axis=1)
+    known &= ~(observations.accuracy_m >= half_m) & (found.step_m < half_m)
+    visits = _Visits(np.flatnonzero(known), place, at_s)
+    first, counted_once = _each_visit_once(observations, table, visits)
     once = observations.take(first)
-    more = (*_species(table), *visits, *_same_visit(once))
+    species = table.named("species")
+    mixed = [] if species is None else mixed_species(species, table.cells(species))
+    more = (*mixed, *counted_once, *_same_visit(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
 
@@ -197,31 +213,39 @@ def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
             return _Days(unknown, np.full(len(table), np.nan), offer)
         read = dates(table.layer.column(name), table.options.date_order)
         where, quoted = name, repr(name)
-    at_s = _times(table, read.day, name)
+    at_s, unread = _times(table, read.day, name)
     if name is not None:
         day, zoned = _as_local(read.day, table.cells(name), lonlat)
         read = read._replace(day=day)
     of_dates = seen(worded("Dates were read from {where}.", where=quoted))
-    return _Days(read.day, at_s, [of_dates, *zoned, *_about_dates(read, where)])
+    about = (*_about_dates(read, where), *broken_times(unread))
+    return _Days(read.day, at_s, [of_dates, *zoned, *about])
 
 
-def _times(table: _Table, day: NDArray[np.datetime64], name: str | None) -> NDArray[np.float64]:
-    """Return when each record was made, seconds from anywhere; NaN where no clock says it.
+def _times(
+    table: _Table, day: NDArray[np.datetime64], name: str | None
+) -> tuple[NDArray[np.float64], list[str]]:
+    """Return when each record was made, seconds from anywhere, and what times are none.
 
-    `name` is the column of the date, which may hold the time too.
+    NaN where no clock says it. `name` is the column of the date, which may hold the time too.
     """
     other = own_column("time", table.layer, {name})
     at_s = np.full(len(table), np.nan)
     for column in (name, other):
         if column is None:
             continue
-        cells = table.cells(column)
+        cells = as_clocks(column, table.cells(column))
         clocks = {cell: clock_time(cell) for cell in set(cells)}
         for k in np.flatnonzero(np.isnan(at_s) & ~np.isnat(day)).tolist():
             if (clock := clocks[cells[k]]) is not None:
                 ahead_s = 0.0 if clock.offset is None else clock.offset.total_seconds()
                 at_s[k] = int(day[k].astype(np.int64)) * 86_400 + clock.seconds - ahead_s
-    return at_s
+    if other is None:
+        return at_s, []
+    open_yet = zip(table.cells(other), np.isnan(at_s).tolist(), strict=True)
+    said = [cell for cell, is_open in open_yet if is_open and not is_missing(cell)]
+    no_day = np.isnat(dates(np.array(said, dtype=object)).day)
+    return at_s, [cell for cell, is_none in zip(said, no_day.tolist(), strict=True) if is_none]
 
 
 def _as_local(
@@ -468,6 +492,7 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
         said = worded("These words say neither yes nor no: {shown}.", shown=_some(sorted(unread)))
         messages.append(doubtful(said, name, None if "," in one else remedy))
     messages += about_minus(cells, words)
+    messages += about_fractions(name, (counted(cell).number for cell in known), is_usual=False)
     present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
     return _Counts(counts.number, present, messages)
 
@@ -477,45 +502,51 @@ def _present(cell: str, words: ResultWords) -> int:
     return presence(cell) if said is None else said
 
 
-def _species(table: _Table) -> list[ImportMessage]:
-    """Return what to say where a file mixes species."""
-    name = table.named("species")
-    if name is None:
-        return []
-    kinds = sorted(cell for cell in set(table.cells(name)) if not is_missing(cell))
-    if len(kinds) < 2:
-        return []
-    shown = first_few(kinds, 5)
-    only = tuple(f"{name}={kind}" for kind in kinds)
-    remedy = Remedy("where", only[0], worded("Only {species}", species=kinds[0]), only[1:])
-    return [
-        doubtful(worded("{n} species are mixed: {shown}.", n=len(kinds), shown=shown), name, remedy)
-    ]
+class _Visits(NamedTuple):
+    """Which records can be of one visit with others, ``(k,)``; where and when each is, ``(n,)``."""
+
+    known: NDArray[np.intp]
+    place: NDArray[np.intp]
+    at_s: NDArray[np.float64]
+
+
+def _places(observations: Observations) -> NDArray[np.intp]:
+    """Return a number for the place of each record ``(n,)``; of those with none their own."""
+    place = np.arange(len(observations))
+    there = np.flatnonzero(np.isfinite(observations.lonlat).all(axis=1))
+    if len(there):
+        lonlat = observations.lonlat[there]
+        east = np.cos(np.radians(np.median(lonlat[:, 1])))
+        xy_m = (lonlat - lonlat[0]) * M_PER_DEGREE * [east, 1.0]
+        place[there] = there[same_places(xy_m, observations.accuracy_m[there])]
+    return place
 
 
 def _each_visit_once(
-    observations: Observations, at_s: NDArray[np.float64]
+    observations: Observations, table: _Table, visits: _Visits
 ) -> tuple[NDArray[np.intp], list[ImportMessage]]:
     """Return the first record of each visit, and what there is to say of the others.
 
     A robot tells of a plant each time that it sees it, and that is one look. Records without a day,
-    and of positions that tell no plants apart, stay as they are.
+    and of positions that tell no plants apart, stay as they are; so do those of which any other
+    column tells that they are of something else.
     """
-    accuracy_m, lonlat = observations.accuracy_m, observations.lonlat
-    known = ~np.isnat(observations.day) & ~(accuracy_m > _NO_PLANT_M)
-    known &= np.isfinite(lonlat).all(axis=1)
-    if np.count_nonzero(known) < 2:
+    some = observations.take(visits.known)
+    columns = (visits.place[visits.known], some.day.astype(np.int64), some.present, some.count)
+    read = [np.nan_to_num(column.astype(np.float64), nan=-1.0).tolist() for column in columns]
+    alike = list(zip(*read, some.species.tolist(), some.stage.tolist(), strict=True))
+    often = Counter(alike)
+    again = np.flatnonzero([often[one] > 1 for one in alike])
+    if not len(again):
         return np.arange(len(observations)), []
-    some, records = observations.take(known), np.flatnonzero(known)
-    east = np.cos(np.radians(np.median(some.lonlat[:, 1])))
-    xy_m = (some.lonlat - some.lonlat[0]) * M_PER_DEGREE * [east, 1.0]
-    place = same_places(xy_m, some.accuracy_m)
-    columns = (some.day.astype(np.int64), some.present, some.count, some.leaves_sampled)
-    told = [np.nan_to_num(column.astype(np.float64), nan=-1.0).tolist() for column in columns]
-    says = list(zip(place.tolist(), *told, some.species.tolist(), some.stage.tolist(), strict=True))
-    first = first_of_visits(says, at_s[known])
+    alike, records = [alike[k] for k in again.tolist()], visits.known[again]
+    at_s = visits.at_s[records]
+    lies = {name for name in table.layer.columns if is_position(name)}
+    rest = telling(table.layer, records, lies | {table.named(role) for role in _LIES})
+    says = list(zip(alike, *rest.values(), strict=True))
+    first = first_of_visits(says, at_s)
     messages: list[ImportMessage] = []
-    if n_again := len(some) - len(first):
+    if n_again := len(records) - len(first):
         said = worded(
             "{n} {n:record repeats|records repeat} what another says of the same place and day, "
             "within {minutes} minutes or with no time: one visit, which counts once.",
@@ -530,20 +561,35 @@ def _each_visit_once(
             n=n_more,
         )
         messages.append(doubtful(said))
-    kept = np.sort(np.concatenate([np.flatnonzero(~known), records[first]]))
-    return kept, messages
+    if n_other := len(first) - len(first_of_visits(alike, at_s)):
+        said = worded(
+            "{n} {n:record differs|records differ} from another of the same place and time only "
+            "in {columns}: each counts.",
+            n=n_other,
+            columns=first_few(_differing(alike, rest), 3),
+        )
+        messages.append(guessed(said))
+    later = np.delete(records, first)
+    return np.delete(np.arange(len(observations)), later), messages
 
 
-def _same_visit(observations: Observations) -> list[ImportMessage]:
-    """Return a doubt about records of one place and day that disagree."""
+def _differing(alike: list[tuple[object, ...]], rest: dict[str, list[str]]) -> list[str]:
+    """Return the columns in which records differ that are alike."""
+    n = len(set(alike))
+    return [
+        repr(name) for name, cells in rest.items() if len(set(zip(alike, cells, strict=True))) > n
+    ]
+
+
+def _same_visit(observations: Observations, place: NDArray[np.intp]) -> list[ImportMessage]:
+    """Return a doubt about records of one place ``(k,)`` and day that disagree."""
     if len(observations) < 2:
         return []
-    place = np.round(observations.lonlat, 8)
     day = observations.day.astype(np.int64).astype(np.float64)
     kinds = [
         np.unique(v, return_inverse=True)[1] for v in (observations.species, observations.stage)
     ]
-    visit = [*place.T, day, *kinds]
+    visit: list[NDArray[np.generic]] = [place, day, *kinds]
     count = np.nan_to_num(observations.count, nan=-1)
     n_visits, n_stated = _n_distinct(visit), _n_distinct([*visit, count, observations.present])
     if n_stated == n_visits:

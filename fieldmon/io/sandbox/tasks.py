@@ -65,10 +65,15 @@ def treated(folder: str, source: Source, options: PlotOptions) -> Imported[Multi
 
 
 def records(
-    folder: str, source: Source, options: RecordOptions, places: NamedPlaces | None
+    folder: str,
+    source: Source,
+    options: RecordOptions,
+    places: NamedPlaces | None,
+    apart_m: float | None = None,
 ) -> Imported[Observations]:
     """Return the records of a source."""
-    return records_of(open_layer(source, options, Workroom(Path(folder))), options, places)
+    layer = open_layer(source, options, Workroom(Path(folder)))
+    return records_of(layer, options, places, apart_m)
 
 
 def plot_records(

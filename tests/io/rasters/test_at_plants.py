@@ -65,11 +65,13 @@ def test_chances_that_have_much_of_the_plot_infested_are_doubted(tmp_path):
         (RiskSettings("rank", mean_share=0.5), False),  # somebody said it
     ):
         said = read_risk(much, ANY, HOME, settings).messages
-        assert ("By it alone 50% of all" in said[-1].sentence) is is_doubted
+        assert ("By it alone 50 % of all" in said[-1].sentence) is is_doubted
+        small = "All its percents are below 1" in said[-1].sentence
+        assert small is (settings.meaning == "percent")
 
 
 def half_without_value():
-    values = np.full((400, 400), 0.25, "float32")
+    values = np.full((400, 400), 15.0, "float32")
     values[:, 200:] = -1.0
     return values
 

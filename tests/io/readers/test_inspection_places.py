@@ -102,6 +102,9 @@ def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
     first, second = sorted((3, twin))
     assert imported.value.plant.tolist() == [3, twin, first, second, first]
     assert any("1 record does not say which face" in f.sentence for f in imported.messages)
+    words = read(f"row,number,face,found\n{place},east,x\n{place},west,no\n", grid=grid)
+    assert not len(words.value)
+    assert any("its face is 'east', but faces are called 1 and 2" in str(f) for f in words.messages)
     lon, lat = grid.lonlat(np.array([twin]))[0]
     snapped = read(f"lon,lat,accuracy,found\n{lon:.9f},{lat:.9f},0.1,x\n", grid=grid)
     assert snapped.value.plant.tolist() == [first]

@@ -113,7 +113,6 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
         "7,x,,Noa,2026-11-18T08:30",
         "7,x,3,Amir,2026-11-18T08:30",
         "7,x,3,Noa,2026-11-18T08:41",
-        "7,x,3,Noa,2026-11-18",
         "7,x,3,Noa,",
     ],
 )
@@ -125,6 +124,7 @@ def test_any_other_inspection_is_another_one(other):
 def test_notes_and_blanks_make_no_other_inspection():
     head = "plant,found,count,who,time,notes\n"
     rows = "7,x,3,Noa,2026-11-18T08:30,leaf\n7,x,3.0, Noa ,2026-11-18T08:30:00,thorns\n"
+    rows += "7,x,3,Noa,2026-11-18,\n"
     assert read(head + rows).value.notes.tolist() == ["leaf"]
 
 
@@ -353,3 +353,39 @@ def test_a_file_that_contradicts_itself_says_with_which_records_and_what_became_
     assert shown in said
     assert "Of 4 records 3 were taken, of 2 plants; 1 was left out." in said
     assert "It is not used: each record counts in full as its result says." in said
+
+
+def test_leaves_of_a_plant_are_one_inspection_found_if_any_leaf_is():
+    head = "plant,date,leaf,count\n"
+    told = read(f"{head}7,2026-11-18,1,0\n7,2026-11-18,2,3\n7,2026-11-18,3,2\n8,2026-11-18,1,0\n")
+    assert told.value.plant.tolist() == [7, 8]
+    assert told.value.result.tolist() == [FOUND, CLEAN]
+    np.testing.assert_array_equal(told.value.count, [5, np.nan])
+    (said,) = (m.sentence for m in told.of(Severity.GUESSED) if "single leaves" in m.sentence)
+    assert said.startswith("3 records of single leaves became 1 inspection of whole plants")
+    twice = read(f"{head}7,2026-11-18,1,0\n7,2026-11-18,1,3\n")
+    assert twice.value.result.tolist() == [CLEAN, FOUND]
+    assert any("both found and clean" in m.sentence for m in twice.messages)
+
+
+def test_several_species_at_one_plant_on_a_day_are_a_question():
+    text = "plant,date,species,count\n7,2026-11-18,mite,3\n7,2026-11-18,{},0\n8,2026-11-18,{},0\n"
+    with pytest.raises(ChoiceNeeded, match="'species' tells of several at 1 plant on") as asked:
+        read(text.format("thrips", "mite"))
+    assert asked.value.choices == ("species=mite", "species=thrips")
+    options = InspectionOptions().choose(asked.value.option, asked.value.choices[0])
+    assert read(text.format("thrips", "mite"), options).value.result.tolist() == [FOUND, CLEAN]
+    elsewhere = read(text.format("none", "thrips"))
+    assert any("2 species are mixed" in m.sentence for m in elsewhere.messages)
+
+
+@pytest.mark.parametrize(
+    ("times", "n"), [(("8", "17"), 2), (("early", "late"), 2), (("early", "early"), 1)]
+)
+def test_hours_tell_visits_apart_and_so_do_times_that_nobody_can_read(times, n):
+    first, second = times
+    text = f"plant,date,hour,found\n7,2026-11-18,{first},x\n7,2026-11-18,{second},x\n"
+    told = read(text)
+    assert len(told.value) == n
+    unread = any("times are none ('early'" in m.sentence for m in told.messages)
+    assert unread is (first == "early")

@@ -185,6 +185,43 @@ def test_a_plant_of_which_a_robot_tells_often_in_one_visit_counts_once(
     assert ("visit" in told) == ("visit" in words or "repeats" in words)
 
 
+@pytest.mark.parametrize(
+    ("columns", "kept", "words"),
+    [
+        ({}, 1, "one visit, which counts once"),
+        ({"scout": ["Ann", "Ben"]}, 2, "the same place and time only in 'scout': each counts"),
+        ({"hour": [8, 17]}, 2, "at another time: each visit counts"),
+        ({"time": ["early", "late"]}, 2, "2 times are none ('early', 'late')"),
+        ({"time": ["08:00", ""]}, 1, "one visit, which counts once"),
+        ({"accuracy": [1.5, 1.5]}, 2, ""),
+        ({"found": ["yes", "no"]}, 2, "1 record gives another count"),
+    ],
+)
+def test_what_a_file_says_of_something_else_or_of_no_known_plant_is_no_visit_again(
+    columns, kept, words
+):
+    each = {"id": [1, 2], "date": ["2026-11-20"] * 2, "found": ["yes"] * 2} | columns
+    layer = table(lon=[35.150123, 35.15012303], lat=[30.360789] * 2, **each)
+    imported = records_of(layer, ANY, apart_m=3.0)
+    assert len(imported.value) == kept
+    assert words in sentences(imported)
+
+
+def test_positions_rounded_to_half_the_way_to_the_next_plant_tell_no_plants_apart():
+    layer = table(
+        id=[1, 2], lon=[35.15012] * 2, lat=[30.36079] * 2, date=["2026-11-20"] * 2, found=[1, 1]
+    )
+    assert len(records_of(layer, ANY, apart_m=3.0).value) == 1
+    assert len(records_of(layer, ANY, apart_m=1.0).value) == 2
+
+
+def test_results_that_could_be_confidences_are_doubted():
+    for name in ("detection", "result"):
+        records = read(**{name: [0.0, 0.03, 0.08]})
+        assert "as confidences are" in said(records, Severity.DOUBTFUL)
+    assert "confidences" not in sentences(read(result=[0, 1, "yes"]))
+
+
 def test_several_species_are_doubted_and_each_can_be_chosen_alone():
     records = read(count=[1, 2, 3], species=["mite", "aphid", "mite"])
     (doubt,) = [m for m in records.messages if "species are mixed" in m.sentence]

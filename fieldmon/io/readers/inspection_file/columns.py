@@ -32,6 +32,8 @@ _NAMES = {
     "notas observaciones remarques commentaire cmt הערה הערות",
     "face": "face side seite cara lado צד",
     "id": "plantid idplant",
+    "leaf": "leaf leafno leafnr leafnumber leafid blatt blattnr blattnummer hoja numerohoja "
+    "feuille numérofeuille foglia folha עלה מספרעלה ورقة",
 }
 _PLAIN = {role: tuple(plain(name) for name in names.split()) for role, names in _NAMES.items()}
 _IDS = frozenset(_PLAIN["id"])
@@ -55,12 +57,19 @@ class InspectionColumns(NamedTuple):
     face: str | None
     arrive: str | None
     block: str | None = None
+    leaf: str | None = None
+    species: str | None = None
 
 
 def own_column(role: str, layer: Layer, taken: Iterable[str | None] = ()) -> str | None:
     """Return the column of one of the roles that only inspections have."""
     known = {plain(name): name for name in reversed(list(layer.columns)) if name not in taken}
     return next((known[name] for name in _PLAIN[role] if name in known), None)
+
+
+def is_own(role: str, name: str) -> bool:
+    """Return whether a column plays by its name one of the roles that only inspections have."""
+    return plain(name) in _PLAIN[role]
 
 
 def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
@@ -95,8 +104,11 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
         # a KML given out, in which the planned arrival is the time of a place
         arrive = next((n for n in names if plain(n) == "timestamp"), None)
     block = options.column("block") or find("block", names, frozenset({line or "", plant or ""}))
+    used = (result, count, marks, plant, line, number, block)
+    species = options.column("species") or find("species", names, frozenset(n for n in used if n))
+    face, leaf = own_column("face", layer), own_column("leaf", layer, used)
     return InspectionColumns(
-        result, count, marks, plant, line, number, own_column("face", layer), arrive, block
+        result, count, marks, plant, line, number, face, arrive, block, leaf, species
     )
 
 

@@ -43,6 +43,12 @@ class InspectionRows:
         Which record of the file, from 1.
     block
         What is named as the plant's block; empty where nothing is.
+    face_word
+        What is named as the face, where it is none that is known; else empty. None: all empty.
+    leaf
+        Which leaf it is of; empty where none is named. None: all empty.
+    rest
+        What all other columns say that tells it from another. None: nothing.
     """
 
     plant: NDArray[np.int64]
@@ -61,6 +67,9 @@ class InspectionRows:
     notes: NDArray[np.str_]
     source_row: NDArray[np.int64]
     block: NDArray[np.str_]
+    face_word: NDArray[np.str_] | None = None
+    leaf: NDArray[np.str_] | None = None
+    rest: NDArray[np.str_] | None = None
 
     def __len__(self) -> int:
         """Return the number of records."""

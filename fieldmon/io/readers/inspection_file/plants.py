@@ -14,7 +14,7 @@ from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.named_positions import could_be_positions
 from fieldmon.io.parse.positions import located
-from fieldmon.io.parse.values import numbers
+from fieldmon.io.parse.values import is_missing, numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -63,6 +63,15 @@ def named_plants(
     below = ~unsaid & (np.minimum(line, number) < 1)
     line[below] = number[below] = -1
     return plant, line, number, face
+
+
+def unknown_faces(layer: Layer, columns: InspectionColumns) -> NDArray[np.str_]:
+    """Return what is named as the face ``(n,)`` where it is none that is known, else nothing."""
+    if columns.face is None:
+        return np.full(len(layer), "", dtype=np.str_)
+    cells = [text(v) for v in layer.column(columns.face)]
+    known = [cell.casefold() in _FACES or is_missing(cell) for cell in cells]
+    return np.where(known, "", np.array(cells, dtype=np.str_))
 
 
 def _whole(layer: Layer, name: str, otherwise: int) -> NDArray[np.int64]:

@@ -77,6 +77,8 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
             *_unread(cells, known),
         ]
         messages += about_minus(cells, words)
+        numbers = (counted(cell, mark).number for cell in known)
+        messages += about_fractions(columns.result, numbers, is_usual=False)
     if columns.number_found is not None:
         cells = [text(v) for v in layer.column(columns.number_found)]
         mark, guess = _mark(layer, columns.number_found, cells, options)

@@ -11,22 +11,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
-from fieldmon.io.parse.columns import plain
-from fieldmon.io.readers.inspection_file.columns import columns_of, notes_in, texts_in, who_in
+from fieldmon.io.parse.columns import is_position, plain
+from fieldmon.io.readers.inspection_file.columns import (
+    columns_of,
+    is_own,
+    notes_in,
+    texts_in,
+    who_in,
+)
 from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
-from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in
+from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in, unknown_faces
 from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
+from fieldmon.io.readers.species import mixed_species, species_in
+from fieldmon.io.readers.visits import telling
 from fieldmon.io.readers.wide_tables import by_day
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.options import Source
+    from fieldmon.io.readers.inspection_file.columns import InspectionColumns
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.sandbox.workroom import Workroom
 
@@ -119,10 +130,54 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
         notes=notes,
         source_row=np.arange(1, len(layer) + 1),
         block=texts_in(layer, columns.block),
+        face_word=unknown_faces(layer, columns),
+        leaf=texts_in(layer, columns.leaf),
+        rest=_rest(layer, columns, options),
     )
     kept = InspectionRows(**{name: values[said] for name, values in vars(whole).items()})
-    every = (*layer.messages, *messages, *results.messages, *more, *times.messages)
+    mixed = _mixed(kept, columns.species, texts_in(layer, columns.species)[said])
+    every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *mixed)
     return Imported(kept, every)
+
+
+def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> NDArray[np.str_]:
+    """Return what columns say that are not read ``(n,)``, where they tell things apart."""
+    read = {name for name in layer.columns if is_position(name) or is_own("who", name)}
+    read |= {name for name in columns if name} | set(dict(options.columns).values())
+    told = telling(layer, np.arange(len(layer)), read)
+    cells = ["\0".join(row) for row in zip(*told.values(), strict=True)]
+    return np.array(cells or [""] * len(layer), dtype=np.str_)
+
+
+def _mixed(
+    rows: InspectionRows, name: str | None, species: NDArray[np.str_]
+) -> list[ImportMessage]:
+    """Return a doubt where species are mixed; ask for one where several are of one plant and day.
+
+    What is found of one and not of another is no contradiction, but a season is of one.
+    """
+    if name is None or not (mixed := mixed_species(name, species.tolist())):
+        return []
+    columns = (rows.plant, rows.line, rows.number, rows.face, *np.nan_to_num(rows.lonlat).T)
+    at = zip(*(column.tolist() for column in (*columns, rows.day.astype(np.int64))), strict=True)
+    told: dict[tuple[object, ...], list[str]] = {}
+    for key, kind in zip(at, species.tolist(), strict=True):
+        told.setdefault(key, []).append(kind)
+    n = sum(len(species_in(kinds)) > 1 for kinds in told.values())
+    if not n:
+        return mixed
+    kinds = species_in(species.tolist())
+    raise ChoiceNeeded(
+        worded(
+            "Inspections must be of one pest, but column {name!r} tells of several at {n} "
+            "{n:plant|plants} on one day: {shown}. Choose one.",
+            name=name,
+            n=n,
+            shown=first_few(kinds, 5),
+        ),
+        "where",
+        tuple(f"{name}={kind}" for kind in kinds),
+    )
 
 
 def _without_lines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:

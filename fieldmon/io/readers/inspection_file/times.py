@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
-from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
+from fieldmon.io.import_report import ImportMessage, Remedy, guessed
+from fieldmon.io.parse.clock import as_clocks, clock_time, is_clock_alone, local_time, zone_of
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.values import dates, is_missing, is_written_as_day
-from fieldmon.io.readers.date_doubts import in_future, mixed_dates
+from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
 from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
 
 if TYPE_CHECKING:
@@ -74,18 +74,7 @@ def _about_times(
     is_ambiguous: bool,  # noqa: FBT001 - one caller
     n_utc: int,
 ) -> list[ImportMessage]:
-    messages = []
-    if broken:
-        shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(broken))[:3])
-        messages.append(
-            doubtful(
-                worded(
-                    "{n_broken} {n_broken:time is|times are} none ({shown}); left open.",
-                    n_broken=len(broken),
-                    shown=shown,
-                )
-            )
-        )
+    messages = broken_times(broken)
     if is_ambiguous:
         remedy = Remedy("date_order", "mdy", worded("Read month first"))
         messages.append(
@@ -116,7 +105,8 @@ def _cells(
     time = own_column("time", layer, taken)
     away = frozenset(name for name in (*taken, time) if name)
     date = options.column("date") or find("date", layer.columns, away)
-    return texts_in(layer, date).tolist(), texts_in(layer, time).tolist()
+    clocks = texts_in(layer, time).tolist()
+    return texts_in(layer, date).tolist(), clocks if time is None else as_clocks(time, clocks)
 
 
 def _no_day(cell: str) -> bool:

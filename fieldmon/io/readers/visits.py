@@ -6,6 +6,7 @@ from math import dist
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.clock import as_clocks, clock_time
@@ -106,10 +107,16 @@ def same_places(xy_m: Floats, accuracy_m: Floats) -> NDArray[np.intp]:
     _, first, same = np.unique(np.round(xy_m, 3), axis=0, return_index=True, return_inverse=True)
     place = first[same.ravel()]
     told = ~(accuracy_m > _TELLS_PLANTS_M)
-    reach_m = np.clip(np.nan_to_num(accuracy_m), _EXACT_M, _SAME_M).tolist()
+    reach = np.clip(np.nan_to_num(accuracy_m), _EXACT_M, _SAME_M)
+    some = np.flatnonzero(told & (place == np.arange(len(place))))
+    if len(some) < 2:
+        return place
+    # most stand alone
+    next_m = cKDTree(xy_m[some]).query(xy_m[some], k=2, distance_upper_bound=_SAME_M)[0][:, 1]
+    reach_m = reach.tolist()
     at_m: list[tuple[float, float]] = [(x, y) for x, y in xy_m.tolist()]
     cells: dict[tuple[int, int], list[int]] = {}
-    for k in np.flatnonzero(told & (place == np.arange(len(place)))).tolist():
+    for k in some[next_m <= reach[some]].tolist():
         column, row = (int(c // _SAME_M) for c in at_m[k])
         around = ((column + i, row + j) for i in (-1, 0, 1) for j in (-1, 0, 1))
         others = (one for cell in around for one in cells.get(cell, ()))

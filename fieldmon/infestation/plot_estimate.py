@@ -98,35 +98,68 @@ def estimate_plot(
         )
     if pair_chance is None:
         pair_chance = pair_chances(chance, grid)
+    counts, none = _counts(grid, chance, pair_chance)
+    expected = float(chance.sum())
+    if doubt <= 0.0:
+        low, high = np.quantile(counts, _ends(sure))
+        return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), float(np.exp(none)))
+    factors = doubted_level(doubt, named=named)
+    low, high = np.quantile(_of_odds(counts, factors, len(chance)), _ends(sure))
+    clean = float(np.exp(none * factors).mean())
+    # to the nearest: outwards, an interval of a few plants would hold far more than is asked
+    return PlotEstimate(expected, round(float(low)), round(float(high)), clean)
+
+
+def estimate_since(
+    grid: PlantGrid,
+    maps: tuple[Floats, Floats],
+    doubt: float,
+    since: tuple[Floats, Floats],
+    *,
+    named: bool = False,
+) -> PlotEstimate:
+    """Return the same of a plot that nobody inspected for some days, with 90 %.
+
+    Parameters
+    ----------
+    maps
+        ``chance (n,)`` and ``pair_chance (e,)``.
+    doubt
+        As in `estimate_plot`, of what was known when somebody inspected last.
+    since
+        By what the number may have to be multiplied since, see `Unwatched.draws`.
+    """
+    chance, pair_chance = maps
+    counts, none = _counts(grid, chance, pair_chance)
+    factors, (all_of_it, of_none) = doubted_level(doubt, named=named), since
+    # nights multiply a number, not its odds
+    counts = np.minimum(_of_odds(counts, factors, len(chance)) * all_of_it, len(chance))
+    low, high = np.quantile(counts, _ends(0.9))
+    clean = float(np.exp(none * factors * of_none).mean())
+    return PlotEstimate(float(chance.sum()), round(float(low)), round(float(high)), clean)
+
+
+def _counts(grid: PlantGrid, chance: Floats, pair_chance: Floats) -> tuple[Floats, float]:
+    """Return how many are infested in drawn fields, and the logarithm of the chance of none."""
     table = _table(chance, pair_chance, grid.adjacent)
     drawn = _drawn(table, _KEY, len(chance))
-    clean = _clean(table, doubt, named=named)
-    expected = float(chance.sum())
     # round the loops of a lattice the drawn fields are a little off the map: put right together
-    counts = (drawn * (expected / max(float(drawn.mean()), 1e-9))).clip(0.0, len(chance))
-    if doubt > 0.0:
-        # odds, as finds change a level by: never more than there are plants
-        factors = doubted_level(doubt, named=named)
-        # but where all are infested, odds have no bound, and the least factor may be 0
-        share = np.minimum(counts / len(chance), 1.0 - 1e-12)
-        counts = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), len(chance))
-    low, high = np.quantile(counts, [0.5 - sure / 2, 0.5 + sure / 2])
-    if doubt > 0.0:
-        # to the nearest: outwards, an interval of a few plants would hold far more than is asked
-        return PlotEstimate(expected, round(float(low)), round(float(high)), clean)
-    return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), clean)
+    right = float(chance.sum()) / max(float(drawn.mean()), 1e-9)
+    # the chain of plants draws no infested one
+    return (drawn * right).clip(0.0, len(chance)), float(np.log1p(-table[-1]).sum())
 
 
-def chance_clean(
-    grid: PlantGrid, chance: Floats, pair_chance: Floats, doubt: float = 0.0, *, named: bool = False
-) -> float:
-    """Return the chance that no plant is infested; all is as in `estimate_plot`."""
-    return _clean(_table(chance, pair_chance, grid.adjacent), doubt, named=named)
+def _of_odds(counts: Floats, factors: Floats, n: int) -> Floats:
+    """Return numbers whose odds are so many times as high, as finds change a level."""
+    # never more than there are plants; where all are infested, odds have no bound, and the least
+    # factor may be 0
+    share = np.minimum(counts / n, 1.0 - 1e-12)
+    changed: Floats = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), n)
+    return changed
 
 
-def _clean(table: _Table, doubt: float, *, named: bool) -> float:
-    none = float(np.log1p(-table[-1]).sum())  # the chain of plants draws no infested one
-    return float(np.exp(none * (doubted_level(doubt, named=named) if doubt > 0.0 else 1.0)).mean())
+def _ends(sure: float) -> list[float]:
+    return [0.5 - sure / 2, 0.5 + sure / 2]
 
 
 def doubted(doubt: float) -> Floats:

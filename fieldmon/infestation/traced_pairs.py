@@ -257,10 +257,12 @@ class TracedPairs:
         return replace(self, unwatched=Unwatched(left=self.unwatched.left))
 
     @property
-    def doubt_of_none(self) -> float:
-        """How far what tells whether any plant is infested may be off: not how fast it grows."""
-        arrived = self.unwatched.of_arrivals(self.arrivals_found)
-        return float(np.hypot(self.watched.doubt, np.sqrt(arrived)))
+    def since_inspected(self) -> tuple[Floats, Floats]:
+        """By what the number may have to be multiplied since somebody inspected last.
+
+        ``(400,)`` draws each, see `Unwatched.draws`.
+        """
+        return self.unwatched.draws(named=self.pest is not None, arrivals_found=self.arrivals_found)
 
     @property
     def _since_inspected(self) -> float:

@@ -7,9 +7,15 @@ rate at which insects multiply is a guess, nor how they behave otherwise than it
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.special import gammaincinv, ndtri
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
 
 #: how far a number may be off beyond what the chance map says of itself, where nobody named the
 #: pest and where somebody did; and how far the logarithm of the rate at which it grows (1 sigma;
@@ -19,6 +25,12 @@ RATE_DOUBT = 0.5
 # what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
 # found are not told from others. So it may well be that nothing arrives, or many times as much
 _ARRIVALS_KNOWN, _NOT_TOLD = 0.35, 3.0
+# a single number tells of no more doubt than this
+_MOST_VARIANCE = 1.0
+# draws that are spread evenly: steps by irrational parts of one
+_DRAWS, _STEPS = 400, (0.7320508075688772, 0.23606797749978967, 0.6457513110645907)
+# more would be no number
+_MOST_GROWN = 100.0
 
 
 def arrivals_known(found: float) -> float:
@@ -65,12 +77,27 @@ class Unwatched(NamedTuple):
         if self.days == 0:
             return self.left
         level = OF_A_PEST if named else LEVEL_DOUBT
-        grows = level**2 + (RATE_DOUBT * self.grown) ** 2
-        return self.left + grows + self.of_arrivals(arrivals_found)
+        by_arrivals = self.arrived**2 / arrivals_known(arrivals_found)
+        since = level**2 + (RATE_DOUBT * self.grown) ** 2 + by_arrivals
+        return self.left + min(since, _MOST_VARIANCE)
 
-    def of_arrivals(self, found: float) -> float:
-        """Return the part of `variance` that what arrived has."""
-        return self.arrived**2 / arrivals_known(found) if self.days else 0.0
+    def draws(self, *, named: bool, arrivals_found: float = 0.0) -> tuple[Floats, Floats]:
+        """Return by what the number may have to be multiplied, ``(400,)`` even draws of each.
+
+        All of it; and what tells whether there is none: nothing heals, however slowly it grew.
+        """
+        before = min(float(np.exp(-self.grown)), 1.0)
+        if self.days == 0:
+            return np.ones(_DRAWS), np.full(_DRAWS, before + self.arrived)
+        one, other, third = ((np.arange(_DRAWS) + 1) * step % 1.0 for step in _STEPS)
+        level = OF_A_PEST if named else LEVEL_DOUBT
+        levels = gammaincinv(level**-2.0, one) * level**2.0
+        faster = np.exp(RATE_DOUBT * ndtri(other))
+        known = arrivals_known(arrivals_found)
+        came = self.arrived * gammaincinv(known, third) / known
+        grew = np.exp(np.minimum(self.grown * (faster - 1.0), _MOST_GROWN))
+        all_of_it: Floats = levels * grew * (1.0 - self.arrived + came)
+        return all_of_it, before + came
 
     def inspected(self, found: float, variance: float) -> Unwatched:
         """Return the same after inspections that were expected to find so many.

@@ -24,7 +24,7 @@ from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.plot_estimate import chance_clean, estimate_plot
+from fieldmon.infestation.plot_estimate import estimate_plot, estimate_since
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.members import person
@@ -49,10 +49,6 @@ if TYPE_CHECKING:
 
 
 _T = TypeVar("_T")
-# from this share of infested plants on, a number and its odds are doubted differently
-_MANY = 0.1
-# and from this share on that arrived since somebody inspected last
-_MOSTLY_NEW = 0.2
 #: who begins later than this after the day's start, or sooner before it, has hours of their own
 LATE_S = 300.0
 
@@ -383,23 +379,14 @@ class History:
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
         left = self._still_out(morning, day)
         named = left.pest is not None
-        made = estimate_plot(
-            self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=named
+        if not isinstance(left, TracedPairs) or left.unwatched.looked:
+            return estimate_plot(
+                self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=named
+            )
+        maps = left.chance, left.pair_chance
+        return estimate_since(
+            self.grid, maps, left.watched.doubt, left.since_inspected, named=named
         )
-        if not isinstance(left, TracedPairs) or left.unwatched.days == 0:
-            return made
-        # however slowly it grew, the plot does not become clean by itself
-        clean = chance_clean(
-            self.grid, left.chance, left.pair_chance, left.doubt_of_none, named=named
-        )
-        made = replace(made, chance_clean=clean)
-        if made.expected < _MANY * len(self.grid) and left.unwatched.arrived < _MOSTLY_NEW:
-            return made
-        # where most are infested, or nothing may have arrived, a forecast from when somebody
-        # inspected last knows better what is in doubt
-        drawn = forecast(left, self.grid, ())
-        low, high = int(drawn.low[0]), int(drawn.high[0])
-        return replace(made, low=min(made.low, low), high=max(made.high, high))
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""

@@ -20,6 +20,7 @@ from fieldmon.infestation.pairs import pair_chances
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.unwatched import Since
     from fieldmon.plot.grid import Csr, PlantGrid
 
     Floats = NDArray[np.float64]
@@ -114,7 +115,7 @@ def estimate_since(
     grid: PlantGrid,
     maps: tuple[Floats, Floats],
     doubt: float,
-    since: tuple[Floats, Floats],
+    since: Since,
     *,
     named: bool = False,
 ) -> PlotEstimate:
@@ -127,15 +128,14 @@ def estimate_since(
     doubt
         As in `estimate_plot`, of what was known when somebody inspected last.
     since
-        By what the number may have to be multiplied since, see `Unwatched.draws`.
+        What the number may have become since, see `Unwatched.draws`.
     """
     chance, pair_chance = maps
     counts, none = _counts(grid, chance, pair_chance)
-    factors, (all_of_it, of_none) = doubted_level(doubt, named=named), since
-    # nights multiply a number, not its odds
-    counts = np.minimum(_of_odds(counts, factors, len(chance)) * all_of_it, len(chance))
+    factors = doubted_level(doubt, named=named) if doubt > 0.0 else np.ones(len(counts))
+    counts = since.numbers(_of_odds(counts, factors, len(chance)), len(chance))
     low, high = np.quantile(counts, _ends(0.9))
-    clean = float(np.exp(none * factors * of_none).mean())
+    clean = float(np.exp(none * factors * (since.before + since.came)).mean())
     return PlotEstimate(float(chance.sum()), round(float(low)), round(float(high)), clean)
 
 

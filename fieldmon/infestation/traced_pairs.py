@@ -48,7 +48,7 @@ from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.traced_day import KNOWN, KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
-from fieldmon.infestation.unwatched import Unwatched
+from fieldmon.infestation.unwatched import Since, Unwatched
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -257,11 +257,8 @@ class TracedPairs:
         return replace(self, unwatched=Unwatched(left=self.unwatched.left))
 
     @property
-    def since_inspected(self) -> tuple[Floats, Floats]:
-        """By what the number may have to be multiplied since somebody inspected last.
-
-        ``(400,)`` draws each, see `Unwatched.draws`.
-        """
+    def since_inspected(self) -> Since:
+        """What the number may have become since somebody inspected."""
         return self.unwatched.draws(named=self.pest is not None, arrivals_found=self.arrivals_found)
 
     @property

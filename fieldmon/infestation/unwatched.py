@@ -7,10 +7,10 @@ rate at which insects multiply is a guess, nor how they behave otherwise than it
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.special import gammaincinv, ndtri
+from scipy.special import gammaincinv, ndtri, pdtrik
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,8 +27,10 @@ RATE_DOUBT = 0.5
 _ARRIVALS_KNOWN, _NOT_TOLD = 0.35, 3.0
 # a single number tells of no more doubt than this
 _MOST_VARIANCE = 1.0
-# draws that are spread evenly: steps by irrational parts of one
-_DRAWS, _STEPS = 400, (0.7320508075688772, 0.23606797749978967, 0.6457513110645907)
+# draws that are spread evenly: steps by the roots of 3, 7 and 11, as others are by those of 2 and 5
+_DRAWS, _STEPS = 400, (0.7320508075688772, 0.6457513110645907, 0.3166247903553998)
+# the roots of 13 and 17; and of more than this whole numbers tell nothing
+_WHOLE_STEPS, _FEW = (0.605551275463989, 0.123105625617661), 1e3
 # more would be no number
 _MOST_GROWN = 100.0
 
@@ -36,6 +38,36 @@ _MOST_GROWN = 100.0
 def arrivals_known(found: float) -> float:
     """Return by how many finds it is known what arrives, of so many that came from outside."""
     return _ARRIVALS_KNOWN + max(found - _NOT_TOLD, 0.0)
+
+
+class Since(NamedTuple):
+    """What a number may have become since somebody inspected, as multiples of what is expected.
+
+    Parameters
+    ----------
+    before
+        How many there were then: nothing heals, however slowly they multiplied.
+    inside, came
+        ``(400,)`` even draws of what these have become, and of what arrived.
+    """
+
+    before: float
+    inside: Floats
+    came: Floats
+
+    def numbers(self, counts: Floats, n: int) -> Floats:
+        """Return how many there may be of n plants, ``(400,)``, where so many are believed."""
+        one, other = ((np.arange(_DRAWS) + 1) * step % 1.0 for step in _WHOLE_STEPS)
+        then = _whole(counts * self.before, one) / self.before
+        came = _whole(counts * self.came, other)
+        numbers: Floats = np.minimum(then * self.inside + came, n)
+        return numbers
+
+
+def _whole(mean: Floats, places: NDArray[np.floating[Any]]) -> Floats:
+    """Return whole numbers with such means, as by a Poisson law, at places spread evenly."""
+    few = np.nan_to_num(pdtrik(places, np.clip(mean, 1e-9, _FEW)))
+    return np.where(mean < _FEW, np.maximum(np.ceil(few), 0.0), mean)
 
 
 class Unwatched(NamedTuple):
@@ -81,14 +113,12 @@ class Unwatched(NamedTuple):
         since = level**2 + (RATE_DOUBT * self.grown) ** 2 + by_arrivals
         return self.left + min(since, _MOST_VARIANCE)
 
-    def draws(self, *, named: bool, arrivals_found: float = 0.0) -> tuple[Floats, Floats]:
-        """Return by what the number may have to be multiplied, ``(400,)`` even draws of each.
-
-        All of it; and what tells whether there is none: nothing heals, however slowly it grew.
-        """
+    def draws(self, *, named: bool, arrivals_found: float = 0.0) -> Since:
+        """Return what the number may have become since somebody inspected."""
         before = min(float(np.exp(-self.grown)), 1.0)
         if self.days == 0:
-            return np.ones(_DRAWS), np.full(_DRAWS, before + self.arrived)
+            ones = np.ones(_DRAWS)
+            return Since(before, ones * (1.0 - self.arrived), ones * self.arrived)
         one, other, third = ((np.arange(_DRAWS) + 1) * step % 1.0 for step in _STEPS)
         level = OF_A_PEST if named else LEVEL_DOUBT
         levels = gammaincinv(level**-2.0, one) * level**2.0
@@ -96,8 +126,7 @@ class Unwatched(NamedTuple):
         known = arrivals_known(arrivals_found)
         came = self.arrived * gammaincinv(known, third) / known
         grew = np.exp(np.minimum(self.grown * (faster - 1.0), _MOST_GROWN))
-        all_of_it: Floats = levels * grew * (1.0 - self.arrived + came)
-        return all_of_it, before + came
+        return Since(before, levels * grew * (1.0 - self.arrived), levels * came)
 
     def inspected(self, found: float, variance: float) -> Unwatched:
         """Return the same after inspections that were expected to find so many.
@@ -113,6 +142,11 @@ class Unwatched(NamedTuple):
             return Unwatched(0, grown, self.left, share)
         arrived = share + self.arrived * (1.0 - share)
         return Unwatched(self.days + 1, self.grown + grown, self.left, arrived)
+
+    @property
+    def is_now(self) -> bool:
+        """Whether no night has passed since somebody inspected, or since the first morning."""
+        return self.looked or (self.days == 0 and self.grown == 0.0)
 
     @property
     def array(self) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:

@@ -379,7 +379,7 @@ class History:
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
         left = self._still_out(morning, day)
         named = left.pest is not None
-        if not isinstance(left, TracedPairs) or left.unwatched.looked:
+        if not isinstance(left, TracedPairs) or left.unwatched.is_now:
             return estimate_plot(
                 self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=named
             )

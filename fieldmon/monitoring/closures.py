@@ -87,12 +87,17 @@ def _of_their_rows(plants: NDArray[np.bool_], grid: PlantGrid) -> NDArray[np.boo
 
 
 def closed_on(
-    waits: Iterable[EntryWait], on: date, begins_s: float, ends_s: float
-) -> tuple[Closure, ...]:
-    """Return what is closed to work between two seconds of a day."""
+    waits: Iterable[EntryWait], on: date, begins_s: float, ends_s: float,
+    now: datetime | None = None,
+) -> tuple[Closure, ...]:  # fmt: skip
+    """Return what is closed to work between two seconds of a day.
+
+    With what is closed to it if it begins `now`, where that is later.
+    """
     midnight = datetime.combine(on, time())
     begins, ends = (midnight + timedelta(seconds=round(s)) for s in (begins_s, ends_s))
-    closed = (one.closes(begins, ends) for one in waits)
+    late = begins if now is None else max(begins, now)
+    closed = (one.closes(begins, ends) or one.closes(late, ends) for one in waits)
     return tuple(one for one in closed if one is not None)
 
 
@@ -132,7 +137,7 @@ def _in_words(one: Closure, rows: NDArray[np.integer] | None, n: int, units: Uni
     if one.opens:
         return worded(
             "Closed until {time} on {date} after {product}, so not on the route: {which}. A plan "
-            "made from then on may have them.", **values,
+            "that begins then or later may have them.", **values,
         )  # fmt: skip
     return worded(
         "Closed until {time} on {date} after {product}, so not on the route: {which}.", **values

@@ -45,7 +45,8 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
     season, units = choices.season, choices.units.in_sentences(choices.on)
     closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
     said = left_off_in_words(closed, (choices.plot.grid, season.label), units)
-    shut = any_closed(closed, len(choices.plot.grid))
+    to_kept = season.closed_to_kept(choices.on, choices.who or "")
+    shut = any_closed(to_kept, len(choices.plot.grid))
     kept = np.count_nonzero(shut[chosen_day.given_out(choices)])
     return [*map(in_words, said), *([texts.KEPT_CLOSED.format(n=int(kept))] if kept else [])]
 

@@ -119,13 +119,14 @@ def days(db: sqlite3.Connection) -> NDArray[np.int64]:
 class KeptRoute(NamedTuple):
     """A route that is kept: its number in the file, which of its day it is, its digest, its begin.
 
-    It begins `at` a plant, or at the gate (-1).
+    It begins `at` a plant, or at the gate (-1), and at a local time; None: no route.
     """
 
     number: int
     revision: int
     digest: str
     at: int = GATE
+    begins: datetime | None = None
 
     @property
     def plan(self) -> int:
@@ -136,13 +137,16 @@ class KeptRoute(NamedTuple):
 def kept_last(db: sqlite3.Connection, day: int) -> dict[str, KeptRoute]:
     """Return the route kept last for a day of each who has one, by `person`."""
     last: dict[str, KeptRoute] = {}
-    wanted = "SELECT who, fid, revision, digest, at_plant FROM routes WHERE day = ? ORDER BY fid"
-    for who, number, revision, mark, at in db.execute(wanted, (day,)):
+    wanted = (
+        "SELECT who, fid, revision, digest, at_plant, starts FROM routes WHERE day = ? ORDER BY fid"
+    )
+    for who, number, revision, mark, at, starts in db.execute(wanted, (day,)):
         # older files may write a name in two ways, and count each
         before = last.get(person(who), KeptRoute(0, 0, ""))
         last[person(who)] = KeptRoute(
-            number, max(revision, before.revision), mark, GATE if at is None else at
-        )
+            number, max(revision, before.revision), mark, GATE if at is None else at,
+            datetime.fromisoformat(starts),
+        )  # fmt: skip
     return last
 
 

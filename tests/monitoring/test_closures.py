@@ -9,6 +9,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.closures import any_closed, closed_on, entry_waits, left_off_in_words
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
@@ -143,6 +144,17 @@ def test_what_is_closed_now_is_closed_to_a_plan_whose_times_are_over(season, mon
     assert season.closed(ON) == ()
     it_is(monkeypatch, season, time(21))
     assert len(season.closed(ON)) == 1
+
+
+@pytest.mark.parametrize("part", [Part(), Part(name="Ann")])
+def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part):
+    plants = sprayed(season, [1, 2], 22)  # until 07:00, and work begins at 06:00
+    kept = season.plan(ON, time(7)).route.plant
+    assert plants[kept].any()
+    assert route_ahead(season, ON, part).plant.tolist() == kept.tolist()
+    early = np.array([6.1 * 3600])
+    season.record(Inspections.of(kept[:1], np.zeros(1, np.int8), ON, second=early), "f", "Ann")
+    assert not plants[route_ahead(season, ON, part).plant].any()
 
 
 def test_east_and_west_are_closed_each_until_their_time():

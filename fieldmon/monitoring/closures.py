@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.samplers.base import Scene
 
 
 class Closure(NamedTuple):
@@ -106,6 +107,14 @@ def any_closed(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
     return np.any([one.plants for one in closed], axis=0) if closed else np.zeros(n, np.bool_)
 
 
+def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:
+    """Tell whether there is time, but no plant where people may be: others were inspected today."""
+    if not closed or scene.seconds_left <= 0:
+        return False
+    shut = any_closed(closed, len(scene.chance)) | (scene.last_inspected == scene.day)
+    return bool(shut.all())
+
+
 def left_off_in_words(
     closed: Sequence[Closure], plot: tuple[PlantGrid, RowLabel], units: Units
 ) -> tuple[Worded, ...]:
@@ -127,7 +136,12 @@ def left_off_in_words(
 def _in_words(one: Closure, rows: NDArray[np.integer] | None, n: int, units: Units) -> Worded:
     which = counted(n, "plant")
     if rows is not None:
-        which = worded("{plants} in rows {rows}", plants=which, rows=runs(rows.tolist()))
+        said = runs(rows.tolist())
+        which = (
+            worded("{plants} in row {row}", plants=which, row=said)
+            if len(rows) == 1
+            else worded("{plants} in rows {rows}", plants=which, rows=said)
+        )
     values = {
         "time": f"{one.until:%H:%M}",
         "date": units.day(one.until.date()),

@@ -161,3 +161,9 @@ def test_east_and_west_are_closed_each_until_their_time():
     done = [treated(0, EAST, reentry_hours=24.0), treated(0, WEST, reentry_hours=48.0)]
     closed = closed_on(entry_waits(done, (), TREES), date(2026, 4, 7), 9 * 3600, 12 * 3600)
     assert any_closed(closed, 20).tolist() == WEST.tolist()
+
+
+def test_one_row_is_a_row(season):
+    sprayed(season, [3], 24)
+    (said,) = left_off_in_words(season.closed(ON), (season.plot.grid, season.label), Units())
+    assert "plants in row 3." in said

@@ -168,7 +168,8 @@ class KeptPlans:
     last, of_all
         Plants of the plan kept last, and of all of them.
     begins, ends
-        When the first begins, and the last ends.
+        When the first begins, and the last ends. Of several that begin where the first does no
+        work was done by but the last: that one is the first.
     at
         The plants where the first and the last begin, -1: the gate.
     """
@@ -200,7 +201,10 @@ def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     made = []
     for who, last in kept_last(db, day).items():
         own = [(datetime.fromisoformat(t), s, at) for name, t, s, at in rows if person(name) == who]
-        begins, ends = own[0][0], own[-1][0] + timedelta(seconds=own[-1][1])
+        # files of before do not say where a plan begins
+        same = [t for t, _, at in own if at is not None and at == own[0][2] and t <= own[-1][0]]
+        begins = same[-1] if same else own[0][0]
+        ends = own[-1][0] + timedelta(seconds=own[-1][1])
         first, newest = (GATE if at is None else at for _, _, at in (own[0], own[-1]))
         every = {plant for name, plant in stops if person(name) == who}
         of_all = np.array(sorted(every), np.int32)

@@ -332,7 +332,7 @@ class OpenSeason:
             return self._closed(self._read(db), on, who, seconds_left)
 
     def closed_between(self, on: date, begins_s: float, ends_s: float) -> tuple[Closure, ...]:
-        """Return what `closed` does, of work between two seconds of the day `on`."""
+        """Return what `closed` does, of work from `begins_s` to `ends_s` of the day `on`."""
         now = local_clock(self.plot.field).now()
         waits = self._entry_waits()
         return closed_on(waits, on, begins_s, ends_s, now if now.date() == on else None)

@@ -173,8 +173,8 @@ class SeasonPlans(OpenSeason):
     ) -> tuple[Closure, ...]:
         """Return what is `closed` to the route kept of a day: by its own begin, if that is later.
 
-        Once something of their day is recorded, it is by where they stand. `kept_as`: by which name
-        the route of `who` is kept; None: their own.
+        Once something of their day is recorded, it is by where they stand. `on` as in `plan`;
+        `kept_as`: by which name the route of `who` is kept; None: their own.
         """
         with self._lock, self.store.reading() as db:  # all of one moment
             contents = self._read(db)

@@ -173,7 +173,7 @@ class SeasonPlans(OpenSeason):
     ) -> tuple[Closure, ...]:
         """Return what is `closed` to the route kept of a day: by its own begin, if that is later.
 
-        Once something of their day is recorded, it is by where they stand. `on` as in `plan`;
+        Once something of their day is recorded, it is by the clock. `on` as in `plan`;
         `kept_as`: by which name the route of `who` is kept; None: their own.
         """
         with self._lock, self.store.reading() as db:  # all of one moment
@@ -183,9 +183,13 @@ class SeasonPlans(OpenSeason):
             own = str(name or "") if kept_as is None else kept_as
             kept = routes.kept_last(db, settings.day(on)).get(person(own))
             begun = len(made_by(contents.history.inspections.on(on), name))
-            if kept is None or kept.begins is None or begun:
+            now = local_clock(self.plot.field).now()
+            begins = None if kept is None else kept.begins
+            if begun:  # whoever is out goes on now
+                begins = now if now.date() == on else None
+            if begins is None:
                 return self._closed(contents, on, who, None)
-            late_s = (kept.begins - datetime.combine(on, time())).total_seconds()
+            late_s = (begins - datetime.combine(on, time())).total_seconds()
             late_s -= self._begun_s(contents, on, who)
             day_s = shift.robot.day_s
             return self._closed(contents, on, who, min(max(day_s - late_s, 0.0), day_s))

@@ -147,7 +147,7 @@ def test_what_is_closed_now_is_closed_to_a_plan_whose_times_are_over(season, mon
 
 
 @pytest.mark.parametrize("part", [Part(), Part(name="Ann")])
-def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part):
+def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part, monkeypatch):
     plants = sprayed(season, [1, 2], 22)  # until 07:00, and work begins at 06:00
     kept = season.plan(ON, time(7)).route.plant
     assert plants[kept].any()
@@ -155,6 +155,9 @@ def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part)
     early = np.array([6.1 * 3600])
     season.record(Inspections.of(kept[:1], np.zeros(1, np.int8), ON, second=early), "f", "Ann")
     assert not plants[route_ahead(season, ON, part).plant].any()
+    it_is(monkeypatch, season, time(7, 10))  # who is out goes on now
+    assert season.closed(ON)
+    assert season.closed_to_kept(ON) == ()
 
 
 def test_east_and_west_are_closed_each_until_their_time():

@@ -99,7 +99,7 @@ def _say(made: SharedPlots, crew: EstateCrew) -> None:
     free = [one.name for one in crew.members() if one.name not in busy]
     if free:
         st.markdown(texts.PLAN_ALL_FREE.format(names=listed(free)))
-    for problem in made.problems:
+    for problem in (*made.closed, *made.problems):
         st.warning(problem)
     if made.turns:
         st.download_button(texts.PLAN_ALL_DOWNLOAD, partial(packed, made), "routes.zip",
@@ -110,7 +110,7 @@ def packed(made: SharedPlots) -> bytes:
     """Return the routes as GeoJSON, a file each, and a table of them."""
     out, table = io.BytesIO(), io.StringIO()
     rows = csv.writer(table)
-    rows.writerow(("file", "plot", "who", "from", "to", "plants", "finds_expected"))
+    rows.writerow(("file", "plot", "who", "from", "to", "plants", "finds_expected", "closed"))
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for k, one in enumerate(made.turns, start=1):
             name = "".join(c if c.isalnum() or c in "-_" else "_" for c in one.plot.name)[:60]
@@ -120,6 +120,7 @@ def packed(made: SharedPlots) -> bytes:
             rows.writerow((
                 file, one.plot.name, one.who, one.begins.isoformat(), one.ends.isoformat(),
                 len(one.plan.route), round(one.plan.route.expected_found, 2),
+                " ".join(one.closed),
             ))  # fmt: skip
         archive.writestr("plan.csv", ("\ufeff" + table.getvalue()).encode())
     return out.getvalue()

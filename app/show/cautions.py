@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.monitoring.closures import any_closed, left_off_in_words
+from fieldmon.monitoring.closures import any_closed, is_all_closed, left_off_in_words
 
 from ..state import chosen_day
 from ..words import texts
@@ -38,6 +38,15 @@ def show_today(choices: Choices, plan: DayPlan) -> None:
     show(choices, ("entry", "harvest") if is_ahead else ("entry",))
 
 
+def are_all_closed(choices: Choices, plan: DayPlan) -> bool:
+    """Tell whether people may not be yet at any plant that is left, and that is why none is."""
+    if choices.season is None or len(plan.route):
+        return False
+    left_s = plan.scene.seconds_left
+    closed = choices.season.closed(choices.on, choices.who or "", left_s)
+    return is_all_closed(plan.scene, closed)
+
+
 def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
     """Return what is left off the route as people may not be there yet, and off a kept one."""
     if chosen_day.route(choices).worked:
@@ -45,9 +54,11 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
     season, units = choices.season, choices.units.in_sentences(choices.on)
     closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
     said = left_off_in_words(closed, (choices.plot.grid, season.label), units)
-    shut = any_closed(closed, len(choices.plot.grid))
+    to_kept = season.closed_to_kept(choices.on, choices.who or "")
+    shut = any_closed(to_kept, len(choices.plot.grid))
     kept = np.count_nonzero(shut[chosen_day.given_out(choices)])
-    return [*map(in_words, said), *([texts.KEPT_CLOSED.format(n=int(kept))] if kept else [])]
+    told = texts.KEPT_CLOSED if len(plan.route) else texts.KEPT_ALL_CLOSED
+    return [*map(in_words, said), *([told.format(n=int(kept))] if kept else [])]
 
 
 def show_treatments(choices: Choices) -> None:

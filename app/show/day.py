@@ -22,6 +22,7 @@ from ..state import assumptions, chosen_day
 from ..words import texts
 from ..words.language import about, in_words, listed, number, weekday
 from ..words.units import hours
+from . import cautions
 from .assumed import mark
 
 if TYPE_CHECKING:
@@ -122,9 +123,10 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
     """
     if told := plan.route.aisles.shut_sentence():
         st.warning(in_words(told))
-    said = "" if len(plan.route) else texts.NO_STOPS
+    is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
+    said = "" if is_said else texts.NO_STOPS
     if choices.season is not None:
-        if not said and _is_of_nobody(choices):
+        if len(plan.route) and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)
         now = chosen_day.progress(choices)
         if is_over(choices, plan):

@@ -148,8 +148,9 @@ def season_plan(
 
 @st.cache_resource(max_entries=FEW)
 def season_scene(key: str, revision: str, day: str, _season: Season) -> Scene:
-    """Return what is known and believed on a season's day before it is planned."""
-    return _season.plan(np.datetime64(day).item(), keep=False).scene
+    """Return what is known and believed on a season's day before it is planned: nothing closed."""
+    with _season.entering_treated():
+        return _season.scene(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_DAYS)

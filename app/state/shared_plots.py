@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
+from fieldmon.monitoring.closures import any_closed, left_off_in_words
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.shared_day import PlotNeed, share_day
@@ -17,14 +19,23 @@ from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import USUAL, sampler
 
 from ..words import texts
-from ..words.language import of_error
-from . import assumptions, cached, plot_files, plot_source, sample_estate, seasons_folder
+from ..words.language import in_words, of_error
+from . import (
+    assumptions,
+    cached,
+    chosen_units,
+    plot_files,
+    plot_source,
+    sample_estate,
+    seasons_folder,
+)
 from .chosen_day import STARTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from datetime import date
 
+    from fieldmon.monitoring import Season
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.shared_day import PlotTurn
     from fieldmon.samplers.base import Sampler, Scene
@@ -59,7 +70,7 @@ class EstateCrew:
 
 @dataclass(frozen=True, eq=False)
 class PlannedTurn:
-    """A plot of the day's plan: who works there and from when on, and the route."""
+    """A plot of the day's plan: who works there and from when on, the route, and what is closed."""
 
     plot: PlotState
     who: str
@@ -67,6 +78,8 @@ class PlannedTurn:
     begins: datetime
     plan: DayPlan
     sampler: str
+    closed: tuple[str, ...] = ()
+    is_shut: bool = False
 
     @property
     def ends(self) -> datetime:
@@ -76,18 +89,22 @@ class PlannedTurn:
 
 @dataclass(frozen=True, eq=False)
 class SharedPlots:
-    """The plan: its turns, plots for which there is no time, and plots that cannot be planned."""
+    """The plan: its turns, plots for which there is no time, and plots that cannot be planned.
+
+    And what is left off as people may not be there yet.
+    """
 
     turns: tuple[PlannedTurn, ...]
     waiting: tuple[PlotState, ...] = ()
     problems: tuple[str, ...] = ()
+    closed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class _Ready:
     """A plot that can be planned: what is believed of it on its day, and who decides there.
 
-    `key` stands for all of it.
+    `key` stands for all of it. Of a `season`, which tells what is closed to people.
     """
 
     plot: PlotState
@@ -96,6 +113,7 @@ class _Ready:
     scene: Scene
     sampler: str
     decides: Sampler
+    season: Season | None = None
 
 
 def due(plots: Iterable[PlotState]) -> list[PlotState]:
@@ -122,17 +140,32 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         progress(len(plots) + k, 2 * len(plots))
         turns.append(_planned(ready[turn.plot], turn, members[turn.who]))
     worked = [one for one in turns if len(one.plan.route)]
-    served = {id(one.plot) for one in worked}
+    served = {id(one.plot) for one in turns if len(one.plan.route) or one.is_shut}
+    closed = [f"{texts.isolated(one.plot.name)}: {said}" for one in turns for said in one.closed]
     waiting = [one.plot for one in ready if id(one.plot) not in served]
-    return SharedPlots(tuple(worked), tuple(waiting), tuple(problems))
+    said = tuple(dict.fromkeys(closed))
+    return SharedPlots(tuple(worked), tuple(waiting), tuple(problems), said)
 
 
 def _planned(ready: _Ready, turn: PlotTurn, member: TeamMember) -> PlannedTurn:
     # to the second, so that the same turn is planned once
     robot = replace(member.robot, hours=max(round(turn.seconds), 1) / 3600)
-    plan = cached.turn_plan(ready.key, robot, ready.scene, ready.decides)
     begins = datetime.combine(ready.on, STARTS) + timedelta(seconds=round(turn.starts_s))
-    return PlannedTurn(ready.plot, member.name, turn.who, begins, plan, ready.sampler)
+    season, key, scene, said, shut = ready.season, ready.key, ready.scene, (), np.False_
+    if season is not None:
+        begins_s = (begins - datetime.combine(ready.on, time())).total_seconds()
+        closed = season.closed_between(ready.on, begins_s, begins_s + robot.day_s)
+        shut = any_closed(closed, len(scene.chance))
+        key = f"{key} {digest(shut)}"
+        scene = replace(
+            scene, last_inspected=np.where(shut, np.int32(scene.day), scene.last_inspected)
+        )
+        units = chosen_units.units().in_sentences(ready.on)
+        said = tuple(map(in_words, left_off_in_words(closed, (scene.grid, season.label), units)))
+    plan = cached.turn_plan(key, robot, scene, ready.decides)
+    return PlannedTurn(
+        ready.plot, member.name, turn.who, begins, plan, ready.sampler, said, bool(shut.all())
+    )
 
 
 def _whole_s(scene: Scene, members: Iterable[TeamMember]) -> float:
@@ -161,7 +194,7 @@ def _of_season(plot: PlotState) -> _Ready:
     now = cached.revision_on(season, on)
     key = f"{season.key} {now} {on}"
     scene = cached.season_scene(season.key, now, str(on), season)
-    return _Ready(plot, key, on, scene, settings.sampler, settings.decides())
+    return _Ready(plot, key, on, scene, settings.sampler, settings.decides(), season)
 
 
 def _of_files(plot: PlotState) -> _Ready:

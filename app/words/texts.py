@@ -843,6 +843,10 @@ HARVEST_HELP = "Treatments whose waiting period is not over by then are warned o
 KEPT_CLOSED = (
     "The plan kept of this day leads where people may not be yet (plants: {n:,}). Plan it anew."
 )
+KEPT_ALL_CLOSED = (
+    "The plan kept of this day leads where people may not be yet (plants: {n:,}). Give it to "
+    "nobody."
+)
 HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
 LABELS, LABELS_IN = "What labels allow", "Your label table (CSV)"
 LABELS_NOTE = (

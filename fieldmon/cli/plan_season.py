@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import nullcontext
 from datetime import datetime
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import typer
 
@@ -61,11 +61,12 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     if options.bound and len(today.route):
         today = with_bound(today)
     route = today.route
-    off = _left_off(season, on, (("", today),))
-    if not len(route) and off and not options.enter_treated:
+    off = _LeftOff.of(season, on, (("", today),))
+    if off.all_closed and not options.enter_treated:
         raise _nobody_may_enter(on, off)
     if not len(route):
-        left_h = today.scene.seconds_left / 3600
+        if left_h := today.scene.seconds_left / 3600:
+            _tell_left_off(options, off, on_foot=True)
         raise SettingError(
             "The working day must be long enough to reach another plant and come back, but "
             f"{left_h:.1f} h are left of {on}. Plan another day with --date."
@@ -83,34 +84,62 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     write_chance_map(options.chance_map, season.plot, season.evening(on))
 
 
-def _left_off(season: Season, on: date, days: tuple[tuple[str, DayPlan], ...]) -> tuple[str, ...]:
-    """Return which plants are left off plans of those named as people may not be there yet."""
-    from fieldmon.compute.units import Units
-    from fieldmon.monitoring.closures import left_off_in_words
+class _LeftOff(NamedTuple):
+    """What is left off plans as people may not be there yet.
 
-    plot = season.plot.grid, season.label
-    closed = [season.closed(on, who, today.scene.seconds_left) for who, today in days]
-    return tuple(
-        dict.fromkeys(said for each in closed for said in left_off_in_words(each, plot, Units()))
-    )
+    Parameters
+    ----------
+    said
+        Which plants, and until when.
+    all_closed
+        Whether nobody has a plant to go to for that reason.
+    opens
+        Whether any of it opens within the hours.
+    leads_there
+        Whether a route leads to such plants.
+    """
+
+    said: tuple[str, ...]
+    all_closed: bool
+    opens: bool
+    leads_there: bool
+
+    @classmethod
+    def of(cls, season: Season, on: date, days: tuple[tuple[str, DayPlan], ...]) -> _LeftOff:
+        """Return it of the plans of those named."""
+        from fieldmon.compute.units import Units
+        from fieldmon.monitoring.closures import any_closed, is_all_closed, left_off_in_words
+
+        plot, n = (season.plot.grid, season.label), len(season.plot.grid)
+        each = [(season.closed(on, who, today.scene.seconds_left), today) for who, today in days]
+        said = (said for closed, _ in each for said in left_off_in_words(closed, plot, Units()))
+        timely = [one for one in each if one[1].scene.seconds_left > 0]
+        return cls(
+            tuple(dict.fromkeys(said)),
+            bool(timely) and all(is_all_closed(today.scene, closed) for closed, today in timely),
+            any(one.opens for closed, _ in each for one in closed),
+            any(any_closed(closed, n)[today.route.plant].any() for closed, today in each),
+        )
 
 
-def _nobody_may_enter(on: date, off: tuple[str, ...]) -> SettingError:
+def _nobody_may_enter(on: date, off: _LeftOff) -> SettingError:
+    later = "from a later time with --now, " if off.opens else ""
     return SettingError(
         f"People must have a plant to inspect where they may be, but none is left on {on} within "
-        f"the hours. {' '.join(off)} Plan from a later time with --now, another day with --date, "
-        "or for robots with --enter-treated."
+        f"the hours. {' '.join(off.said)} Plan {later}another day with --date, or for robots with "
+        "--enter-treated."
     )
 
 
-def _tell_left_off(options: PlanOptions, off: tuple[str, ...], *, on_foot: bool) -> None:
+def _tell_left_off(options: PlanOptions, off: _LeftOff, *, on_foot: bool) -> None:
     """Print what is left off, and what to do where no people work."""
-    if options.enter_treated and off:
-        typer.echo("seen: Routes lead to plants where people may not be yet.", err=True)
+    if options.enter_treated:
+        if off.leads_there:
+            typer.echo("seen: Routes lead to plants where people may not be yet.", err=True)
         return
-    for said in off:
+    for said in off.said:
         typer.echo(f"seen: {said}", err=True)
-    if off and not on_foot:
+    if off.said and not on_foot:
         typer.echo(
             "seen: Whether people or robots work is not known: add --enter-treated where only "
             "robots do.",
@@ -153,10 +182,11 @@ def _plan_team(
     refuse_unrecorded(season, (file for each in files for file in each))
     days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
     named = tuple(zip((one.name for one in team), days, strict=True))
-    off = _left_off(season, on, named)
+    off = _LeftOff.of(season, on, named)
     if not any(len(today.route) for today in days):
-        if off and not options.enter_treated:
+        if off.all_closed and not options.enter_treated:
             raise _nobody_may_enter(on, off)
+        _tell_left_off(options, off, on_foot=True)
         raise SettingError(
             f"Somebody must have time to reach another plant and come back, but nobody has on "
             f"{on}. Plan another day with --date."

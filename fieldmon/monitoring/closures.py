@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.samplers.base import Scene
 
 
 class Closure(NamedTuple):
@@ -87,18 +88,31 @@ def _of_their_rows(plants: NDArray[np.bool_], grid: PlantGrid) -> NDArray[np.boo
 
 
 def closed_on(
-    waits: Iterable[EntryWait], on: date, begins_s: float, ends_s: float
-) -> tuple[Closure, ...]:
-    """Return what is closed to work between two seconds of a day."""
+    waits: Iterable[EntryWait], on: date, begins_s: float, ends_s: float,
+    now: datetime | None = None,
+) -> tuple[Closure, ...]:  # fmt: skip
+    """Return what is closed to work between two seconds of a day.
+
+    With what is closed to it if it begins `now`, where that is later.
+    """
     midnight = datetime.combine(on, time())
     begins, ends = (midnight + timedelta(seconds=round(s)) for s in (begins_s, ends_s))
-    closed = (one.closes(begins, ends) for one in waits)
+    late = begins if now is None else max(begins, now)
+    closed = (one.closes(begins, ends) or one.closes(late, ends) for one in waits)
     return tuple(one for one in closed if one is not None)
 
 
 def any_closed(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
     """Return ``(n,)`` which plants people may not come to."""
     return np.any([one.plants for one in closed], axis=0) if closed else np.zeros(n, np.bool_)
+
+
+def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:
+    """Tell whether there is time, but no plant where people may be: others were inspected today."""
+    if not closed or scene.seconds_left <= 0:
+        return False
+    shut = any_closed(closed, len(scene.chance)) | (scene.last_inspected == scene.day)
+    return bool(shut.all())
 
 
 def left_off_in_words(
@@ -122,7 +136,12 @@ def left_off_in_words(
 def _in_words(one: Closure, rows: NDArray[np.integer] | None, n: int, units: Units) -> Worded:
     which = counted(n, "plant")
     if rows is not None:
-        which = worded("{plants} in rows {rows}", plants=which, rows=runs(rows.tolist()))
+        said = runs(rows.tolist())
+        which = (
+            worded("{plants} in row {row}", plants=which, row=said)
+            if len(rows) == 1
+            else worded("{plants} in rows {rows}", plants=which, rows=said)
+        )
     values = {
         "time": f"{one.until:%H:%M}",
         "date": units.day(one.until.date()),
@@ -132,7 +151,7 @@ def _in_words(one: Closure, rows: NDArray[np.integer] | None, n: int, units: Uni
     if one.opens:
         return worded(
             "Closed until {time} on {date} after {product}, so not on the route: {which}. A plan "
-            "made from then on may have them.", **values,
+            "that begins then or later may have them.", **values,
         )  # fmt: skip
     return worded(
         "Closed until {time} on {date} after {product}, so not on the route: {which}.", **values

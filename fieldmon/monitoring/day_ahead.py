@@ -232,7 +232,8 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     ahead = DayAhead.of(season, on)
     with season.entering_treated():
         scene = season.scene(on, who=part.name)
-    closed = any_closed(season.closed(on, part.name), len(scene.chance))
+    shut = season.closed_to_kept(on, part.name, ahead.kept_as(part))
+    closed = any_closed(shut, len(scene.chance))
     kept = ahead.route(part)
     kept = kept[scene.last_inspected[kept] != scene.day]
     left = kept[ahead.own(part)[kept]]

@@ -324,11 +324,18 @@ class OpenSeason:
     ) -> tuple[Closure, ...]:
         """Return the plants where people may not be yet when work, or what is left of it, begins.
 
-        That is now at the earliest. They are those of all rows in which any was treated. `on` and
-        `who` as in `scene`; `seconds_left` of the day; None: what its scene says.
+        That is by its own times, and by the clock where that is later. They are those of all rows
+        in which any was treated. `on` and `who` as in `scene`; `seconds_left` of the day; None:
+        what its scene says.
         """
         with self._lock, self.store.reading() as db:  # all of one moment
             return self._closed(self._read(db), on, who, seconds_left)
+
+    def closed_between(self, on: date, begins_s: float, ends_s: float) -> tuple[Closure, ...]:
+        """Return what `closed` does, of work from `begins_s` to `ends_s` of the day `on`."""
+        now = local_clock(self.plot.field).now()
+        waits = self._entry_waits()
+        return closed_on(waits, on, begins_s, ends_s, now if now.date() == on else None)
 
     @contextmanager
     def entering_treated(self) -> Iterator[None]:
@@ -351,10 +358,7 @@ class OpenSeason:
             day = contents.settings.day(on)
             gone_s = contents.history.gone_s(shift, day, None, name)
             seconds_left = max(0.0, day_s - gone_s)
-        begins_s, now = begun_s + day_s - seconds_left, local_clock(self.plot.field).now()
-        if now.date() == on:
-            begins_s = max(begins_s, seconds(now.time()))
-        return closed_on(self._entry_waits(), on, begins_s, begun_s + day_s)
+        return self.closed_between(on, begun_s + day_s - seconds_left, begun_s + day_s)
 
     def _entry_waits(self) -> tuple[EntryWait, ...]:
         with self.store.reading() as db:

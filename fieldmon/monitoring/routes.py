@@ -119,13 +119,14 @@ def days(db: sqlite3.Connection) -> NDArray[np.int64]:
 class KeptRoute(NamedTuple):
     """A route that is kept: its number in the file, which of its day it is, its digest, its begin.
 
-    It begins `at` a plant, or at the gate (-1).
+    It begins `at` a plant, or at the gate (-1), and at a local time; None: no route.
     """
 
     number: int
     revision: int
     digest: str
     at: int = GATE
+    begins: datetime | None = None
 
     @property
     def plan(self) -> int:
@@ -136,13 +137,16 @@ class KeptRoute(NamedTuple):
 def kept_last(db: sqlite3.Connection, day: int) -> dict[str, KeptRoute]:
     """Return the route kept last for a day of each who has one, by `person`."""
     last: dict[str, KeptRoute] = {}
-    wanted = "SELECT who, fid, revision, digest, at_plant FROM routes WHERE day = ? ORDER BY fid"
-    for who, number, revision, mark, at in db.execute(wanted, (day,)):
+    wanted = (
+        "SELECT who, fid, revision, digest, at_plant, starts FROM routes WHERE day = ? ORDER BY fid"
+    )
+    for who, number, revision, mark, at, starts in db.execute(wanted, (day,)):
         # older files may write a name in two ways, and count each
         before = last.get(person(who), KeptRoute(0, 0, ""))
         last[person(who)] = KeptRoute(
-            number, max(revision, before.revision), mark, GATE if at is None else at
-        )
+            number, max(revision, before.revision), mark, GATE if at is None else at,
+            datetime.fromisoformat(starts),
+        )  # fmt: skip
     return last
 
 
@@ -164,7 +168,8 @@ class KeptPlans:
     last, of_all
         Plants of the plan kept last, and of all of them.
     begins, ends
-        When the first begins, and the last ends.
+        When the first begins, and the last ends. Of several that begin where the first does no
+        work was done by but the last: that one is the first.
     at
         The plants where the first and the last begin, -1: the gate.
     """
@@ -196,7 +201,10 @@ def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     made = []
     for who, last in kept_last(db, day).items():
         own = [(datetime.fromisoformat(t), s, at) for name, t, s, at in rows if person(name) == who]
-        begins, ends = own[0][0], own[-1][0] + timedelta(seconds=own[-1][1])
+        # files of before do not say where a plan begins
+        same = [t for t, _, at in own if at is not None and at == own[0][2] and t <= own[-1][0]]
+        begins = same[-1] if same else own[0][0]
+        ends = own[-1][0] + timedelta(seconds=own[-1][1])
         first, newest = (GATE if at is None else at for _, _, at in (own[0], own[-1]))
         every = {plant for name, plant in stops if person(name) == who}
         of_all = np.array(sorted(every), np.int32)

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.monitoring.closures import Closure
     from fieldmon.monitoring.open_season import SeasonContents
     from fieldmon.monitoring.routes import KeptPlans, KeptRoute
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -166,6 +167,32 @@ class SeasonPlans(OpenSeason):
             named = settings.at_work(who)
             last = routes.kept_last(db, settings.day(on))
             return routes.plants(db, last.get(person(who if named is None else named.name)))
+
+    def closed_to_kept(
+        self, on: date, who: str = "", kept_as: str | None = None
+    ) -> tuple[Closure, ...]:
+        """Return what is `closed` to the route kept of a day: by its own begin, if that is later.
+
+        Once something of their day is recorded, it is by the clock. `on` as in `plan`;
+        `kept_as`: by which name the route of `who` is kept; None: their own.
+        """
+        with self._lock, self.store.reading() as db:  # all of one moment
+            contents = self._read(db)
+            settings = self._planned_by(contents, on, db)
+            shift, name = self._shift(settings, who)
+            own = str(name or "") if kept_as is None else kept_as
+            kept = routes.kept_last(db, settings.day(on)).get(person(own))
+            begun = len(made_by(contents.history.inspections.on(on), name))
+            now = local_clock(self.plot.field).now()
+            begins = None if kept is None else kept.begins
+            if begun:  # whoever is out goes on now
+                begins = now if now.date() == on else None
+            if begins is None:
+                return self._closed(contents, on, who, None)
+            late_s = (begins - datetime.combine(on, time())).total_seconds()
+            late_s -= self._begun_s(contents, on, who)
+            day_s = shift.robot.day_s
+            return self._closed(contents, on, who, min(max(day_s - late_s, 0.0), day_s))
 
     def planned_only(self, until: date) -> tuple[date, ...]:
         """Return the planned days `until` a date of which nothing is recorded, in order.

@@ -65,11 +65,15 @@ def test_plants_where_people_may_not_be_yet_are_left_out_and_that_is_said(run, s
     assert f"seen: {said}\n" in err
     assert "people or robots" in err
     assert not np.isin(line[kept.kept_route(on)], [1, 2]).any()
+    assert "may not be yet" not in run(*words, "--enter-treated")[2]  # the route is elsewhere
+    err = run(*words, "--now", "23:00")[2]
+    assert "0.0 h are left" in err
+    assert "Closed until" not in err
     sprayed(np.unique(line))
     code, _, err, made = run(*words, "-o", "r.csv")
     assert (code, made) == (2, set())
     assert "Closed until 05:00 on" in err
-    assert "Plan from a later time with --now" in err
+    assert "Plan another day with --date, or for robots" in err
     code, _, err, made = run(*words, "-o", "r.csv", "--enter-treated")
     assert (code, len(made)) == (0, 1)
     assert "seen: Routes lead to plants where people may not be yet." in err

@@ -9,6 +9,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.closures import any_closed, closed_on, entry_waits, left_off_in_words
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
@@ -65,7 +66,7 @@ def test_what_is_left_off_is_said_once_with_its_last_time(season):
     assert second == (
         "Closed until 09:00 on 2026-04-07 after Acarol, so not on the route: "
         f"{low} plants in rows 1–2, 7."
-        + " A plan made from then on may have them."
+        + " A plan that begins then or later may have them."
         * (season.settings.robot.hours > 3)
     )
 
@@ -124,15 +125,48 @@ def test_nobody_of_a_team_is_sent_there(season):
     assert not plants[season.scene(ON, who="robot-2").last_inspected != 1].any()
 
 
-def test_today_begins_now_at_the_earliest(season, monkeypatch):
-    plants = sprayed(season, [1, 2], 24)
-    moment = local_clock(season.plot.field).moment(ON, time(10))
+def it_is(monkeypatch, season, at):
+    moment = local_clock(season.plot.field).moment(ON, at)
     monkeypatch.setattr("fieldmon.plot.local_clock.utc_now", lambda: moment)
+
+
+def test_rows_that_opened_since_are_closed_to_a_plan_whose_times_begin_before(season, monkeypatch):
+    plants = sprayed(season, [1, 2], 22)  # until 07:00, and work begins at 06:00
+    it_is(monkeypatch, season, time(10))
+    assert not plants[season.plan(ON, keep=False).route.plant].any()
+    assert plants[season.plan(ON, time(7), keep=False).route.plant].any()
+
+
+def test_what_is_closed_now_is_closed_to_a_plan_whose_times_are_over(season, monkeypatch):
+    plants = np.isin(season.label.line, [1, 2])
+    late = Application("Soap", reentry_hours=5.0, began=time(20), ended=time(20, 30))
+    season.treat(ON, 0.1, plants=plants, application=late)
     assert season.closed(ON) == ()
-    assert plants[season.plan(ON, keep=False).route.plant].any()
+    it_is(monkeypatch, season, time(21))
+    assert len(season.closed(ON)) == 1
+
+
+@pytest.mark.parametrize("part", [Part(), Part(name="Ann")])
+def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part, monkeypatch):
+    plants = sprayed(season, [1, 2], 22)  # until 07:00, and work begins at 06:00
+    kept = season.plan(ON, time(7)).route.plant
+    assert plants[kept].any()
+    assert route_ahead(season, ON, part).plant.tolist() == kept.tolist()
+    early = np.array([6.1 * 3600])
+    season.record(Inspections.of(kept[:1], np.zeros(1, np.int8), ON, second=early), "f", "Ann")
+    assert not plants[route_ahead(season, ON, part).plant].any()
+    it_is(monkeypatch, season, time(7, 10))  # who is out goes on now
+    assert season.closed(ON)
+    assert season.closed_to_kept(ON) == ()
 
 
 def test_east_and_west_are_closed_each_until_their_time():
     done = [treated(0, EAST, reentry_hours=24.0), treated(0, WEST, reentry_hours=48.0)]
     closed = closed_on(entry_waits(done, (), TREES), date(2026, 4, 7), 9 * 3600, 12 * 3600)
     assert any_closed(closed, 20).tolist() == WEST.tolist()
+
+
+def test_one_row_is_a_row(season):
+    sprayed(season, [3], 24)
+    (said,) = left_off_in_words(season.closed(ON), (season.plot.grid, season.label), Units())
+    assert "plants in row 3." in said

@@ -276,3 +276,12 @@ def test_the_plans_of_a_team_are_held_to_what_each_and_all_did(tmp_path):
     assert (first.done, second.done, of_all.done) == (3, 0, 3)
     assert first.planned == len(days[0].route)
     assert of_all.planned == first.planned + second.planned
+
+
+@pytest.mark.parametrize("starts", [time(2), time(9)])
+def test_a_day_planned_again_with_another_start_takes_the_hours_of_its_last_plan(tmp_path, starts):
+    season = a_season(tmp_path / "again.gpkg")
+    season.plan(BEGINS)
+    season.change(replace(season.settings, starts=starts), season.settings)
+    rest = season.plan(BEGINS).route
+    assert season.planned_and_done(BEGINS).hours == pytest.approx(rest.end_s / 3600)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.show import cautions
+from app.show import cautions, day
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.monitoring.applications import Application
@@ -47,7 +47,9 @@ def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     assert shown[-1] == ("caption", texts.EFFECTS_TREATED)
 
 
-def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(shown, tmp_path):
+def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
+    shown, tmp_path, monkeypatch
+):
     season = a_season(tmp_path / "season.gpkg")
     given = season.plan(BEGINS).route.plant
     line = season.label.line
@@ -65,3 +67,11 @@ def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(shown, tm
     n = int((line[given] == row).sum())
     assert second == f"- {texts.KEPT_CLOSED.format(n=n)}"
     assert "Do not enter before 05:00" in entry
+    season.treat(BEGINS, 0.0, application=waits)
+    monkeypatch.setattr(day, "st", cautions.st)
+    shown.clear()
+    today.revision = season.revision
+    day.said_of_day(today, today.plan())
+    assert shown == []  # not that hours are too short
+    cautions.show_today(today, today.plan())
+    assert shown[0][1].endswith(texts.KEPT_ALL_CLOSED.format(n=len(given)))

@@ -2,16 +2,19 @@
 
 import shutil
 from dataclasses import replace
-from datetime import timedelta
+from datetime import time, timedelta
 from itertools import pairwise
 
+import numpy as np
 import pytest
 import shapely
 
 from app.state import estate, shared_plots
 from app.state.estate import PlotState
 from app.state.shared_plots import EstateCrew
+from fieldmon.monitoring.applications import Application
 from fieldmon.planning.plan import plan_in
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.samplers import sampler
 
 OUTLINE = shapely.MultiPolygon([shapely.box(0, 0, 1, 1)])
@@ -78,3 +81,34 @@ def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
     assert len(by_itself) > 10
     assert len(made.problems) == 1
     assert "gone" in made.problems[0]
+
+
+@pytest.mark.usefixtures("session")
+def test_rows_are_closed_by_the_hours_at_which_somebody_is_there(
+    begun_file, seasons_folder, season
+):
+    shutil.copy(begun_file, seasons_folder)
+    project, settings = season(), season().settings
+    project.change(replace(settings, starts=time(7)), settings)
+    on = max(local_clock(project.plot.field).today(), settings.begins)
+    line = project.label.line
+
+    def planned(rows):
+        until_half_past_six = Application(
+            "Soap", reentry_hours=6.0, began=time(0, 10), ended=time(0, 30)
+        )
+        plants = np.isin(line, rows)
+        project.treat(on, 0.1, plants=plants, application=until_half_past_six)
+        (own,), _ = estate.plots()
+        return shared_plots.planned([own], EstateCrew(robot_hours=1), lambda *_: None)
+
+    made = planned(np.unique(line)[::2])
+    (turn,) = made.turns
+    assert turn.begins.time() == time(6)
+    assert not (line[turn.plan.route.plant] % 2).any()
+    assert turn.closed
+    (said,) = made.closed
+    assert "Closed until 06:30" in said
+    made = planned(np.unique(line))
+    assert (made.turns, made.waiting) == ((), ())
+    assert "Closed until 06:30" in made.closed[0]

@@ -6,7 +6,6 @@ from math import dist
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.clock import as_clocks, clock_time
@@ -104,6 +103,8 @@ def same_places(xy_m: Floats, accuracy_m: Floats) -> NDArray[np.intp]:
     accuracy_m
         ``(k,)`` of them; NaN where it is not known: they are the same within a centimetre.
     """
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - not all tables have positions
+
     _, first, same = np.unique(np.round(xy_m, 3), axis=0, return_index=True, return_inverse=True)
     place = first[same.ravel()]
     told = ~(accuracy_m > _TELLS_PLANTS_M)

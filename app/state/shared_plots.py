@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring.closures import any_closed, left_off_in_words
+from fieldmon.monitoring.closures import any_closed, left_off_in_words, open_to_people
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.shared_day import PlotNeed, share_day
@@ -157,9 +157,7 @@ def _planned(ready: _Ready, turn: PlotTurn, member: TeamMember) -> PlannedTurn:
         closed = season.closed_between(ready.on, begins_s, begins_s + robot.day_s)
         shut = any_closed(closed, len(scene.chance))
         key = f"{key} {digest(shut)}"
-        scene = replace(
-            scene, last_inspected=np.where(shut, np.int32(scene.day), scene.last_inspected)
-        )
+        scene = open_to_people(scene, closed)
         units = chosen_units.units().in_sentences(ready.on)
         said = tuple(map(in_words, left_off_in_words(closed, (scene.grid, season.label), units)))
     plan = cached.turn_plan(key, robot, scene, ready.decides)

@@ -14,6 +14,7 @@ from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.unwatched import (
     LEVEL_DOUBT,
+    MOST_GROWN,
     OF_A_PEST,
     RATE_DOUBT,
     Unwatched,
@@ -38,8 +39,6 @@ _DRAWS = 4000
 # an interval of 90 % is so many standard deviations wide
 _SIGMAS = 3.29
 _LEAST = 1e-9
-# more would be no number
-_MOST_GROWN = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,7 +228,7 @@ def _interval(
     level = draws.gamma(beyond**-2.0, beyond**2.0, _DRAWS)
     faster = np.exp(draws.normal(0.0, RATE_DOUBT, _DRAWS))
     arrives = draws.gamma(known, 1.0 / known, _DRAWS)
-    level = level * np.exp(np.minimum(since.grown * (faster - 1.0), _MOST_GROWN))
+    level = level * np.exp(np.minimum(since.grown * (faster - 1.0), MOST_GROWN))
     # of what was there when somebody inspected last the map knows how doubtful it is
     new = since.arrived * (inside[0] + arrived[0])
     before = _tonight(inside[0] + arrived[0] - new, new, doubt, draws)

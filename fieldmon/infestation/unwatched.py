@@ -31,8 +31,8 @@ _MOST_VARIANCE = 1.0
 _DRAWS, _STEPS = 400, (0.7320508075688772, 0.6457513110645907, 0.3166247903553998)
 # the roots of 13 and 17; and of more than this whole numbers tell nothing
 _WHOLE_STEPS, _FEW = (0.605551275463989, 0.123105625617661), 1e3
-# more would be no number
-_MOST_GROWN = 100.0
+#: more growth than this, as a logarithm, would be no number
+MOST_GROWN = 100.0
 
 
 def arrivals_known(found: float) -> float:
@@ -125,7 +125,7 @@ class Unwatched(NamedTuple):
         faster = np.exp(RATE_DOUBT * ndtri(other))
         known = arrivals_known(arrivals_found)
         came = self.arrived * gammaincinv(known, third) / known
-        grew = np.exp(np.minimum(self.grown * (faster - 1.0), _MOST_GROWN))
+        grew = np.exp(np.minimum(self.grown * (faster - 1.0), MOST_GROWN))
         return Since(before, levels * grew * (1.0 - self.arrived), levels * came)
 
     def inspected(self, found: float, variance: float) -> Unwatched:

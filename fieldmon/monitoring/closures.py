@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -105,6 +106,15 @@ def closed_on(
 def any_closed(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
     """Return ``(n,)`` which plants people may not come to."""
     return np.any([one.plants for one in closed], axis=0) if closed else np.zeros(n, np.bool_)
+
+
+def open_to_people(scene: Scene, closed: Sequence[Closure]) -> Scene:
+    """Return a scene in which nobody is sent to plants that are closed: they seem inspected."""
+    if not closed:
+        return scene
+    shut = any_closed(closed, len(scene.chance))
+    last = np.where(shut, np.int32(scene.day), scene.last_inspected)
+    return replace(scene, last_inspected=last)
 
 
 def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:

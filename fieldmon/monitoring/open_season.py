@@ -29,7 +29,7 @@ from fieldmon.monitoring import (
     tables,
     treatments,
 )
-from fieldmon.monitoring.closures import any_closed, closed_on, entry_waits
+from fieldmon.monitoring.closures import closed_on, entry_waits, open_to_people
 from fieldmon.monitoring.history import Besides, History, Shift
 from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
@@ -373,11 +373,7 @@ class OpenSeason:
     ) -> Scene:
         """Return a scene in which nobody is sent to plants that are closed to people."""
         closed = () if self._enters else self._closed(contents, on, who, scene.seconds_left)
-        if not closed:
-            return scene
-        shut = any_closed(closed, len(scene.chance))
-        last = np.where(shut, np.int32(scene.day), scene.last_inspected)
-        return replace(scene, last_inspected=last)
+        return open_to_people(scene, closed)
 
     def begun_s(self, on: date, who: str | Besides = "") -> float:
         """Return the second of the day `on` at which work began, or will; `who` as in `plan`.

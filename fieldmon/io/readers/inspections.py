@@ -389,8 +389,9 @@ def _whole_plants(
     visit = visits_of(alike, _at_s(rows, leaves))
     result, count = rows.result.copy(), rows.count.copy()
     others, n_plants = list[int](), 0
-    for one in np.unique(visit).tolist():
-        of = leaves[visit == one]
+    order = np.argsort(visit, kind="stable")
+    visits, begins = np.unique(visit[order], return_index=True)
+    for one, of in zip(visits.tolist(), np.split(leaves[order], begins[1:]), strict=True):
         if len(of) == 1 or len(set(rows.leaf[of].tolist())) < len(of):
             continue
         found = of[rows.result[of] == PRESENT]

@@ -18,6 +18,7 @@ from fieldmon.cli.options import (
     PlantSpacing,
     RobotTimesName,
     RowSpacing,
+    VisitEvery,
 )
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
@@ -73,7 +74,8 @@ class StudyOptions:
         list[float] | None,
         typer.Option(help="Chance per night and neighbour; repeat.", callback=within(CHANCE)),
     ] = None
-    days: Annotated[int, typer.Option(help="Working days of a season.", callback=within(DAYS))] = 25
+    days: Annotated[int, typer.Option(help="Days of a season.", callback=within(DAYS))] = 25
+    visit_every: VisitEvery = 1
     seeds: Annotated[
         int, typer.Option(help="Seasons of each combination.", callback=within(SEASONS))
     ] = 100
@@ -116,7 +118,8 @@ class StudyOptions:
         chosen: dict[str, Any] = {name: tuple(values) for name, values in told.items() if values}
         if self.robot_times is not None:
             chosen["robot_times"] = self.robot_times
-        return Design(**chosen, n_days=self.days, n_seeds=self.seeds, first_seed=self.first_seed)
+        chosen |= {"n_days": self.days, "visit_every": self.visit_every}
+        return Design(**chosen, n_seeds=self.seeds, first_seed=self.first_seed)
 
     def planting(self) -> PlantingChoices:
         """Return what was said of the rows."""

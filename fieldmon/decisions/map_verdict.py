@@ -19,6 +19,8 @@ from fieldmon.infestation.plot_estimate import doubted, draw_fields
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.unwatched import Since
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -91,6 +93,8 @@ class AskedVerdict:
     doubt
         How far the expected share may be off beyond what the chances say, as a share of it
         (`Belief.doubt_of_rates`).
+    since
+        What the number may have become on days without inspections (`Belief.since_inspected`).
 
     Raises
     ------
@@ -101,6 +105,12 @@ class AskedVerdict:
     level: float
     sure: float = 0.9
     doubt: float = 0.0
+    since: Since | None = None
+
+    @classmethod
+    def on(cls, belief: Belief, level: float, sure: float = 0.9) -> AskedVerdict:
+        """Return what is asked of a belief, which says itself how doubtful its number is."""
+        return cls(level, sure, belief.doubt_of_rates, belief.since_inspected)
 
     def __post_init__(self) -> None:
         if not 0.0 < self.level < 1.0:
@@ -179,7 +189,7 @@ def map_verdict(
         )
     pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
     weights = csc_array(of[:, None] / np.count_nonzero(of))
-    shares = _drawn(grid, (chance, pairs), weights, asked.doubt, key)
+    shares = _drawn(grid, (chance, pairs), weights, asked, key)
     return asked.of(shares[:, 0], float(chance[of].mean()))
 
 
@@ -259,7 +269,7 @@ def zone_verdicts(
         ),
         (n, count + 1),
     )
-    shares = _drawn(grid, (chance, pairs), weights, asked.doubt)
+    shares = _drawn(grid, (chance, pairs), weights, asked)
     expected = chance @ weights
     made = [asked.of(shares[:, k], float(expected[k])) for k in range(count)]
     return ZoneVerdicts(tuple(made), float(np.mean(shares[:, count] < asked.level)))
@@ -269,23 +279,35 @@ def _drawn(
     grid: PlantGrid,
     believed: tuple[Floats, Floats],
     weights: csc_array,
-    doubt: float,
+    asked: AskedVerdict,
     key: np.uint64 = np.uint64(0),  # noqa: B008 - a number, not a call with effects
 ) -> Floats:
     """Return sums over the infested plants of each drawn field, ``(draws, k)``.
 
-    `weights` ``(n, k)`` is what each plant counts in each sum; `doubt` says how far the expected
-    numbers may be off, and `key` names the fields.
+    `weights` ``(n, k)`` is what each plant counts in each sum, and `key` names the fields.
     """
-    at_once = int(np.clip(_CELLS_AT_ONCE // len(grid), 1, _DRAWS))
-    sums = np.empty((_DRAWS, weights.shape[1]))
+    n = len(grid)
+    at_once = int(np.clip(_CELLS_AT_ONCE // n, 1, _DRAWS))
+    sums, numbers = np.empty((_DRAWS, weights.shape[1])), np.empty(_DRAWS)
     for first in range(0, _DRAWS, at_once):
-        fields = np.empty((min(at_once, _DRAWS - first), len(grid)), bool)
+        fields = np.empty((min(at_once, _DRAWS - first), n), bool)
         draw_fields(believed, grid.adjacent, key + np.uint64(first), fields)
         sums[first : first + len(fields)] = fields @ weights
+        numbers[first : first + len(fields)] = np.count_nonzero(fields, axis=1)
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     right = believed[0] @ weights
     sums *= right / np.maximum(sums.mean(axis=0), 1e-12)
-    if doubt > 0.0:
-        sums *= doubted(doubt)[:, None]
+    if asked.doubt > 0.0:
+        sums *= doubted(asked.doubt)[:, None]
+    if asked.since is not None and asked.since.idle:
+        expected = float(believed[0].sum())
+        numbers *= expected / max(float(numbers.mean()), 1e-12)
+        numbers *= doubted(asked.doubt) if asked.doubt > 0.0 else 1.0
+        became = asked.since.numbers(np.minimum(numbers, n), n)
+        # where none is drawn, what arrived since stands where it is expected
+        sums = np.where(
+            numbers[:, None] > 0.0,
+            sums * (became / np.maximum(numbers, 1e-12))[:, None],
+            became[:, None] * (right / expected),
+        )
     return read_only(np.minimum(sums, 1.0))

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.spread import Spread
     from fieldmon.infestation.tracing import Traces
+    from fieldmon.infestation.unwatched import Since
     from fieldmon.pests.pest import Pest
 
 
@@ -69,12 +70,20 @@ class Belief(Protocol):
 
     @property
     def doubt(self) -> float:
-        """How far the expected number infested may be off, as a share."""
+        """How far the expected number infested may be off, as a share.
+
+        Days without inspections since are not in it: see `since_inspected`.
+        """
         ...
 
     @property
     def doubt_of_rates(self) -> float:
         """The same as far as rates are not known alone: a verdict hangs on no more than that."""
+        ...
+
+    @property
+    def since_inspected(self) -> Since | None:
+        """What the number may have become since somebody inspected; None: no idea."""
         ...
 
     @property

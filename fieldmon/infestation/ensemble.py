@@ -45,6 +45,7 @@ class Ensemble:
     traces: None = None
     doubt: float = 0.0
     doubt_of_rates: float = 0.0
+    since_inspected: None = None
     pest: None = None
 
     @classmethod

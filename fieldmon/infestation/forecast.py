@@ -138,12 +138,12 @@ def forecast(
     found = evening.arrivals_found if isinstance(evening, TracedPairs) else 0.0
     named = evening.pest is not None
     # days without inspections until now are drawn as those to come
-    since, tonight, watched = Unwatched(), now, evening
+    since, tonight = Unwatched(), now
     if isinstance(evening, TracedPairs) and evening.unwatched.days:
-        since, tonight, watched = evening.unwatched, None, evening.watched
+        since, tonight = evening.unwatched, None
     if tonight is None:
         tonight = estimate_plot(
-            grid, evening.chance, evening.pair_chance, doubt=watched.doubt, named=named
+            grid, evening.chance, evening.pair_chance, doubt=evening.doubt, named=named
         )
     if now is not None and expected[0] > 0.0:
         # rounding must not let it be more than all

@@ -32,6 +32,7 @@ class IndependentPlants:
     traces: None = None
     doubt: float = 0.0
     doubt_of_rates: float = 0.0
+    since_inspected: None = None
     pest: None = None
 
     def learn(

@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
-from fieldmon.errors import SettingError
 from fieldmon.infestation.chance_bounds import MOST_CHANCE
-from fieldmon.infestation.plot_estimate import doubted_level
+from fieldmon.infestation.plot_estimate import doubted_level, must_be_sure
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.unwatched import Since
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -55,7 +54,12 @@ class LevelRange:
 
 
 def level_range(
-    chance: Floats, doubt: float, sure: float = 0.9, *, named: bool = False
+    chance: Floats,
+    doubt: float,
+    sure: float = 0.9,
+    since: Since | None = None,
+    *,
+    named: bool = False,
 ) -> LevelRange:
     """Return how far a chance map ``(n,)`` may be off as a whole.
 
@@ -68,17 +72,17 @@ def level_range(
         How far the expected number may be off, as a share (`Belief.doubt`).
     sure
         Chance that the interval holds the expected number.
+    since
+        What the number may have become on days without inspections (`Belief.since_inspected`).
     named
         Whether somebody named the pest, as `estimate_plot` has it.
     """
-    if not 0.0 < sure < 1.0:
-        raise SettingError(
-            worded("'sure' must be a chance between 0 and 1, but it is {sure}.", sure=sure)
-        )
+    must_be_sure(sure)
     share = float(np.mean(chance))
     if doubt <= 0.0 or not 0.0 < share < MOST_CHANCE:
         return LevelRange()
-    by = np.quantile(doubted_level(doubt, named=named), [0.5 - sure / 2, 0.5 + sure / 2])
+    factors = doubted_level(doubt, named=named) * (1.0 if since is None else since.times)
+    by = np.quantile(factors, [0.5 - sure / 2, 0.5 + sure / 2])
     ends = share * by / (1.0 + share * (by - 1.0))
     certain = float(np.mean(chance >= 1.0))
     possible = float(np.mean(chance > 0.0))

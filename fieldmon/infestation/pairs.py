@@ -54,6 +54,7 @@ class PairApproximation:
     traces: None = None
     doubt: float = 0.0
     doubt_of_rates: float = 0.0
+    since_inspected: None = None
     pest: None = None
 
     @classmethod

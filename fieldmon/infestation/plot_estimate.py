@@ -20,7 +20,7 @@ from fieldmon.infestation.pairs import pair_chances
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.unwatched import Since
+    from fieldmon.infestation.belief import Belief
     from fieldmon.plot.grid import Csr, PlantGrid
 
     Floats = NDArray[np.float64]
@@ -90,13 +90,7 @@ def estimate_plot(
     named
         Whether somebody named the pest (`Belief.pest`), see `doubted_level`.
     """
-    if not 0.0 < sure < 1.0:
-        raise SettingError(
-            worded(
-                "'sure' must be a chance between 0 and 1, but it is {sure}.",
-                sure=sure,
-            )
-        )
+    must_be_sure(sure)
     if pair_chance is None:
         pair_chance = pair_chances(chance, grid)
     counts, none = _counts(grid, chance, pair_chance)
@@ -111,32 +105,44 @@ def estimate_plot(
     return PlotEstimate(expected, round(float(low)), round(float(high)), clean)
 
 
-def estimate_since(
-    grid: PlantGrid,
-    maps: tuple[Floats, Floats],
-    doubt: float,
-    since: Since,
-    *,
-    named: bool = False,
-) -> PlotEstimate:
-    """Return the same of a plot that nobody inspected for some days, with 90 %.
+def estimate_of(grid: PlantGrid, belief: Belief, sure: float = 0.9) -> PlotEstimate:
+    """Return what a belief says of the whole plot, with the doubt that it tells of itself.
 
     Parameters
     ----------
-    maps
-        ``chance (n,)`` and ``pair_chance (e,)``.
-    doubt
-        As in `estimate_plot`, of what was known when somebody inspected last.
-    since
-        What the number may have become since, see `Unwatched.draws`.
+    grid
+        The plants.
+    belief
+        What is believed.
+    sure
+        Chance that the interval holds the number.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from fieldmon.infestation.spread import Spread
+    >>> from fieldmon.infestation.traced_pairs import TracedPairs
+    >>> from fieldmon.plot.layout import rectangle
+    >>> grid = rectangle(20, 20)
+    >>> tonight = TracedPairs.of(grid, np.full(400, 0.05))
+    >>> in_two_days = tonight.overnight(Spread(0.05)).overnight(Spread(0.05))
+    >>> estimate_of(grid, in_two_days).high > estimate_of(grid, tonight).high
+    True
     """
-    chance, pair_chance = maps
-    counts, none = _counts(grid, chance, pair_chance)
-    factors = doubted_level(doubt, named=named) if doubt > 0.0 else np.ones(len(counts))
-    counts = since.numbers(_of_odds(counts, factors, len(chance)), len(chance))
-    low, high = np.quantile(counts, _ends(0.9))
-    clean = float(np.exp(none * factors * (since.before + since.came)).mean())
-    return PlotEstimate(float(chance.sum()), round(float(low)), round(float(high)), clean)
+    since, named = belief.since_inspected, belief.pest is not None
+    if since is None or belief.pair_chance is None or belief.doubt <= 0.0:
+        return estimate_plot(
+            grid, belief.chance, belief.pair_chance, sure, belief.doubt, named=named
+        )
+    must_be_sure(sure)
+    n = len(belief.chance)
+    counts, none = _counts(grid, belief.chance, belief.pair_chance)
+    factors = doubted_level(belief.doubt, named=named)
+    counts = since.numbers(_of_odds(counts, factors, n), n)
+    low, high = np.quantile(counts, _ends(sure))
+    clean = float(np.exp(none * factors * since.unhealed).mean())
+    # to the nearest: outwards, an interval of a few plants would hold far more than is asked
+    return PlotEstimate(float(belief.chance.sum()), round(float(low)), round(float(high)), clean)
 
 
 def _counts(grid: PlantGrid, chance: Floats, pair_chance: Floats) -> tuple[Floats, float]:
@@ -156,6 +162,14 @@ def _of_odds(counts: Floats, factors: Floats, n: int) -> Floats:
     share = np.minimum(counts / n, 1.0 - 1e-12)
     changed: Floats = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), n)
     return changed
+
+
+def must_be_sure(sure: float) -> None:
+    """Raise `SettingError` if an interval cannot hold a number with such a chance."""
+    if not 0.0 < sure < 1.0:
+        raise SettingError(
+            worded("'sure' must be a chance between 0 and 1, but it is {sure}.", sure=sure)
+        )
 
 
 def _ends(sure: float) -> list[float]:

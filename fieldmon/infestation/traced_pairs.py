@@ -226,8 +226,7 @@ class TracedPairs:
 
         As `doubt_of_rates` has it, but offspring is as doubtful as what it came from: of twice as
         many that were there at the start, there is twice as much. And as far as finds proved what
-        was told of the start too low. Once a night has told who infested whom, it is less; after
-        days without inspections it is more.
+        was told of the start too low. Once a night has told who infested whom, it is less.
         """
         brought = self._brought_so_far
         expected, beside = float(brought.sum()), float(brought[BY_ADJACENT])
@@ -239,7 +238,7 @@ class TracedPairs:
         doubt = float(np.hypot(self._doubt_of(came, expected), _STILL_TOO_FEW * more))
         ancestry = self.ancestry
         told = ancestry is not None and ancestry.knows and len(ancestry.sends) > 0
-        return float(np.hypot(_LESS_DOUBT * doubt if told else doubt, self._since_inspected))
+        return float(np.hypot(_LESS_DOUBT * doubt if told else doubt, self._left_in_doubt))
 
     @property
     def doubt_of_rates(self) -> float:
@@ -249,12 +248,7 @@ class TracedPairs:
         """
         brought = self._brought_so_far
         doubt = self._doubt_of(brought, float(brought.sum()))
-        return float(np.hypot(doubt, self._since_inspected))
-
-    @property
-    def watched(self) -> TracedPairs:
-        """The same, as if there had been no days without inspections of late."""
-        return replace(self, unwatched=Unwatched(left=self.unwatched.left))
+        return float(np.hypot(doubt, self._left_in_doubt))
 
     @property
     def since_inspected(self) -> Since:
@@ -262,9 +256,9 @@ class TracedPairs:
         return self.unwatched.draws(named=self.pest is not None, arrivals_found=self.arrivals_found)
 
     @property
-    def _since_inspected(self) -> float:
-        """How far the number may be off as nobody inspected for a while."""
-        return float(np.sqrt(self._variance_since_inspected))
+    def _left_in_doubt(self) -> float:
+        """How far the number may be off yet of days without inspections before the last one."""
+        return float(np.sqrt(self.unwatched.left))
 
     @property
     def _variance_since_inspected(self) -> float:

@@ -49,14 +49,30 @@ class Since(NamedTuple):
         How many there were then: nothing heals, however slowly they multiplied.
     inside, came
         ``(400,)`` even draws of what these have become, and of what arrived.
+    idle
+        Whether there were days without inspections; else the chance map says all of it.
     """
 
     before: float
     inside: Floats
     came: Floats
+    idle: bool
+
+    @property
+    def times(self) -> Floats:
+        """What the number may have become of all together, as a multiple, ``(400,)``."""
+        return self.inside + self.came
+
+    @property
+    def unhealed(self) -> Floats:
+        """How many of all are no offspring since: these were there, or arrived, ``(400,)``."""
+        unhealed = self.before + self.came
+        return unhealed if self.idle else np.minimum(unhealed, 1.0)
 
     def numbers(self, counts: Floats, n: int) -> Floats:
         """Return how many there may be of n plants, ``(400,)``, where so many are believed."""
+        if not self.idle:
+            return counts
         one, other = ((np.arange(_DRAWS) + 1) * step % 1.0 for step in _WHOLE_STEPS)
         then = _whole(counts * self.before, one) / self.before
         came = _whole(counts * self.came, other)
@@ -118,7 +134,7 @@ class Unwatched(NamedTuple):
         before = min(float(np.exp(-self.grown)), 1.0)
         if self.days == 0:
             ones = np.ones(_DRAWS)
-            return Since(before, ones * (1.0 - self.arrived), ones * self.arrived)
+            return Since(before, ones * (1.0 - self.arrived), ones * self.arrived, idle=False)
         one, other, third = ((np.arange(_DRAWS) + 1) * step % 1.0 for step in _STEPS)
         level = OF_A_PEST if named else LEVEL_DOUBT
         levels = gammaincinv(level**-2.0, one) * level**2.0
@@ -126,7 +142,7 @@ class Unwatched(NamedTuple):
         known = arrivals_known(arrivals_found)
         came = self.arrived * gammaincinv(known, third) / known
         grew = np.exp(np.minimum(self.grown * (faster - 1.0), MOST_GROWN))
-        return Since(before, levels * grew * (1.0 - self.arrived), levels * came)
+        return Since(before, levels * grew * (1.0 - self.arrived), levels * came, idle=True)
 
     def inspected(self, found: float, variance: float) -> Unwatched:
         """Return the same after inspections that were expected to find so many.
@@ -142,11 +158,6 @@ class Unwatched(NamedTuple):
             return Unwatched(0, grown, self.left, share)
         arrived = share + self.arrived * (1.0 - share)
         return Unwatched(self.days + 1, self.grown + grown, self.left, arrived)
-
-    @property
-    def is_now(self) -> bool:
-        """Whether no night has passed since somebody inspected, or since the first morning."""
-        return self.looked or (self.days == 0 and self.grown == 0.0)
 
     @property
     def array(self) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:

@@ -407,7 +407,7 @@ def advice(
     done
         What was treated that day.
     """
-    question = AskedVerdict(asked.level, asked.sure, evening.doubt_of_rates)
+    question = AskedVerdict.on(evening, asked.level, asked.sure)
     plot = map_verdict(grid, evening.chance, question, evening.pair_chance)
     spared = np.logical_or.reduce([one.plants for one in done]) if done else None
     zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs, spared)
@@ -429,7 +429,7 @@ def inspections_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings)
 
     def verdict(looks: int, *, found: bool) -> Verdict:
         after = evening.learn(order[:looks], np.full(looks, found), learning)
-        question = AskedVerdict(asked.level, asked.sure, after.doubt_of_rates)
+        question = AskedVerdict.on(after, asked.level, asked.sure)
         return map_verdict(scene.grid, after.chance, question, after.pair_chance).verdict
 
     return MoreInspections(

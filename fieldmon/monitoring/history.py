@@ -24,7 +24,7 @@ from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.plot_estimate import estimate_plot, estimate_since
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.members import person
@@ -377,21 +377,13 @@ class History:
         return _Last()
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
-        left = self._still_out(morning, day)
-        named = left.pest is not None
-        if not isinstance(left, TracedPairs) or left.unwatched.is_now:
-            return estimate_plot(
-                self.grid, left.chance, left.pair_chance, doubt=left.doubt, named=named
-            )
-        maps = left.chance, left.pair_chance
-        return estimate_since(
-            self.grid, maps, left.watched.doubt, left.since_inspected, named=named
-        )
+        return estimate_of(self.grid, self._still_out(morning, day))
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""
         left = self._still_out(morning, day)
-        return level_range(left.chance, left.doubt, named=left.pest is not None)
+        named = left.pest is not None
+        return level_range(left.chance, left.doubt, since=left.since_inspected, named=named)
 
     def _still_out(self, morning: Belief, day: int) -> Belief:
         """Return what is believed of plants not found yet."""

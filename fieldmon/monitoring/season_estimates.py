@@ -104,7 +104,7 @@ class SeasonEstimates(OpenSeason):
         """
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.in_hindsight(morning, day)
-        asked = AskedVerdict(level, sure, evening.doubt_of_rates)
+        asked = AskedVerdict.on(evening, level, sure)
         return map_verdict(
             contents.history.grid, evening.chance, asked, evening.pair_chance, plants=plants
         )

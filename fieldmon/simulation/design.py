@@ -8,12 +8,15 @@ from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.arguments import must_be_in
 from fieldmon.compute.digest import digest
+from fieldmon.compute.ranges import DAYS
 from fieldmon.errors import SettingError
 from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import COMPARED, kind_of, sampler_or_name
 from fieldmon.samplers.own import is_own, label_of, own_text
 from fieldmon.simulation.experiment import Experiment
+from fieldmon.simulation.season import visits_in
 from fieldmon.simulation.study_plot import DIGITS, Combination, StudyPlot, as_written
 from fieldmon.simulation.worker import simulate_chunk
 
@@ -41,8 +44,8 @@ class Design:
         Names in `fieldmon.samplers.SAMPLERS`, or files of your own as ``my_sampler.py:Mine``.
     hours, look_s, infested, spread
         The levels of each factor, see `Combination`.
-    n_days
-        Working days of a season.
+    n_days, visit_every
+        Days of a season, and how many from one visit to the next.
     n_seeds, first_seed
         Seasons of each combination; season k starts from seed ``first_seed + k`` in all of them.
     robot_times
@@ -58,6 +61,7 @@ class Design:
     n_seeds: int = 100
     first_seed: int = 1
     robot_times: str = USUAL_TIMES
+    visit_every: int = 1
 
     def __post_init__(self) -> None:
         for name in self.samplers:
@@ -80,6 +84,7 @@ class Design:
                 "A study needs 1 day and 1 seed or more, seeds from 0, but it has "
                 f"days {self.n_days} and seeds {self.n_seeds}, from {self.first_seed}."
             )
+        must_be_in("A study's visit_every", DAYS, self.visit_every)
         for share in self.infested:
             if not 0.0 < share < 1.0:
                 raise SettingError(
@@ -93,9 +98,8 @@ class Design:
         What later versions added counts only where it is said: studies of before can go on.
         """
         said = asdict(self)
-        if self.robot_times == USUAL_TIMES:
-            del said["robot_times"]
-        return said
+        usual = {"robot_times": USUAL_TIMES, "visit_every": 1}
+        return {name: value for name, value in said.items() if value != usual.get(name)}
 
     @property
     def combinations(self) -> tuple[Combination, ...]:
@@ -109,8 +113,10 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
 
     Its keys are a sampler and a digest of all that its seasons depend on, and of nothing else.
     """
-    n_days, times = design.n_days, design.robot_times
-    unusual = () if times == USUAL_TIMES else (times,)
+    (n_days, every), times = (design.n_days, design.visit_every), design.robot_times
+    unusual = [times] if times != USUAL_TIMES else []
+    unusual += [f"a visit every {every} days"] if every > 1 else []
+    visits = visits_in(n_days, every)
     # an own sampler's seasons hang on its text, read once for all chunks
     own = {name: (own_text(name),) if is_own(name) else () for name in design.samplers}
 
@@ -131,8 +137,8 @@ def study_of(plots: Sequence[StudyPlot], design: Design) -> Experiment[Setting, 
     return Experiment(
         settings=list(product(plots, design.combinations)),
         seeds=range(design.first_seed, design.first_seed + design.n_seeds),
-        simulate=partial(simulate_chunk, n_days=n_days, robot_times=times),
-        chunk_size=lambda setting: _seasons(setting[1].sampler, setting[0].about_plants, n_days),
+        simulate=partial(simulate_chunk, n_days=n_days, robot_times=times, visit_every=every),
+        chunk_size=lambda setting: _seasons(setting[1].sampler, setting[0].about_plants, visits),
         key=key,
     )
 

@@ -67,7 +67,11 @@ ChunkSeasons = list[dict[str, Any]] | RefusedPlot
 
 
 def simulate_chunk(
-    setting: Setting, seeds: range, n_days: int, robot_times: str = USUAL_TIMES
+    setting: Setting,
+    seeds: range,
+    n_days: int,
+    robot_times: str = USUAL_TIMES,
+    visit_every: int = 1,
 ) -> ChunkSeasons:
     """Simulate a combination on a plot; return a season's measures for each seed.
 
@@ -82,7 +86,7 @@ def simulate_chunk(
     rows, plot, robot = [], laid.plot, Robot().with_times(robot_times)
     named = replace(levels, sampler=label_of(levels.sampler))
     for seed in seeds:
-        season = simulated_season(laid, robot, levels, seed, (n_days, 1))
+        season = simulated_season(laid, robot, levels, seed, (n_days, visit_every))
         about = {"plot": plot.field.name, **vars(named), "seed": seed, "days": n_days}
         rows.append(about | {"plants": len(plot.grid)} | _measures(season))
     return rows

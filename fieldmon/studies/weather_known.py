@@ -17,7 +17,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.colonies import Colonies
 from fieldmon.infestation.pest_in_weather import PestInWeather, Spell
-from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.pests.pest import Increase, Movement, Pest, Stage
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.layout import rectangle
@@ -238,9 +238,7 @@ def _season(
 
 
 def _holds(grid: PlantGrid, belief: Belief, number: int) -> bool:
-    made = estimate_plot(
-        grid, belief.chance, belief.pair_chance, doubt=belief.doubt, named=belief.pest is not None
-    )
+    made = estimate_of(grid, belief)
     return made.low <= number <= made.high
 
 

@@ -1,5 +1,6 @@
 """`fieldmon study run`: a study of one's own plots."""
 
+import numpy as np
 import pandas as pd
 import pyarrow as pa
 import pytest
@@ -86,6 +87,28 @@ def test_times_are_charged_as_they_were_chosen_and_other_studies_go_on(tmp_path)
     assert keys[0] != keys[1]
     assert "robot_times" not in usual.design().content
     assert thesis.design().content["robot_times"] == "thesis"
+
+
+def test_visits_are_as_far_apart_as_asked_and_other_studies_go_on(tmp_path):
+    file = tmp_path / "plots.gpkg"
+    square().to_file(file)
+    daily, weekly = (
+        StudyOptions(
+            file, hours=[1.0], sampler=["naive"], infested=[0.3], seeds=1, days=8, visit_every=every
+        )
+        for every in (1, 7)
+    )
+    (plot,), found, keys = daily.plots(), [], []
+    for asked in (daily.design(), weekly.design()):
+        study = study_of((plot,), asked)
+        (chunk,) = study.chunks()
+        keys.append(chunk.key)
+        found += [row["found_by_day"] for row in study.simulate(chunk.setting, chunk.seeds)]
+    assert np.all(np.array(found[0]) > 0)
+    assert (np.array(found[1]) > 0).tolist() == [True, *[False] * 6, True]
+    assert keys[0] != keys[1]
+    assert "visit_every" not in daily.design().content
+    assert weekly.design().content["visit_every"] == 7
 
 
 def test_a_folder_that_cannot_be_made_is_told_in_words(tmp_path):

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict, zone_verdicts
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.forecast import forecast
-from fieldmon.infestation.plot_estimate import estimate_plot, estimate_since
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT, Unwatched
@@ -24,10 +25,7 @@ def inspected(belief, finds=3):
 
 
 def told(belief):
-    if belief.unwatched.looked:
-        return estimate_plot(GRID, belief.chance, belief.pair_chance, doubt=belief.doubt)
-    maps, doubt = (belief.chance, belief.pair_chance), belief.watched.doubt
-    return estimate_since(GRID, maps, doubt, belief.since_inspected)
+    return estimate_of(GRID, belief)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +49,7 @@ def test_a_season_that_is_inspected_daily_is_in_no_more_doubt(evening):
     for _ in range(3):
         morning = belief.overnight(NIGHT)
         assert morning.unwatched.variance(named=False) == 0.0
-        assert morning.doubt == morning.watched.doubt
+        assert not morning.since_inspected.idle
         belief = inspected(morning)
 
 
@@ -63,7 +61,7 @@ def test_nothing_is_learnt_from_no_inspections(evening):
 
 def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
     mornings = [nights(evening, number) for number in range(1, 6)]
-    more = [one.doubt**2 - one.watched.doubt**2 for one in mornings]
+    more = [one.unwatched.variance(named=False) for one in mornings]
     grown = [np.log(one.chance.sum() / evening.chance.sum()) for one in mornings]
     assert more[0] == 0.0
     shares = [one.unwatched.arrived for one in mornings]
@@ -75,8 +73,8 @@ def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
     )
     assert np.all(np.diff(shares) > 0.0)
     assert shares[-1] < 0.2
-    rates = [one.doubt_of_rates**2 - one.watched.doubt_of_rates**2 for one in mornings]
-    assert rates == pytest.approx(more)
+    wide = [width(told(one)) for one in mornings]
+    assert wide[0] < wide[2] < wide[4]
 
 
 def test_of_a_named_pest_a_little_less():
@@ -128,7 +126,8 @@ def test_plants_that_are_known_to_be_infested_tell_nothing_of_the_number(evening
 def test_it_is_kept_with_a_morning(evening):
     morning = nights(evening, 3)
     again = replace(morning, unwatched=Unwatched.of_array(morning.unwatched.array))
-    assert again.doubt == morning.doubt > morning.watched.doubt
+    assert told(again) == told(morning)
+    assert again.since_inspected.idle
 
 
 def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
@@ -147,7 +146,49 @@ def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
 def test_while_nobody_inspects_the_plot_becomes_no_cleaner(evening):
     few = inspected(TracedPairs.of(GRID, np.full(400, 0.002)), 0)
     for belief in (evening, few):
-        each = [belief, *(nights(belief, number) for number in (1, 2, 3, 5, 8, 30, 90))]
+        each = [belief.in_hindsight(NIGHT)]
+        each += [nights(belief, number) for number in (1, 2, 3, 5, 8, 30, 90)]
         clean, low = zip(*((one.chance_clean, one.low) for one in map(told, each)), strict=True)
         assert np.all(np.diff(clean) <= 1e-3)
         assert np.all(np.diff(low) >= -1)
+
+
+def verdict(belief, level=0.5):
+    asked = AskedVerdict.on(belief, level)
+    return map_verdict(GRID, belief.chance, asked, belief.pair_chance)
+
+
+@pytest.mark.parametrize("idle", [2, 7, 30])
+def test_a_verdict_on_days_without_inspections_is_as_sure_as_the_number(evening, idle):
+    morning = nights(evening, idle)
+    now, then, said = told(morning), verdict(evening), verdict(morning)
+    # of rates alone, and so a little surer than the number; but nothing heals
+    assert now.low - 1 <= 400 * said.low
+    assert 400 * said.high <= now.high
+    assert then.low < said.low + 0.01
+    assert np.log(said.high / said.low) > 0.65 * np.log(now.high / now.low)
+    assert verdict(morning, min(said.high + 0.01, 0.999)).chance_above <= 0.05 or said.high == 1.0
+    assert verdict(morning, said.low - 0.01).chance_above >= 0.95
+
+
+def test_of_its_zones_it_is_in_the_same_doubt(evening):
+    morning = nights(evening, 7)
+    asked = AskedVerdict.on(morning, 0.1)
+    believed = morning.chance, morning.pair_chance
+    (all_of_it,) = zone_verdicts(GRID, believed, np.zeros(400, np.int64), asked, 0.8).zones
+    alike = verdict(morning, 0.1)
+    assert all_of_it.chance_above == alike.chance_above
+    assert (all_of_it.low, all_of_it.high) == pytest.approx((alike.low, alike.high))
+    halves = zone_verdicts(GRID, believed, np.repeat([0, 1], 200), asked, 0.8).zones
+    wide = [(one.high - one.low) / one.share for one in (*halves, all_of_it)]
+    assert min(wide) > 0.9 * wide[-1]
+
+
+def test_where_nothing_was_left_a_verdict_counts_what_may_have_arrived():
+    clean = TracedPairs.of(GRID, np.full(400, 1e-5))
+    clean = clean.learn(
+        np.arange(400, dtype=np.int32), np.zeros(400, np.bool_), Learning(0.8, treated=True)
+    )
+    said = verdict(nights(clean, 25), 0.01)
+    assert said.low == 0.0 < said.chance_above < 1.0
+    assert said.high > said.share

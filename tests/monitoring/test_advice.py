@@ -125,7 +125,7 @@ def test_one_look_less_would_not_decide(season):
     for looks, found, verdict in ((more.if_clean, False, LEAVE), (more.if_found, True, TREAT)):
         for k in (looks - 1, looks):
             after = evening.learn(order[:k], np.full(k, found), learning)
-            question = AskedVerdict(level, asked.sure, after.doubt_of_rates)
+            question = AskedVerdict.on(after, level, asked.sure)
             said = map_verdict(scene.grid, after.chance, question, after.pair_chance)
             assert (said.verdict == verdict) == (k == looks)
 

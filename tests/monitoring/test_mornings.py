@@ -182,7 +182,7 @@ def test_the_last_estimate_is_not_drawn_again(path, monkeypatch):
     from fieldmon.monitoring import history
 
     before = Season(path).status(BEGINS + timedelta(days=LAST)).estimate
-    monkeypatch.setattr(history, "estimate_plot", None)
+    monkeypatch.setattr(history, "estimate_of", None)
     assert Season(path).status(BEGINS + timedelta(days=LAST)).estimate == before
     with pytest.raises(TypeError):
         Season(path).status(BEGINS + timedelta(days=LAST - 1))

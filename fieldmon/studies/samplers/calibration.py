@@ -15,7 +15,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.ensemble import Ensemble
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_plot
+from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_of, estimate_plot
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.html import page
 from fieldmon.simulation import executor
@@ -102,7 +102,7 @@ class _Watched:
         self._belief, self._mornings, self._seconds = belief, mornings, seconds
         self.chance, self.pair_chance = belief.chance, belief.pair_chance
         self.traces, self.doubt, self.pest = belief.traces, belief.doubt, belief.pest
-        self.doubt_of_rates = belief.doubt_of_rates
+        self.doubt_of_rates, self.since_inspected = belief.doubt_of_rates, belief.since_inspected
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
@@ -202,12 +202,11 @@ def _mornings(
 def _estimate(belief: Belief, grid: PlantGrid, sure: float) -> PlotEstimate:
     if isinstance(belief, Ensemble):
         return belief.estimate(sure)
-    pair_chance = belief.pair_chance
-    if pair_chance is None:
-        start, other = grid.adjacent
-        pair_chance = np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
-    named = belief.pest is not None
-    return estimate_plot(grid, belief.chance, pair_chance, sure, belief.doubt, named=named)
+    if belief.pair_chance is not None:
+        return estimate_of(grid, belief, sure)
+    start, other = grid.adjacent
+    alone = np.repeat(belief.chance, np.diff(start)) * belief.chance[other]
+    return estimate_plot(grid, belief.chance, alone, sure)
 
 
 def _compared(mornings: _Mornings) -> Calibration:

@@ -275,7 +275,7 @@ def _map_verdicts(plot: _Plot, rng: np.random.Generator) -> tuple[Verdict, int]:
     for first in range(0, len(plants), _LOOKS_A_CHECK):
         now = slice(first, first + _LOOKS_A_CHECK)
         belief = belief.learn(plants[now], found[now], learning)
-        asked = AskedVerdict(plot.level, 1 - WRONG, belief.doubt_of_rates)
+        asked = AskedVerdict.on(belief, plot.level, 1 - WRONG)
         said = map_verdict(grid, belief.chance, asked, belief.pair_chance)
         if said.verdict != "look on":
             return said.verdict, min(first + _LOOKS_A_CHECK, len(plants))

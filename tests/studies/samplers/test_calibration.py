@@ -46,6 +46,7 @@ def test_a_belief_that_never_learns_scores_as_the_share_it_says():
         def __init__(self, chance):
             self.chance, self.pair_chance, self.traces = chance, None, None
             self.doubt, self.doubt_of_rates, self.pest = 0.0, 0.0, None
+            self.since_inspected = None
 
         def learn(self, *_):
             return self

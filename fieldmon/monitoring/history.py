@@ -26,6 +26,7 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_day import KNOWN
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.members import person
 from fieldmon.plot.robot import Robot
@@ -300,9 +301,12 @@ class History:
             known = sum(pest.known(number) for number in ahead)
             measured = sum(pest.measured(number) for number in ahead)
         evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
-        # what is flagged and not treated is still out there tomorrow, but not left to be found
-        now = self.estimate(morning, day) if self.belief.treated else None
-        made = forecast(evening, self.grid, spreads, known, now)
+        # what is flagged and not treated is still out there
+        found = self.found_and_left(evening, day)
+        now = self.estimate(morning, day)
+        if found is not None:
+            now = estimate_of(self.grid, self.in_hindsight(morning, day), found=found)
+        made = forecast(evening, self.grid, spreads, known, now, found)
         return replace(made, measured=measured)
 
     def evening(self, morning: Belief, day: int) -> Belief:
@@ -377,7 +381,20 @@ class History:
         return _Last()
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
-        return estimate_of(self.grid, self._still_out(morning, day))
+        evening = self.in_hindsight(morning, day)
+        # what was found is known: it is not out there any more
+        found = None if self.belief.treated else self.states(day) == PRESENT
+        return estimate_of(self.grid, evening, found=found)
+
+    def found_and_left(self, evening: Belief, day: int) -> NDArray[np.bool_] | None:
+        """Return the plants of which it is certain that they are infested; None: all are treated.
+
+        A treatment leaves some of them in doubt, as all other plants.
+        """
+        if self.belief.treated:
+            return None
+        found: NDArray[np.bool_] = (self.states(day) == PRESENT) & (evening.chance > KNOWN)
+        return found
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""

@@ -104,7 +104,8 @@ class SeasonEstimates(OpenSeason):
         """
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.in_hindsight(morning, day)
-        asked = AskedVerdict.on(evening, level, sure)
+        found = contents.history.found_and_left(evening, day)
+        asked = AskedVerdict.on(evening, level, sure, found)
         return map_verdict(
             contents.history.grid, evening.chance, asked, evening.pair_chance, plants=plants
         )
@@ -127,7 +128,8 @@ class SeasonEstimates(OpenSeason):
             evening = contents.history.in_hindsight(morning, day)
         history, asked = contents.history, asked or AdviceSettings()
         done = tuple(one for one in history.treatments if one.day == day)
-        made = advice(history.grid, evening, asked, scene, done)
+        found = history.found_and_left(evening, day)
+        made = advice(history.grid, evening, asked, scene, done, found)
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile

@@ -163,6 +163,8 @@ def treat(options: TreatOptions) -> None:
 
 def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
     """Print what a treatment asks for: waiting periods and warnings."""
+    from fieldmon.monitoring.cautions import label_of, waits
+
     (one,) = (treatment for treatment in kept.treatments() if treatment.batch == batch)
     if learnt:
         typer.echo(
@@ -173,11 +175,11 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
             f"Taken as over midnight: it ended on {one.on + timedelta(days=1)} at "
             f"{one.application.ended:%H:%M}. If that is wrong: fieldmon undo"
         )
-    waits = one.waits
-    if waits.entry_from is not None:
-        typer.echo(f"Enter there from {waits.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
-    if waits.harvest_from is not None:
-        typer.echo(f"Harvest there from {waits.harvest_from} on.")
+    period = waits(one, label_of(one, kept.labels()))
+    if period.entry_from is not None:
+        typer.echo(f"Enter there from {period.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
+    if period.harvest_from is not None:
+        typer.echo(f"Harvest there from {period.harvest_from} on.")
     for caution in kept.cautions(one.on):
         if caution.batch == batch:
             typer.echo(f"warning: {caution.sentence}", err=True)

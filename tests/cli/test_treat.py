@@ -96,6 +96,8 @@ def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, seas
     ("words", "said"),
     [
         (["--dose", "much"], "--dose must be a number with its unit"),
+        (["--dose", "1,500 ml/ha"], "--dose is 1,500: is that 1500 or 1.5?"),
+        (["--dose", "1,5,5 ml/ha"], "--dose must be a number, but it is '1,5,5'"),
         (["--dose", "2 buckets"], "The unit of a dose must be"),
         (["--rows", "three"], "Rows must be such as 3-5,8"),
         (["--rows", "999"], "but row 999 is named"),

@@ -10,8 +10,9 @@ import numpy as np
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.day_ahead import DayAhead, inside, through
-from fieldmon.monitoring.history import Besides, made_by
+from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.monitor import PlantToInspect
+from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person
 from fieldmon.planning.wishes import Wishes
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
 
 #: a robot that is so much later or earlier than planned is planned for anew
-LATE_S = 30.0
+REPLAN_AFTER_S = 30.0
 
 
 class SeasonDay:
@@ -109,7 +110,7 @@ class SeasonDay:
         self._asked, self._at, self._gone_s = None, stop.plant, now_s
         self._late_s = now_s - done_s
         self._next += 1
-        if found or found is None or abs(self._late_s) > LATE_S:
+        if found or found is None or abs(self._late_s) > REPLAN_AFTER_S:
             self._plan()
 
     def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
@@ -187,7 +188,7 @@ def left_of_plan(
     name = person(who) if isinstance(who, str) else ""
     if (kept := ahead.last.get(name)) is None:
         return None
-    done = made_by(season.history.on(scene.day), who or None)
+    done = season.worked(on, who)
     before = np.flatnonzero(done.plant == kept.at)
     since = done.result[before[-1] + 1 if len(before) else 0 :]
     plants = ahead.plants[name]
@@ -195,7 +196,7 @@ def left_of_plan(
     for rows in left_out:
         is_left &= ~inside(season.label, rows)[plants]
     left = through(scene, plants[is_left])
-    fits = left.route.end_s <= scene.seconds_left + LATE_S
+    fits = left.route.end_s <= scene.seconds_left + REPLAN_AFTER_S
     return left if fits and (since == CLEAN).all() else None
 
 
@@ -207,13 +208,14 @@ def as_inspection(
 ) -> Inspections:
     """Return what was seen at a plant, on a day at a second since its midnight, as a season has it.
 
-    None: it could not be inspected. Files hold whole seconds.
+    None: it could not be inspected. Files hold whole seconds; past midnight it is the next date.
     """
     result = SKIPPED if found is None else FOUND if found else CLEAN
+    days, second = divmod(np.round(when[1]), DAY_S)
     return Inspections.of(
         np.array([plant]),
         np.array([result]),
-        np.datetime64(when[0]),
-        second=np.array([np.round(when[1])]),
+        np.datetime64(when[0]) + np.timedelta64(int(days), "D"),
+        second=np.array([second]),
         who=np.array([who], object),
     )

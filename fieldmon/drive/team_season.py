@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.drive.aisle_keeper import AisleKeeper
-from fieldmon.drive.season_day import LATE_S, as_inspection, begun_batch, left_of_plan
+from fieldmon.drive.season_day import (
+    REPLAN_AFTER_S,
+    as_inspection,
+    begun_batch,
+    left_of_plan,
+)
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.monitoring.monitor import PlantToInspect
 from fieldmon.plot.travel import GATE, travel_s
@@ -168,7 +173,7 @@ class MemberDay:
             self._asked, self._stands = None, _Stands(stop.plant, now_s)
             team.errands.pop(self._member.name, None)
             team.done.add(stop.plant)
-            if found or found is None or abs(now_s - done_s) > LATE_S:
+            if found or found is None or abs(now_s - done_s) > REPLAN_AFTER_S:
                 team.plan()
 
     def leave(self) -> None:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_rate
+from fieldmon.compute.arguments import USUAL_RATE_L_HA, must_be_rate
+from fieldmon.compute.ranges import USUAL_SURE
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import (
     counted,
@@ -73,10 +74,10 @@ class AdviceSettings:
     """
 
     level: float = 0.05
-    sure: float = 0.9
+    sure: float = USUAL_SURE
     sprayer: Sprayer = field(default_factory=Sprayer)
     costs: TreatmentCosts = field(default_factory=TreatmentCosts)
-    rate_l_ha: float = 300.0
+    rate_l_ha: float = USUAL_RATE_L_HA
     learnt_of: str = ""
 
     def __post_init__(self) -> None:

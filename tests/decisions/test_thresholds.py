@@ -38,6 +38,8 @@ def test_the_level_of_a_share_may_be_percents(tmp_path):
     path = tmp_path / "own.csv"
     path.write_text("name;measure;level;source\nours;share of plants;3,6 %;me\n", encoding="utf-8")
     assert read_thresholds(path)[0].level == pytest.approx(0.036)
+    path.write_text("name;measure;level;source\nours;share of plants;3.625%;me\n", encoding="utf-8")
+    assert read_thresholds(path)[0].level == pytest.approx(0.03625)
     path.write_text("name;measure;level;source\nours;mean per leaf;3,6 %;me\n", encoding="utf-8")
     with pytest.raises(FileProblem, match="level must be a number"):
         read_thresholds(path)
@@ -60,7 +62,8 @@ def test_ones_own_are_read_from_a_file(tmp_path):
         ("name,level\na,1\n", "no measure and no source"),
         (f"{NAMES}\na,share of plants,much,b\n", "line 2: level must be"),
         (f"{NAMES}\na,share of plants\n", "line 2: level must be a number, but it is ''"),
-        (f"{NAMES}\na,share of plants,nan\n", "line 2: .*must be above 0"),
+        (f"{NAMES}\na,share of plants,nan\n", "line 2: level must be a number"),
+        (f"{NAMES}\na,mean per leaf,1.250,b\n", "line 2: level is 1.250: is that 1250 or 1.25"),
         (f"{NAMES}\na,mites,1,b\n", "line 2: .*must count one of"),
         (f"{NAMES}\na,share of plants,4,b\n", "must be above 0 and below 1"),
         (f"{NAMES},predators\na,share of plants,0.1,b,some\n", "line 2: predators must be yes"),

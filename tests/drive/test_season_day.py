@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
-from datetime import date, time
+from datetime import date, time, timedelta
 
 import numpy as np
 import pytest
@@ -134,6 +134,34 @@ def test_a_day_is_planned_anew_where_the_last_plan_did_not_hear_of_a_find(season
     day = SeasonDay(season, ON, "charged")
     assert not day.goes_on
     assert [day.ask().plant, *day.ahead(500)] == season.kept_route(ON).tolist()
+
+
+@pytest.mark.parametrize("ends", [[10**6], [3, 8, 9, 10**6]])
+def test_a_day_goes_on_past_midnight_as_it_would_by_day(plot, tmp_path, ends):
+    """Also where it is begun again: what was found after midnight is known, dated the next day."""
+    asked = {}
+    for starts in (time(6), time(23, 50)):
+        settings = replace(SETTINGS, starts=starts)
+        season = Season.create(tmp_path / f"{starts.hour}.gpkg", plot, None, settings)
+        for n in ends:
+            with suppress(KeyboardInterrupt):
+                done, day = driven(Season(season.path), CrashesAfter(n))
+        held = season.history.inspections
+        asked[starts] = held.plant.tolist()
+        assert len(season.batches()) == 1
+        assert day.goes_on == (len(ends) > 1)
+    assert asked[time(6)] == asked[time(23, 50)]
+    assert set(held.date.astype(str)) == {str(ON), str(ON + timedelta(days=1))}
+    moments = held.date + np.round(held.second).astype("timedelta64[s]")
+    assert (np.diff(moments) > np.timedelta64(0)).all()
+    assert moments[-1] - moments[0] < np.timedelta64(18, "m")
+    assert day.gone_s <= season.settings.robot.day_s
+    assert done.stops
+
+
+def test_the_last_second_of_a_day_is_rounded_into_the_next():
+    one = as_inspection(0, False, (ON, 86_399.7))
+    assert (str(one.date[0]), one.second[0]) == ("2026-04-07", 0.0)
 
 
 def noted(plants, second, who=""):

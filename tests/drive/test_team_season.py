@@ -3,6 +3,7 @@
 from dataclasses import replace
 from datetime import time
 
+import numpy as np
 import pytest
 
 from fieldmon.drive.team_season import TeamSeason
@@ -119,6 +120,31 @@ def test_an_earlier_day_is_driven_by_the_team_of_then(team):
     again = TeamSeason(season, ON)  # which is past by the plot's clock
     assert [one.name for one in again.team] == ["robot-1", "robot-2"]
     assert again.member("robot-1").at == day.at
+
+
+def test_past_midnight_each_goes_on_at_its_own_place_and_no_plant_is_given_twice(plot, tmp_path):
+    season = season_of(plot, tmp_path / "night.gpkg", 2)
+    season.change(replace(season.settings, starts=time(23, 58)), season.settings)
+    names, told = ("robot-1", "robot-2"), []
+    for n in (8, 200):  # the second begins again
+        team = TeamSeason(Season(season.path), ON)
+        days = {name: team.member(name) for name in names}
+        for name, at in ((name, one.plant) for one, name in told[-2:]):
+            assert days[name].at == at
+        for k in range(n):
+            if (stop := days[names[k % 2]].ask()) is not None:
+                told.append((stop, names[k % 2]))
+                days[names[k % 2]].tell(found=k % 5 == 4)
+    plants = [stop.plant for stop, _ in told]
+    assert len(plants) == len(set(plants)) > 20
+    held = season.history.inspections
+    assert set(held.date.astype(str)) == {"2026-04-06", "2026-04-07"}
+    assert sorted(held.plant.tolist()) == sorted(plants)
+    for name in names:
+        own = made_by(held, name)
+        moments = own.date + own.second.astype("timedelta64[s]")
+        assert (np.diff(moments) > np.timedelta64(0)).all()
+        assert moments[-1] - moments[0] < np.timedelta64(18, "m")
 
 
 def test_nobody_is_given_another_plant_once_it_is_stopped(team):

@@ -73,7 +73,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
         )
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
-    infested = float(season.evening_planned_by(on)[route.plant].sum())
+    infested = float(season.evening(on)[route.plant].sum())
     typer.echo(f"{on}: {done}{day_in_words(route, infested)}")
     if [*season.codes_on(on).values()] not in ([], [None]):
         typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)

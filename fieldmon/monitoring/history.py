@@ -483,8 +483,12 @@ class History:
         aisles, robot = shift.aisles, shift.robot
         later = self._past_midnight(shift, day, who)
         today = self.worked(shift, day, who)
-        evening = self._evening(morning, day, later) if len(later) else self.evening(morning, day)
-        believed = in_sight(evening)
+        # what the day's finds say of other plants counts for the rest of it, too
+        believed = in_sight(
+            in_hindsight(self._evening(morning, day, later), self.night(day))
+            if len(later)
+            else self.in_hindsight(morning, day)
+        )
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day, who)

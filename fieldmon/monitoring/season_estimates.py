@@ -67,17 +67,12 @@ class SeasonEstimates(OpenSeason):
             return in_sight(morning).chance.copy()
 
     def evening(self, on: date) -> Floats:
-        """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far."""
-        with self._asked(on) as (contents, morning, day):
-            return contents.history.in_hindsight(morning, day).chance.copy()
+        """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far.
 
-    def evening_planned_by(self, on: date) -> Floats:
-        """Return the chances ``(n,)`` by which what is left of `on` is planned, hidden or not.
-
-        Routes go by what can be seen of it. What finds say of others only `evening` has.
+        What is left of the day is planned by it, as far as it can be seen.
         """
         with self._asked(on) as (contents, morning, day):
-            return contents.history.evening(morning, day).chance.copy()
+            return contents.history.in_hindsight(morning, day).chance.copy()
 
     def level_range(self, on: date) -> LevelRange:
         """Return how far the chances of `evening` may be off together: 90 %, on the odds."""

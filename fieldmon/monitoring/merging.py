@@ -330,12 +330,14 @@ def _merged_findings(
     """
     found: dict[Hashable, Row] = {}
     for own_rows, batch_of in zip(copies, numbers, strict=True):
+        again: Counter[Hashable] = Counter()  # taken back, and recorded again with the same batch
         for own in own_rows:
             row = {**own, "batch": batch_of.get(own["batch"])}
             if row["digest"] is None:  # a draft of another program
                 key: Hashable = _key(row, tuple(k for k in row if k != "fid"))
             else:
-                key = row["digest"], row["batch"]
+                again[row["digest"], row["batch"]] += 1
+                key = row["digest"], row["batch"], again[row["digest"], row["batch"]]
             known = found.setdefault(key, row)
             known["undone"] = _worse(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])

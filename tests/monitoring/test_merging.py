@@ -541,6 +541,23 @@ def test_labels_that_were_replaced_do_not_come_back(path, other, both):
     assert ours.verify() == ()
 
 
+def test_what_was_taken_back_and_recorded_again_at_once_counts_in_the_merged_season(path, other):
+    season = Season(path)
+    batch = season.record(result(30, CLEAN), "taps", "Ann").batch
+    season.record(result(31, FOUND), "taps", "Ann", into=batch)
+    with season.store.reading() as db:
+        (found,) = db.execute("SELECT fid FROM inspections WHERE plant = 31").fetchone()
+    there = Season(shutil.copy(path, other))  # knows the first of both
+    season.undo(inspection=found)
+    season.record(result(31, FOUND), "taps", "Ann", into=batch)
+    done = season.merge(there)
+    assert (done.new, done.taken_back) == (0, 0)
+    there.merge(season)
+    for one in (season, there):
+        assert 31 in one.history.inspections.plant
+        assert one.verify() == ()
+
+
 @pytest.mark.parametrize("way", ["ours", "theirs"])
 def test_a_note_written_in_either_copy_is_kept(path, other, way):
     noted, bare = (path, other) if way == "ours" else (other, path)

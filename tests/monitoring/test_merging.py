@@ -4,6 +4,7 @@ import os
 import random
 import shutil
 import sqlite3
+from collections import Counter
 from contextlib import closing
 from dataclasses import replace
 from datetime import UTC, datetime, time, timedelta
@@ -310,10 +311,13 @@ def test_a_photo_is_shown_as_long_as_its_finding_counts_in_either_copy():
         assert photos_shown(theirs) == wanted
         each = [{row[0] for row in rows - others} for rows, others in (brought, brought[::-1])]
         of_both += len(each[0] & each[1] & wanted)
+        # where somebody else had said the same in one copy, a finding has another digest there
+        marks = {row[:2] for rows in brought for row in rows}
+        twice = {photo for photo, n in Counter(photo for photo, _ in marks).items() if n > 1}
         for number in [one.number for one in batches.all_of(ours) if not one.undone][::2]:
             batches.undo(ours, number)
             assert inspection_table.not_what_they_say(ours) == []
-            assert photos_shown(ours) >= not_taken_back(ours, brought)
+            assert photos_shown(ours) >= not_taken_back(ours, brought) - twice
         for db in (one, other, ours, theirs):
             db.close()
     assert of_both

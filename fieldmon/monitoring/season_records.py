@@ -363,7 +363,7 @@ class SeasonRecords(OpenSeason):
                     moved=moved,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
-        said = *contradict.sentences(self.label), *taken.settings
+        said = *contradict.sentences(self.label), *taken.differing
         return Merged(
             taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
         )

@@ -22,7 +22,15 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.open_layer import open_layer
-from fieldmon.io.import_report import Imported, ImportMessage, Remedy, dropped, guessed, seen
+from fieldmon.io.import_report import (
+    Imported,
+    ImportMessage,
+    Remedy,
+    doubtful,
+    dropped,
+    guessed,
+    seen,
+)
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
 from fieldmon.io.parse.weather_columns import (
@@ -38,7 +46,7 @@ from fieldmon.io.readers.weather_services import columns_of_service, service_of
 from fieldmon.io.readers.weather_stations import must_be_one_station
 from fieldmon.io.readers.weather_times import is_time_name, time_columns, times_of
 from fieldmon.io.sandbox.unpack import members
-from fieldmon.pests.weather import MEASURED
+from fieldmon.pests.weather import HOUR_S, MEASURED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -111,6 +119,8 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     must_be_one_station(layer, timed.at, taken)
     messages += timed.messages
     measured, step_s = {}, _step_s(timed.at)
+    if step_s > HOUR_S:
+        messages += _about_one_extreme(columns)
     for column in columns:
         if column.measure == "wind_from_deg":
             measured[column.measure] = _directions(layer, column, options)
@@ -147,6 +157,21 @@ def _first_table(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
         return kept, []
     said = worded("Another table begins after record {n}; it was left out.", n=len(kept))
     return kept, [dropped(said)]
+
+
+def _about_one_extreme(columns: list[WeatherColumn]) -> list[ImportMessage]:
+    """Return a doubt about lows without highs, or highs without lows: one was not recognised."""
+    name_of = {one.measure: one.name for one in columns}
+    low, high = name_of.get("low_c"), name_of.get("high_c")
+    if (mean := name_of.get("temperature_c")) is None or (low is None) == (high is None):
+        return []
+    if high is None:
+        said = worded("{name} was read as the low and {mean} as the mean, but no column as the "
+                      "high.", name=low, mean=mean)  # fmt: skip
+    else:
+        said = worded("{name} was read as the high and {mean} as the mean, but no column as the "
+                      "low.", name=high, mean=mean)  # fmt: skip
+    return [doubtful(said)]
 
 
 def _step_s(at: NDArray[np.datetime64]) -> float:

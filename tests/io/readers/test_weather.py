@@ -258,6 +258,16 @@ def test_rain_that_is_told_as_a_rate_is_summed_over_its_time(read, unit, cell):
     assert read(f"time,temp (C),rain ({unit})\n{rows}").value.rain_mm.tolist() == [6.0] * 3
 
 
+def test_a_low_and_a_mean_without_a_high_are_doubted(read):
+    days = "\n2026-11-18,27,10\n2026-11-19,26,9"
+    assert "Tmin (C) was read as the low and Temp (C) as the mean" in said(
+        read(f"Date,Temp (C),Tmin (C){days}")
+    )
+    assert "doubtful" not in said(read(f"Date,Tmax (C),Tmin (C){days}"))
+    davis = read("Date,Hi Temp (F),Low Temp (F)\n2026-11-18,80,50\n2026-11-19,80,50")
+    assert davis.value.temperature_c[0] == pytest.approx((80 + 50 - 64) / 2 / 1.8)
+
+
 def test_temperatures_in_tenths_are_asked_for_and_read(read):
     table = "date,temp\n2026-11-18,215\n2026-11-19,-35\n2026-11-20,199"
     with pytest.raises(ChoiceNeeded, match="goes up to 215, which is neither") as asked:

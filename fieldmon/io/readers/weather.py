@@ -20,6 +20,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.infestation.observations import PRESENT
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.open_layer import open_layer
 from fieldmon.io.import_report import (
@@ -32,6 +33,7 @@ from fieldmon.io.import_report import (
     seen,
 )
 from fieldmon.io.parse.columns import plain
+from fieldmon.io.parse.result_words import meaning
 from fieldmon.io.parse.values import numbers
 from fieldmon.io.parse.weather_columns import (
     KIND_OF,
@@ -70,8 +72,13 @@ _CALM = frozenset({"calm", "---", "windstill", "רגוע", "vrb"})
 _VARIABLE = 990.0
 _POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
            "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")  # fmt: skip
-_FORECAST_COLUMN = re.compile(r"forecast|prognos|vorhersage|prevision|pronostico|תחזית|توقع")
-_FORECAST_WORDS = re.compile(r"^(1|true|yes|y|f|fc|forecast.*|prognos.*|vorhersage.*|pr[eé]v.*)$")
+# in plain names of columns, and in their cells
+_FORECAST = re.compile(r"forecast|prognos|vorhersag|previs|pronostic|verwacht|תחזית|חזוי|توقع")
+_FORECAST_IN_SHORT = frozenset({"f", "fc", "prev"})
+_MEASURED = re.compile(
+    r"measured|observ|actual|gemessen|messung|beobacht|mesure|medid|misurat|gemeten|waargenomen"
+    r"|נמדד|מדוד|مقاس|مرصود|^(m|o|obs|real|past|reel)$"
+)
 
 
 def weather_in(source: Source, options: WeatherOptions, workroom: Workroom) -> Imported[Weather]:
@@ -133,7 +140,8 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     if service.tenths and "rain_mm" in measured:
         # -1 is less than could be measured
         measured["rain_mm"] = np.maximum(measured["rain_mm"], 0.0)
-    forecast = _forecast(layer)
+    forecast, said = _forecast(layer)
+    messages += said
     return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
 
 
@@ -296,17 +304,41 @@ def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) ->
 
 def _is_forecast(name: str) -> bool:
     """Return whether a column of this name says what was forecast."""
-    return _FORECAST_COLUMN.search(plain(name)) is not None
+    return _FORECAST.search(plain(name)) is not None
 
 
-def _forecast(layer: Layer) -> NDArray[np.bool_]:
-    """Return which rows a column calls forecast."""
+def _forecast(layer: Layer) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
+    """Return which rows a column calls forecast, and a doubt about those of which it is unclear."""
     column = next((n for n in layer.columns if _is_forecast(n)), None)
     if column is None:
-        return np.zeros(len(layer), bool)
-    return np.array(
-        [bool(_FORECAST_WORDS.match(text(v).casefold())) for v in layer.columns[column]], bool
+        return np.zeros(len(layer), bool), []
+    cells = [text(v) for v in layer.columns[column]]
+    # F is forecast, but false beside T
+    words = {cell.casefold() for cell in cells}
+    found = {cell: _is_word_for_forecast(cell, truths="t" in words) for cell in set(cells)}
+    unclear = [cell for cell in cells if cell and found[cell] is None]
+    flags = np.array([found[cell] is True for cell in cells], bool)
+    if not unclear:
+        return flags, []
+    said = worded(
+        "{name} says of {n} {n:line|lines} neither that {n:it was|they were} forecast nor that "
+        "{n:it was|they were} measured (the first says {cell!r}); taken as measured.",
+        name=column,
+        n=len(unclear),
+        cell=unclear[0],
     )
+    return flags, [doubtful(said)]
+
+
+def _is_word_for_forecast(cell: str, *, truths: bool) -> bool | None:
+    """Return whether a cell says that its line was forecast; None: it is no word for either."""
+    name = plain(cell)
+    if _MEASURED.search(name):
+        return False
+    if _FORECAST.search(name) or (name in _FORECAST_IN_SHORT and not (truths and name == "f")):
+        return True
+    result = meaning(cell)
+    return None if result is None else result == PRESENT
 
 
 def _possible(rows: WeatherRows, name: str) -> tuple[WeatherRows, list[ImportMessage]]:

@@ -92,12 +92,15 @@ class WeatherRows:
                 dropped(worded("{n} {n:line|lines} without a time {n:was|were} left out.", n=n))
             )
         rows = self.chosen(np.flatnonzero(timed))
-        rows = rows.chosen(np.argsort(rows.at, kind="stable"))
+        # of one time, what was measured comes last
+        rows = rows.chosen(np.lexsort((~rows.forecast, rows.at)))
         again = np.zeros(len(rows.at), bool)
         again[:-1] = rows.at[1:] == rows.at[:-1]
         if n_again := int(np.count_nonzero(again)):
             said = worded(
-                "{n} {n:time stands|times stand} twice; the last of each was taken.", n=n_again
+                "{n} {n:time stands|times stand} twice; the last of each was taken, measured "
+                "rather than forecast.",
+                n=n_again,
             )
             messages.append(dropped(said))
             rows = rows.chosen(np.flatnonzero(~again))

@@ -209,6 +209,32 @@ def test_what_lies_ahead_is_forecast(read):
     assert flagged.forecast.tolist() == [False, True]
 
 
+@pytest.mark.parametrize(
+    ("column", "measured", "forecast"),
+    [("Vorhersage", "nein", "ja"), ("Pronóstico", "no", "sí"), ("Prévision", "non", "oui"),
+     ("Tipo pronóstico", "medido", "pronóstico"), ("Forecast", "obs", "F"), ("Previsão", "0", "1"),
+     ("Forecast", "F", "T"), ("תחזית", "לא", "כן"), ("توقعات", "لا", "نعم")],
+)  # fmt: skip
+def test_what_a_column_calls_forecast_is_read_in_its_language(read, column, measured, forecast):
+    imported = read(f"date,temp (C),{column}\n2026-11-18,20,{measured}\n2026-11-19,21,{forecast}")
+    assert imported.value.forecast.tolist() == [False, True]
+    assert "doubtful" not in said(imported)
+
+
+def test_words_that_say_neither_forecast_nor_measured_are_doubted(read):
+    imported = read("date,temp (C),forecast\n2026-11-18,20,\n2026-11-19,21,GFS\n2026-11-20,21,yes")
+    assert imported.value.forecast.tolist() == [False, False, True]
+    assert "forecast says of 1 line neither" in said(imported)
+    assert "'GFS'" in said(imported)
+
+
+@pytest.mark.parametrize("rows", [("20,no", "31,yes"), ("31,yes", "20,no")])
+def test_of_one_time_the_measured_line_holds(read, rows):
+    both = "\n".join(f"2026-11-18,{row}" for row in rows)
+    weather = read(f"date,temp (C),forecast\n{both}\n2026-11-19,21,yes").value
+    assert (weather.temperature_c.tolist(), weather.forecast.tolist()) == ([20, 21], [False, True])
+
+
 def test_soil_dew_and_gusts_are_not_taken_for_the_weather(read):
     table = "date,soil temp (C),dew point (C),gust (m/s),air temp (C)\n2026-11-18,1,2,3,20\n"
     weather = read(table + "2026-11-19,1,2,3,21").value

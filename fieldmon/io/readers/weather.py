@@ -63,6 +63,8 @@ if TYPE_CHECKING:
 _MOST_NONSENSE = 0.05
 # without a unit: no place is warmer than this on average, or ever
 _WARMEST_MEAN_C, _WARMEST_C, _SURELY_F, _WARMEST_F = 35.0, 50.0, 60.0, 135.0
+# nowhere are days so much warmer than their nights, month by month
+_FARTHEST_APART_F = 54.0
 # numbers that stand for what is missing: no weather is ever so
 _MARKS = (-99999.0, -9999.9, -9999.0, -999.9, -999.0, -99.9, -99.0, 999.0, 999.9, 9999.0, 9999.9,
           99999.0)  # fmt: skip
@@ -128,15 +130,18 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     measured, step_s = {}, _step_s(timed.at)
     if step_s > HOUR_S:
         messages += _about_one_extreme(columns)
+    cells: dict[WeatherColumn, Floats] = {}
     for column in columns:
         if column.measure == "wind_from_deg":
             measured[column.measure] = _directions(layer, column, options)
             continue
-        values, none = _without_marks(numbers(layer.columns[column.name], options.decimal), column)
-        unit, said = _unit_of(column, values, options)
-        messages += [*none, *said]
-        if unit:
-            measured[column.measure] = UNITS[unit].ours(values, step_s)
+        values = numbers(layer.columns[column.name], options.decimal)
+        cells[column], said = _without_marks(values, column)
+        messages += said
+    unit_of, said = _units_of(cells, options)
+    messages += said
+    for column, unit in unit_of.items():
+        measured[column.measure] = UNITS[unit].ours(cells[column], step_s)
     if service.tenths and "rain_mm" in measured:
         # -1 is less than could be measured
         measured["rain_mm"] = np.maximum(measured["rain_mm"], 0.0)
@@ -216,12 +221,30 @@ def _without_units(layer: Layer) -> tuple[Layer, dict[str, str]]:
     return layer.take(np.arange(1, len(layer))), bare
 
 
-def _unit_of(
-    column: WeatherColumn, values: Floats, options: WeatherOptions
-) -> tuple[str, list[ImportMessage]]:
+def _units_of(
+    cells: dict[WeatherColumn, Floats], options: WeatherOptions
+) -> tuple[dict[WeatherColumn, str], list[ImportMessage]]:
+    """Return the unit of each column that need not be left out, and what is to be said."""
+    units, said, bare = {}, [], {}
+    for column, values in cells.items():
+        kind = KIND_OF[column.measure]
+        told = column.unit.casefold().replace(" ", "") or options.unit(kind)
+        if kind == "temperature" and not told:
+            bare[column] = values
+            continue
+        unit, about = _unit_of(column, kind, told)
+        said += about
+        if unit:
+            units[column] = unit
+    if bare:
+        unit, about = _temperature_unit({one.name: values for one, values in bare.items()})
+        said += about
+        units |= dict.fromkeys(bare, unit)
+    return units, said
+
+
+def _unit_of(column: WeatherColumn, kind: str, told: str) -> tuple[str, list[ImportMessage]]:
     """Return the unit of a column, empty where it must be left out, and what is to be said."""
-    kind = KIND_OF[column.measure]
-    told = column.unit.casefold().replace(" ", "") or options.unit(kind)
     if told:
         if told not in UNITS or UNITS[told].kind != kind:
             raise FileProblem(
@@ -234,8 +257,6 @@ def _unit_of(
                 )
             )
         return told, []
-    if kind == "temperature":
-        return _temperature_unit(column, values)
     if kind == "speed":
         remedy = Remedy("wind_unit", "km/h", worded("Name the unit"), ("m/s", "mph", "kn"))
         said = worded("{name} has no unit, so the wind was left out.", name=column.name)
@@ -247,43 +268,71 @@ def _unit_of(
     return "%", []
 
 
-def _temperature_unit(column: WeatherColumn, values: Floats) -> tuple[str, list[ImportMessage]]:
-    """Return the unit that temperatures tell; ask where they could be either."""
-    known = np.sort(values[~np.isnan(values)])
-    # a few broken ones tell nothing of the others
-    known = known[: len(known) - int(_MOST_NONSENSE * len(known))]
-    most = float(known[-1]) if len(known) else 0.0
+def _temperature_unit(columns: dict[str, Floats]) -> tuple[str, list[ImportMessage]]:
+    """Return the unit that a table's temperatures tell together; ask where it could be either."""
+    knowns = {name: _known(values) for name, values in columns.items()}
+    names = ", ".join(columns)
+    name = max(columns, key=lambda one: float(knowns[one].max(initial=-np.inf)))
+    most = float(knowns[name].max(initial=-np.inf))
     if most > _WARMEST_F:
         raise ChoiceNeeded(
             worded(
                 "{name} has no unit and goes up to {most:g}, which is neither Celsius nor "
                 "Fahrenheit. Is it in tenths?",
-                name=column.name,
+                name=name,
                 most=most,
             ),
             "temperature_unit",
             ("0.1 C", "0.1 F", "K"),
         )
     if most > _SURELY_F:
+        _must_be_near(knowns)
         said = worded(
-            "{name} has no unit; read as Fahrenheit, for it goes up to {most:g}.",
-            name=column.name,
+            "{names} {n:has|have} no unit; read as Fahrenheit, for {name} goes up to {most:g}.",
+            names=names,
+            n=len(columns),
+            name=name,
             most=most,
         )
         remedy = Remedy("temperature_unit", "C", worded("Read as Celsius"), ("0.1 C",))
         return "f", [guessed(said, None, remedy)]
-    if most > _WARMEST_C or (len(known) and float(known.mean()) > _WARMEST_MEAN_C):
+    if most > _WARMEST_C or any(k.size and k.mean() > _WARMEST_MEAN_C for k in knowns.values()):
         raise ChoiceNeeded(
             worded(
-                "{name} has no unit, and its values could be Celsius or Fahrenheit. Which is it?",
-                name=column.name,
+                "{names} {n:has|have} no unit, and what {n:it holds|they hold} could be Celsius "
+                "or Fahrenheit. Which is it?",
+                names=names,
+                n=len(columns),
             ),
             "temperature_unit",
             ("F", "C"),
         )
     remedy = Remedy("temperature_unit", "F", worded("Read as Fahrenheit"))
-    said = worded("{name} has no unit; read as Celsius.", name=column.name)
+    said = worded("{names} {n:has|have} no unit; read as Celsius.", names=names, n=len(columns))
     return "c", [guessed(said, None, remedy)]
+
+
+def _known(values: Floats) -> Floats:
+    """Return what was measured, in order, without the highest: a few broken ones tell nothing."""
+    known = np.sort(values[~np.isnan(values)])
+    return known[: len(known) - int(_MOST_NONSENSE * len(known))]
+
+
+def _must_be_near(knowns: dict[str, Floats]) -> None:
+    """Refuse temperatures that are too far apart to be all in Fahrenheit."""
+    middles = {name: float(np.median(known)) for name, known in knowns.items() if known.size}
+    low, high = min(middles, key=middles.__getitem__), max(middles, key=middles.__getitem__)
+    if (apart_f := middles[high] - middles[low]) <= _FARTHEST_APART_F:
+        return
+    raise FileProblem(
+        worded(
+            "{low} and {high} must be in one unit, but as Fahrenheit {high} is mostly {apart:.0f} "
+            "degrees warmer. Write the unit of each behind its name, as {high} (F).",
+            low=low,
+            high=high,
+            apart=apart_f,
+        )
+    )
 
 
 def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) -> Floats:

@@ -112,6 +112,18 @@ def test_temperatures_without_a_unit_tell_it_or_are_asked_for(read):
     assert kept.value.temperature_c.tolist() == pytest.approx([10, 5])
 
 
+def test_all_temperatures_without_a_unit_tell_it_together(read):
+    """Lows of 4 to 13 °F were Celsius beside highs of 45 to 62 °F."""
+    rows = "\n".join(f"2026-01-{day},{day - 10},{day + 42}" for day in range(14, 22))
+    imported = read(f"date,Tmin,Tmax\n{rows}")
+    assert "Tmin, Tmax have no unit; read as Fahrenheit, for Tmax goes up to 63" in said(imported)
+    assert imported.value.low_c[0] == pytest.approx((4 - 32) / 1.8)
+    with pytest.raises(ChoiceNeeded, match="Tmin, Tmax have no unit, and what they hold could be"):
+        read("date,Tmin,Tmax\n2026-01-14,31,52\n2026-01-15,30,51")
+    with pytest.raises(FileProblem, match="Temp and Tmax must be in one unit, but as Fahrenheit"):
+        read("date,Temp,Tmax\n2026-07-14,20,77\n2026-07-15,21,78")
+
+
 @pytest.mark.parametrize(
     ("header", "sentence"),
     [("Temperature (mm)", "must be in C, F or K, but its unit is 'mm'"),

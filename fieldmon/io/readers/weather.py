@@ -247,6 +247,13 @@ def _unit_of(column: WeatherColumn, kind: str, told: str) -> tuple[str, list[Imp
     """Return the unit of a column, empty where it must be left out, and what is to be said."""
     if told:
         if told not in UNITS or UNITS[told].kind != kind:
+            if kind == "humidity":
+                said = worded(
+                    "The unit of {name} is {told!r} and not %. It was left out; nothing needs it.",
+                    name=column.name,
+                    told=told,
+                )
+                return "", [dropped(said)]
             raise FileProblem(
                 worded(
                     "The column {name!r} must be in {known}, but its unit is {told!r}. Correct "
@@ -397,7 +404,8 @@ def _possible(rows: WeatherRows, name: str) -> tuple[WeatherRows, list[ImportMes
         low, high = MEASURED[measure]
         wrong = ~np.isnan(values) & ((values < low) | (values > high))
         n, of = int(np.count_nonzero(wrong)), int(np.count_nonzero(~np.isnan(values)))
-        if n > max(_MOST_NONSENSE * of, 1):
+        # nothing needs the humidity
+        if n > max(_MOST_NONSENSE * of, 1) and measure != "humidity_pct":
             worst = float(values[wrong][0])
             raise FileProblem(
                 worded(

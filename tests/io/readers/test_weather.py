@@ -134,6 +134,15 @@ def test_a_unit_of_something_else_is_refused(read, header, sentence):
         read(f"date,{header}\n2026-11-18,20\n2026-11-19,20")
 
 
+def test_no_file_is_refused_for_its_humidity_for_nothing_needs_it(read):
+    unit = read("date,temp (C),RH (g/m3)\n2026-11-18,20,12\n2026-11-19,20,11")
+    assert "The unit of RH (g/m3) is 'g/m3' and not %. It was left out" in said(unit)
+    values = read("date,temp (C),RH\n2026-11-18,20,612\n2026-11-19,20,611")
+    assert "2 values of humidity_pct are impossible; left out" in said(values)
+    for imported in (unit, values):
+        assert np.isnan(imported.value.humidity_pct).all()
+
+
 def test_values_of_no_weather_are_left_out_or_refuse_the_file(read):
     days = "\n".join(f"2026-10-{day:02d},20" for day in range(1, 31))
     imported = read(f"date,temp (C)\n{days}\n2026-10-31,888")

@@ -42,6 +42,7 @@ from fieldmon.io.parse.weather_columns import (
     WeatherColumn,
     weather_columns,
 )
+from fieldmon.io.readers.running_rain import what_fell
 from fieldmon.io.readers.weather_json import is_weather_json, rows_of_json
 from fieldmon.io.readers.weather_rows import WeatherRows
 from fieldmon.io.readers.weather_services import columns_of_service, service_of
@@ -138,6 +139,9 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
         values = numbers(layer.columns[column.name], options.decimal)
         cells[column], said = _without_marks(values, column)
         messages += said
+        if column.measure == "rain_mm" and not (service.title or _is_rate(column, options)):
+            cells[column], said = what_fell(column.name, cells[column], timed.at, options.rain_is)
+            messages += said
     unit_of, said = _units_of(cells, options)
     messages += said
     for column, unit in unit_of.items():
@@ -219,6 +223,12 @@ def _without_units(layer: Layer) -> tuple[Layer, dict[str, str]]:
         return layer, {}
     bare = {name: cell.strip("()[] ") for name, cell in units.items()}
     return layer.take(np.arange(1, len(layer))), bare
+
+
+def _is_rate(column: WeatherColumn, options: WeatherOptions) -> bool:
+    """Return whether a column says how much fell in some time."""
+    unit = UNITS.get(column.unit or options.unit("rain"))
+    return unit is not None and unit.per_s > 0
 
 
 def _units_of(

@@ -58,16 +58,20 @@ def what_fell(
         `EACH` or `RUNNING`; None: nobody said.
     """
     known = np.flatnonzero(~np.isnan(counted) & ~np.isnat(at))
-    known = known[np.argsort(at[known], kind="stable")]
-    values, times = counted[known], at[known].astype(np.int64)
+    # a line that stands twice says the same twice
+    times, first, of_time = np.unique(
+        at[known].astype(np.int64), return_index=True, return_inverse=True
+    )
+    values, fell = counted[known][first], np.full(len(counted), np.nan)
+    fell[known] = _differences(values)[of_time]
     if told is not None:
-        return (_differences(counted, known) if told == RUNNING else counted), []
+        return (fell if told == RUNNING else counted), []
     by_day = _step_s(times) > DAY_S / 2
     is_named = not by_day and any(stem in plain(name) for stem in _NAMED)
     if _counts_up(values, times, is_named=is_named, by_day=by_day):
         said = worded("{name} counts up; what fell was read as the difference.", name=name)
         remedy = Remedy("rain_is", EACH, worded("Read each value as what fell"))
-        return _differences(counted, known), [guessed(said, None, remedy)]
+        return fell, [guessed(said, None, remedy)]
     if is_named and values.any():
         said = worded("{name} falls during the day; each value was read as what fell.", name=name)
         remedy = Remedy("rain_is", RUNNING, worded("Read it as counted up"))
@@ -75,14 +79,11 @@ def what_fell(
     return counted, []
 
 
-def _differences(counted: Floats, known: NDArray[np.int64]) -> Floats:
-    """Return by how much each value is above the one before; `known` are the rows in order."""
-    values = counted[known]
+def _differences(values: Floats) -> Floats:
+    """Return by how much each value ``(n,)`` is above the one before; after a fall, above none."""
     # where it begins at nothing, nothing fell before
     steps = np.diff(values, prepend=np.nan if values[:1].any() else 0.0)
-    fell = np.full(len(counted), np.nan)
-    fell[known] = np.where(steps < 0.0, values, steps)
-    return fell
+    return np.where(steps < 0.0, values, steps)
 
 
 def _counts_up(values: Floats, times: NDArray[np.int64], *, is_named: bool, by_day: bool) -> bool:

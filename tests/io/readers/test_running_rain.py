@@ -54,6 +54,12 @@ def test_gaps_and_rows_out_of_order_do_not_change_what_fell():
     assert np.nansum(rain) == FELL.sum()
 
 
+def test_a_line_that_stands_twice_loses_no_rain(read_weather):
+    rows = [f"2026-01-{5 + h // 24:02d} {h % 24:02d}:00,20,{BY_DAY[h]}" for h in range(72)]
+    table = "\n".join(["time,temp (C),Daily Rain (mm)", *rows[:8], rows[7], *rows[8:]])
+    assert read_weather(table).value.rain_mm.sum() == FELL.sum()
+
+
 def drawn(rng, step_s):
     """Return a few days of rain that comes and goes, in a gauge that tips."""
     n = int(rng.choice([1, 2, 5, 14])) * 86_400 // step_s

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 #: what a threshold counts; a share lies between 0 and 1, a mean is animals a leaf
 MEASURES = ("share of plants", "share of leaves", "mean per leaf")
 _OWN = "your own"
-_PREDATORS = {"yes": True, "no": False, "": None}
 _COLUMNS = ("name", "measure", "level", "source")
 
 
@@ -42,8 +41,6 @@ class Threshold:
         Who says so.
     crop, pest, when
         Where it holds, in words; empty: not said.
-    predators
-        Whether it holds where predators of the pest live; None: the source draws no such line.
 
     Raises
     ------
@@ -58,7 +55,6 @@ class Threshold:
     crop: str = ""
     pest: str = ""
     when: str = ""
-    predators: bool | None = None
 
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
@@ -220,19 +216,10 @@ def _percents(text: str) -> float:
 
 def _of_row(row: Mapping[str, str]) -> Threshold:
     words = {name: row.get(name) or "" for name in ("crop", "pest", "when")}
-    predators = row.get("predators", "").casefold()
-    if predators not in _PREDATORS:
-        raise SettingError(
-            worded(
-                "predators must be yes, no or nothing, but it is {predators!r}.",
-                predators=predators,
-            )
-        )
     return Threshold(
         row["name"],
         row["measure"],
         _level(row["level"], row["measure"]),
         row["source"] or _OWN,
-        predators=_PREDATORS[predators],
         **words,
     )

@@ -48,8 +48,6 @@ _TOGETHER = (
     "group_concat(undone), group_concat(who), group_concat(notes) "
     "FROM inspections WHERE batch = ?"
 )
-#: what stays ours and is told of the other's, see `fieldmon.monitoring.season_log`
-LOGGED = (schema.LOG,)
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.day_ahead import DayAhead, inside, through
 from fieldmon.monitoring.history import Besides
-from fieldmon.monitoring.monitor import PlantToInspect
+from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person
 from fieldmon.planning.wishes import Wishes
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 REPLAN_AFTER_S = 30.0
 
 
-class SeasonDay:
+class SeasonDay(AskedDay):
     """A day of a season that is asked for the next plant and told what was seen there.
 
     All that is told of a day is one batch, and every plan is kept. Who begins again after a crash
@@ -45,6 +44,8 @@ class SeasonDay:
         What people want of the day besides.
     """
 
+    late_s = REPLAN_AFTER_S
+
     def __init__(
         self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None
     ) -> None:
@@ -60,16 +61,16 @@ class SeasonDay:
         self.batch = begun_batch(season, self._source)
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
-        self._asked: PlantToInspect | None = None
         begun, beside = self.batch is not None, self._who or ""
         with self._entering():
             left = left_of_plan(season, on, beside, self.left_out) if begun else None
         #: whether it goes on with what is left of the plan given out last
         self.goes_on = left is not None and len(left.route) > 0
         if left is not None and self.goes_on:
-            self._take(left)
+            self._go_by(left)
         else:
             self._plan()
+        super().__init__(self._gone_s)
 
     def __repr__(self) -> str:
         """Say which day of which season."""
@@ -101,22 +102,18 @@ class SeasonDay:
 
         `at_s` is when it was done, seconds since the day began; None: as charged.
         """
-        stop = self._asked
-        if stop is None:
-            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
-        done_s = stop.arrive_s + stop.inspect_s
-        now_s = done_s if at_s is None else at_s
-        self._record(stop.plant, found, now_s)
-        self._asked, self._at, self._gone_s = None, stop.plant, now_s
-        self._late_s = now_s - done_s
-        self._next += 1
-        if found or found is None or abs(self._late_s) > REPLAN_AFTER_S:
-            self._plan()
+        self._tell(found, at_s)
 
-    def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
-        one = as_inspection(plant, found, (self._on, self.begun_s + now_s))
+    def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
+        one = as_inspection(stop.plant, found, (self._on, self.begun_s + now_s))
         done = self._season.record(one, self._source, into=self.batch)
         self.batch = self.batch or done.batch
+
+    def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
+        self._at, self._gone_s = stop.plant, self._clock_s
+        self._next += 1
+        if found or found is None or is_late:
+            self._plan()
 
     def _without(self, wishes: Wishes | None) -> Wishes | None:
         """Return what people want but for the plants that are left to somebody."""
@@ -127,17 +124,17 @@ class SeasonDay:
 
     def _plan(self) -> None:
         with self._entering():
-            self._take(self._season.plan(self._on, wishes=self._wishes, who=self._who))
+            self._go_by(self._season.plan(self._on, wishes=self._wishes, who=self._who))
 
     def _entering(self) -> AbstractContextManager[None]:
         """Let a robot enter where people may not be yet."""
         on_foot = self._season.planned_by(self._on).robot.on_foot
         return nullcontext() if on_foot else self._season.entering_treated()
 
-    def _take(self, today: DayPlan) -> None:
+    def _go_by(self, today: DayPlan) -> None:
         season, on, who = self._season, self._on, self._who
         self._today: DayPlan = today
-        self._next, self._late_s = 0, 0.0
+        self._next = 0
         self._at = today.scene.at
         # a first result that came late or early shows that the day began otherwise
         since_s = season.begun_s(on, who or "") - self.begun_s
@@ -146,18 +143,10 @@ class SeasonDay:
         self.replanned += 1
 
     def _stop(self, k: int) -> PlantToInspect:
-        route, label = self._today.route, self._season.label
-        plant = int(route.plant[k])
-        lon, lat = self._season.plot.grid.lonlat(route.plant[k : k + 1])[0]
-        return PlantToInspect(
-            plant=plant,
-            row=int(label.line[plant]),
-            number=int(label.number[plant]),
-            lonlat=(float(lon), float(lat)),
-            arrive_s=self._since_s + float(route.arrive_s[k]),
-            inspect_s=float(route.leave_s[k] - route.arrive_s[k]),
-            detects=float(route.detects[k]),
-        )
+        route, plant = self._today.route, int(self._today.route.plant[k])
+        arrive_s = self._since_s + float(route.arrive_s[k])
+        long = float(route.leave_s[k] - route.arrive_s[k]), float(route.detects[k])
+        return plant_to_inspect(self._season.plot.grid, plant, arrive_s, *long)
 
 
 def begun_batch(season: Season, source: str) -> int | None:

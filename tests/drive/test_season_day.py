@@ -10,7 +10,7 @@ import pytest
 from fieldmon.drive.charged import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.season_day import SeasonDay, as_inspection
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.applications import Application
@@ -217,3 +217,27 @@ def test_a_late_robot_is_planned_for_anew(season):
 def test_nothing_is_told_of_a_plant_that_nobody_asked_for(season):
     with pytest.raises(ObservationError, match="asked for"):
         SeasonDay(season, ON).tell(found=False)
+
+
+def test_what_is_no_result_or_a_clock_that_goes_back_is_refused_and_not_recorded(season):
+    day = SeasonDay(season, ON)
+    must_check_what_it_is_told(day)
+    assert len(season.history.inspections) == 1
+
+
+def must_check_what_it_is_told(day):
+    """Tell a day of one plant, and then what makes no sense of the next."""
+    first = day.ask()
+    day.tell(found=False, at_s=first.done_s + 5.0)
+    asked = day.ask()
+    for found, at_s, said in (
+        ("clean", None, "must be True, False"),
+        (1, None, "must be True"),
+        (True, first.done_s, "must go on"),
+        (True, np.nan, "must go on"),
+    ):
+        with pytest.raises(ObservationError, match=said):
+            day.tell(found, at_s)
+    with pytest.raises(SettingError, match="must be in seconds"):
+        day.tell(found=True, at_s="90")
+    assert day.ask() == asked

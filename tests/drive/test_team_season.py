@@ -15,7 +15,7 @@ from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
 from fieldmon.plot.robot import Robot, scout
-from tests.drive.test_season_day import ON, noted
+from tests.drive.test_season_day import ON, must_check_what_it_is_told, noted
 
 
 def season_of(plot, path, members):
@@ -172,3 +172,8 @@ def test_a_season_without_a_team_is_refused(plot, tmp_path):
 def test_nothing_is_told_of_a_plant_that_nobody_asked_for(team):
     with pytest.raises(ObservationError, match="asked for"):
         team.member("robot-1").tell(found=False)
+
+
+def test_what_is_no_result_or_a_clock_that_goes_back_is_refused_and_not_recorded(team):
+    must_check_what_it_is_told(team.member("robot-2"))
+    assert len(team.season.history.inspections) == 1

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fieldmon.decisions.doses import Dose
     from fieldmon.decisions.labels import ProductLabel
+    from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.errors import (
         ChoiceNeeded,
         ContradictionError,
@@ -28,9 +29,12 @@ if TYPE_CHECKING:
         PlotError,
         SettingError,
     )
+    from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.hotspots import HotSpots, hot_spots
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.spread import Spread
     from fieldmon.io.library import (
         read_inspections,
@@ -41,14 +45,17 @@ if TYPE_CHECKING:
         read_weather,
     )
     from fieldmon.io.sources import PlantingChoices
+    from fieldmon.monitoring.advice import AdviceSettings
     from fieldmon.monitoring.applications import Application
     from fieldmon.monitoring.history import BeliefSettings
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.monitoring.status import Status
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
     from fieldmon.planning import routes
+    from fieldmon.planning.members import TeamMember, Teamwork
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
     from fieldmon.plot.block import Block
@@ -106,6 +113,13 @@ _MODULES = {
     "plot.robot": ("Robot", "Viewpoints", "rover", "scout"),
     "samplers": ("SAMPLERS",),
     "samplers.base": ("Sampler", "Scene", "Stops"),
+    "decisions.map_verdict": ("MapVerdict",),
+    "infestation.forecast": ("Forecast",),
+    "infestation.plot_estimate": ("PlotEstimate",),
+    "infestation.prior_settings": ("PriorSettings",),
+    "monitoring.advice": ("AdviceSettings",),
+    "monitoring.status": ("Status",),
+    "planning.members": ("TeamMember", "Teamwork"),
     "simulation.library": ("draw_start", "simulate"),
     "simulation.metrics": ("SeasonMetrics",),
     "simulation.season": ("SeasonSettings",),
@@ -118,6 +132,7 @@ _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "SAMPLERS",
+    "AdviceSettings",
     "Application",
     "BeliefSettings",
     "Block",
@@ -128,9 +143,11 @@ __all__ = [
     "Field",
     "FieldmonError",
     "FileProblem",
+    "Forecast",
     "HotSpots",
     "ImportDoubt",
     "Inspections",
+    "MapVerdict",
     "Monitor",
     "MonitorDay",
     "MonitoringSettings",
@@ -142,6 +159,8 @@ __all__ = [
     "PlantingChoices",
     "Plot",
     "PlotError",
+    "PlotEstimate",
+    "PriorSettings",
     "ProductLabel",
     "Robot",
     "Route",
@@ -153,7 +172,10 @@ __all__ = [
     "SettingError",
     "Spread",
     "Start",
+    "Status",
     "Stops",
+    "TeamMember",
+    "Teamwork",
     "Viewpoints",
     "Weather",
     "__version__",

@@ -10,6 +10,7 @@ import typer
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
+    Background,
     Hours,
     Look,
     Robots,
@@ -59,6 +60,7 @@ class ChangeOptions:
             callback=within(CHANCE),
         ),
     ] = None
+    background: Background = None
     trace: Annotated[
         bool | None,
         typer.Option(
@@ -97,6 +99,8 @@ class ChangeOptions:
         if self.spread is not None and self.pest_options.pest != "none":
             self._must_spread(settings)
         new = replace(new, belief=self._believed(new.belief))
+        if self.background is not None:
+            new = replace(new, prior=replace(new.prior, background_chance=self.background))
         if self.harvest is not None:
             none = self.harvest.casefold() == "none"
             new = replace(new, harvest=None if none else day(self.harvest, "--harvest"))

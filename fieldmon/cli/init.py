@@ -13,6 +13,7 @@ from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
+    Background,
     Contact,
     Every,
     Feature,
@@ -75,6 +76,7 @@ class InitOptions:
             callback=within(CHANCE),
         ),
     ] = None
+    background: Background = None
     seed: Annotated[
         int, typer.Option(help="Seed for samplers that draw at random.", callback=within(SEED))
     ] = 1
@@ -123,7 +125,7 @@ class InitOptions:
             sampler_settings(self.sampler.value, self.every),
             belief=belief if self.spread is None else _spreading(belief, self.spread),
             seed=self.seed,
-            prior=prior_of(pest_in_weather, begins.date()),
+            prior=prior_of(pest_in_weather, begins.date(), self.background),
             pest=None if pest_in_weather is None else pest_in_weather.pest,
             weather=None if pest_in_weather is None else pest_in_weather.weather,
             team=tuple(replace(one, robot=self.pest_options.seen(one.robot)) for one in team),

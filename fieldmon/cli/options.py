@@ -12,7 +12,7 @@ from fieldmon.cli.named_values import Options, chosen, chosen_of_file
 from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.cli.sampler_names import SamplerName
-from fieldmon.compute.ranges import DAYS, SEED, SHARE
+from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
 from fieldmon.errors import SettingError
 from fieldmon.planning.members import TEAMWORK
 from fieldmon.plot.planting import PLANTED
@@ -275,6 +275,14 @@ VisitEvery = Annotated[
 ]
 InfestedAtStart = Annotated[
     float, typer.Option(help="Share of plants infested at the start.", callback=within(SHARE))
+]
+Background = Annotated[
+    float | None,
+    typer.Option(
+        help="Chance of a plant of which nothing is known, far from edges and paths: 0.01 unless "
+        "said. Give what is usual in the region.",
+        callback=within(CHANCE),
+    ),
 ]
 StudySeed = Annotated[
     int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))

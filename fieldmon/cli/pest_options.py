@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -132,12 +132,19 @@ def check_no_pest(name: str | None, study: str) -> None:
         )
 
 
-def prior_of(pest_in_weather: PestInWeather | None, on: date) -> PriorSettings:
-    """Return how records become chances for a day, as the pest and its weather have it."""
+def prior_of(
+    pest_in_weather: PestInWeather | None, on: date, background: float | None = None
+) -> PriorSettings:
+    """Return how records become chances for a day, as the pest and its weather have it.
+
+    `background` is the chance of a plant of which nothing is known; None: the usual.
+    """
     from fieldmon.infestation.pest_prior import prior_for
     from fieldmon.infestation.prior_settings import PriorSettings
 
     usual = PriorSettings()
+    if background is not None:
+        usual = replace(usual, background_chance=background)
     if pest_in_weather is None:
         return usual
     made = prior_for(usual, pest_in_weather.pest, pest_in_weather.weather, on)

@@ -65,11 +65,7 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     if not options.every_plot:
         check_outputs(options.output, options.chance_map)
     if options.plot is not None and is_season(options.plot):
-        if options.robots is not None:
-            raise SettingError(
-                "--robots goes with a plot file, but this is a season, which keeps who works. "
-                "Change that with: fieldmon change --robots"
-            )
+        _refuse_what_a_season_keeps(options)
         plan_season(context, options, options.plot)
         return
     if options.now is not None:
@@ -92,6 +88,15 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
         _plan_one(options)
 
 
+def _refuse_what_a_season_keeps(options: PlanOptions) -> None:
+    for flag, given in (("--robots", options.robots), ("--background", options.background)):
+        if given is not None:
+            raise SettingError(
+                f"{flag} goes with a plot file, but this is a season, which keeps it. Change it "
+                f"with: fieldmon change {flag}"
+            )
+
+
 def _plan_one(options: PlanOptions) -> None:
     import numpy as np
 
@@ -108,7 +113,7 @@ def _plan_one(options: PlanOptions) -> None:
     on = np.datetime64(begins.date(), "D")
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins.date())
     sampler = sampler_of(options.sampler, options.every)
-    prior = prior_of(pest_in_weather, begins.date())
+    prior = prior_of(pest_in_weather, begins.date(), options.background)
     settings = PlanSettings(robot, sampler, prior)
     tell_unusable(known.records, on, prior)
     tell_clock_change(begins, robot.hours, known.plot.field)
@@ -155,7 +160,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
         robot=worker.given(),
         planting=request.planting.given(),
         bound=options.bound,
-        prior=prior_of(pest_in_weather, begins.date()),
+        prior=prior_of(pest_in_weather, begins.date(), options.background),
         pest=None if pest_in_weather is None else pest_in_weather.pest,
         rover=worker.rover,
         robot_times=worker.robot_times,

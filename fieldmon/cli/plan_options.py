@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.options import (
+    Background,
     Bounded,
     Every,
     Feature,
@@ -71,6 +72,7 @@ class PlanOptions:
     as_now: AsNow = False
     enter_treated: EnterTreated = False
     worker: WorkerOptions = field(default_factory=WorkerOptions)
+    background: Background = None
     pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
     chance_map: ChanceMap = None

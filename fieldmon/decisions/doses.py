@@ -73,6 +73,8 @@ class Dose:
     def of(cls, text: str, called: str = "A dose") -> Dose:
         """Return a dose as people write it: a number, and its unit behind it.
 
+        Raise `SettingError`, which names what was `called` so, if the `text` is none.
+
         Examples
         --------
         >>> Dose.of("0,5 l/ha")

@@ -46,6 +46,13 @@ class MapVerdict:
         Share of plants infested as expected, and the interval that holds it with `sure`.
     sure
         How sure a verdict must be.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> fm.Monitor(plot).verdict(level=0.05).verdict
+    'do not treat'
     """
 
     verdict: Verdict

@@ -44,6 +44,14 @@ class Forecast:
         was taken. None: no weather is known.
     measured
         How many of these nights had weather that was measured.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> ahead = fm.Monitor(plot).forecast(nights=3)
+    >>> ahead.nights, bool(ahead.high[0] < ahead.high[3])
+    (3, True)
     """
 
     expected: Floats

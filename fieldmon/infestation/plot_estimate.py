@@ -52,6 +52,14 @@ class PlotEstimate:
         Interval that holds the number with the chance asked for (90 % unless told).
     chance_clean
         Chance that no plant is infested.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> believed = fm.Monitor(plot).estimate()
+    >>> believed.low < believed.expected < believed.high
+    True
     """
 
     expected: float

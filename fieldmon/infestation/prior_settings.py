@@ -57,6 +57,14 @@ class PriorSettings:
     leaf_detection
         Chance that one leaf of an infested plant shows it; k leaves miss it by (1 - chance)^k.
         Young infestations sit on few leaves.
+
+    Examples
+    --------
+    >>> from datetime import date
+    >>> import fieldmon as fm
+    >>> usual_here = fm.PriorSettings(background_chance=0.03)
+    >>> fm.MonitoringSettings(date(2026, 4, 6), prior=usual_here).prior.background_chance
+    0.03
     """
 
     background_chance: float = 0.01

@@ -71,6 +71,12 @@ class AdviceSettings:
         Litres a hectare where it is sprayed.
     learnt_of
         The product of which the season learnt how well treating works; empty: it was not learnt.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> asked = fm.AdviceSettings(level=0.08, sure=0.95)
+    >>> fm.Season("season.gpkg").advice("2026-11-20", asked).headline()  # doctest: +SKIP
     """
 
     level: float = 0.05

@@ -22,11 +22,14 @@ from fieldmon.compute.arguments import (
 from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
 from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.forecast import NIGHTS, forecast
 from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.monitoring.history import BeliefSettings, in_sight
+from fieldmon.monitoring.history import BeliefSettings, in_hindsight, in_sight
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
@@ -40,7 +43,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.forecast import Forecast
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
@@ -217,6 +223,8 @@ class Monitor:
         )
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
         self._trail = np.empty(0, np.int32)
+        self._found = np.zeros(len(plot.grid), np.bool_)
+        self._last_told = self._belief, self._belief
         self._day: MonitorDay | None = None
 
     def __repr__(self) -> str:
@@ -226,8 +234,64 @@ class Monitor:
 
     @property
     def chance(self) -> NDArray[np.float64]:
-        """Believed chance of infestation now, ``(n,)``; it cannot be written to."""
-        return as_seen(self._belief.chance)
+        """Believed chance of infestation now, ``(n,)``; it cannot be written to.
+
+        While a day is under way, that of its morning.
+        """
+        return as_seen(self._told.chance)
+
+    def estimate(self, sure: float = 0.9) -> PlotEstimate:
+        """Return how many plants are believed infested and not found yet, as `Season.status` does.
+
+        Parameters
+        ----------
+        sure
+            Chance that the interval holds the number.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> made = fm.Monitor(plot).estimate()
+        >>> made.low < made.expected < made.high, round(made.chance_clean, 2)
+        (True, 0.0)
+        """
+        return estimate_of(self.plot.grid, self._told, sure, self._left)
+
+    @checked
+    def verdict(self, level: float, sure: float = 0.9) -> MapVerdict:
+        """Return whether treating pays from a share `level` of infested plants on; see `Season`.
+
+        Parameters
+        ----------
+        level
+            Share of infested plants from which treating pays, between 0 and 1.
+        sure
+            How likely the answer must be to be right.
+        """
+        told = self._told
+        asked = AskedVerdict.on(told, level, sure, self._left)
+        return map_verdict(self.plot.grid, told.chance, asked, told.pair_chance)
+
+    def forecast(self, nights: int = NIGHTS) -> Forecast:
+        """Return how many are infested after so many `nights` on which nobody inspects."""
+        ahead = [self.belief_settings.spread] * nights
+        now = estimate_of(self.plot.grid, self._told, found=self._left)
+        return forecast(self._belief, self.plot.grid, ahead, now=now, found=self._left)
+
+    @property
+    def _told(self) -> Belief:
+        """What is told of the belief: what finds say of other plants counts, see `Season`."""
+        belief, told = self._last_told
+        if belief is not self._belief:
+            told = in_hindsight(self._belief, self.belief_settings.spread)
+            self._last_told = self._belief, told
+        return told
+
+    @property
+    def _left(self) -> NDArray[np.bool_] | None:
+        """Plants that were found and are not treated, ``(n,)``; None: all are treated."""
+        return None if self.belief_settings.treated else self._found
 
     @property
     def last_inspected(self) -> NDArray[np.int32]:
@@ -297,6 +361,7 @@ class Monitor:
         if len(day.plants):
             self._last_inspected = self._last_inspected.copy()
             self._last_inspected[day.plants] = self.day_number
+            self._found[day.plants[day.found]] = True
             self._trail = day.plants
 
     def _believed_after(self, day: MonitorDay) -> Belief:

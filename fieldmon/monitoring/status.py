@@ -52,6 +52,12 @@ class Status:
         Where finds cluster.
     development
         How far the pest has come; None: no pest or weather was given, or it is not known.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> now = fm.Season("season.gpkg").status("2026-11-20")  # doctest: +SKIP
+    >>> now.inspected, now.found, now.estimate.high  # doctest: +SKIP
     """
 
     day: int

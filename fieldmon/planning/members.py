@@ -38,6 +38,13 @@ class TeamMember:
         ``(lon, lat)`` where its day starts and ends; None: the plot's gate.
     starts_s
         Seconds after the team's day begins at which its own does.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> late = fm.TeamMember("Ann", fm.scout(), starts_s=3600.0)
+    >>> late.name, late.robot.hours
+    ('Ann', 4.0)
     """
 
     name: str
@@ -75,6 +82,12 @@ class Teamwork:
     passing_m
         Metres of headland that two need to pass each other: where it is narrower nobody meets
         another head-on, but waits in its aisle. 0: they pass each other anywhere.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.Teamwork(contact_s=600.0).least_gain
+    0.5
     """
 
     together: bool = True

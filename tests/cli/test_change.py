@@ -2,9 +2,12 @@
 
 from datetime import timedelta
 
+import pytest
+
 from fieldmon.cli.status import lines
 from fieldmon.compute.wording import estimate
 from fieldmon.monitoring import Season
+from tests.cli.estate import ZIP
 
 
 def test_choices_can_be_changed(run, season):
@@ -99,3 +102,20 @@ def test_whether_finds_are_treated_or_only_flagged_is_chosen(run, season):
         code, _, err, _ = run("change", season, option)
         assert code == 0, err
         assert Season(season).settings.belief.treated is treated
+
+
+def test_what_is_usual_where_nothing_is_known_is_told_when_a_season_begins_and_later(run, tmp_path):
+    begun = run("init", "s.gpkg", ZIP, "--feature", "Nursery", "--background", "0.03")
+    assert begun[0] == 0, begun[2]
+    expected = [Season(tmp_path / "s.gpkg").morning(Season(tmp_path / "s.gpkg").settings.begins)]
+    code, out, err, _ = run("change", "s.gpkg", "--background", "0.01")
+    assert (code, "Days past are worked out anew" in out) == (0, True), err
+    season = Season(tmp_path / "s.gpkg")
+    expected.append(season.morning(season.settings.begins))
+    assert expected[0].min() == pytest.approx(0.03, rel=0.1)
+    assert expected[1].min() == pytest.approx(0.01, rel=0.1)
+    told = run("plan", ZIP, "--feature", "Nursery", "--background", "0.03", "-o", "r.gpx")[2]
+    usual = run("plan", ZIP, "--feature", "Nursery", "-o", "r.gpx")[2]
+    assert ("nothing is known" in told, "nothing is known" in usual) == (False, True)
+    code, _, err, _ = run("plan", "s.gpkg", "--background", "0.03", "-o", "r.csv")
+    assert (code, "--background goes with a plot file" in err) == (2, True)

@@ -1,14 +1,20 @@
 """Ask and tell: the same day as the compiled one, plant by plant."""
 
+from dataclasses import astuple
+from datetime import date
+
 import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.season_file import Season
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -248,3 +254,27 @@ def test_a_day_that_goes_on_anew_leaves_out_what_was_told_of_and_has_what_is_lef
     assert "day 2>" in repr(monitor)
     assert np.flatnonzero(monitor.last_inspected >= 0).tolist() == sorted(day.plants.tolist())
     assert set(monitor.last_inspected[day.plants].tolist()) == {0}
+
+
+@pytest.mark.parametrize("treated", [True, False])
+def test_it_tells_what_a_season_with_the_same_results_tells(tmp_path, plot, treated):
+    """The map of the evening, how many there are, whether to treat, and what is ahead."""
+    belief, robot, on = BeliefSettings(treated=treated), Robot(hours=1.0), date(2026, 4, 6)
+    first = np.full(len(plot.grid), 0.02)
+    monitor = Monitor(plot, "naive", robot, first, belief)
+    season = Season.create(
+        tmp_path / "s.gpkg", plot, risk=first, begins=on, robot=robot, belief=belief,
+        sampler="naive", prior=PriorSettings(0.0, edge_chance=0.0, path_chance=0.0),
+    )  # fmt: skip
+    assert astuple(monitor.estimate()) == pytest.approx(astuple(season.status(on).estimate))
+    with monitor.day() as day:
+        while (stop := day.ask()) is not None:
+            day.tell(found=stop.plant % 9 == 0)
+    season.record(
+        Inspections.of(day.plants, day.found.astype(np.int8), np.datetime64(on, "D")), "x"
+    )
+    assert monitor.chance == pytest.approx(season.evening(on), abs=1e-9)
+    assert astuple(monitor.estimate()) == pytest.approx(astuple(season.status(on).estimate))
+    assert monitor.verdict(0.05).chance_above == season.verdict(on, 0.05).chance_above
+    assert monitor.forecast().high.tolist() == season.forecast(on).high.tolist()
+    assert monitor.estimate(0.5).high < monitor.estimate().high

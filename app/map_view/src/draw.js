@@ -8,6 +8,7 @@ export class Drawing {
     this.changed = changed;
     this.tell = tell;
     this.points = [];
+    this.past = []; // of a plot's corners, what was before each change
     this.mode = null;
   }
 
@@ -16,7 +17,8 @@ export class Drawing {
   begin(mode) {
     if (mode?.id === this.mode?.id) return;
     this.mode = mode;
-    this.points = this.bends || this.outlines ? mode.points : [];
+    this.points = this.kept = this.bends || this.outlines ? mode.points : [];
+    this.past = [];
     this.changed();
   }
 
@@ -127,6 +129,8 @@ export class Drawing {
 
   // Tell how the line runs now; it stays to be bent on.
   told() {
+    if (this.outlines && this.points !== this.kept) this.past.push(this.kept);
+    this.kept = this.points;
     if ((this.bends && this.ready) || this.outlines) this.tell(this.mode, this.points);
   }
 
@@ -135,8 +139,13 @@ export class Drawing {
     this.changed();
   }
 
+  get canUndo() {
+    return this.points.length + this.past.length > 0;
+  }
+
   undo() {
-    this.points = this.points.slice(0, -1);
+    this.points = this.past.pop() ?? this.points.slice(0, -1);
+    this.kept = this.points;
     this.changed();
     this.told();
   }

@@ -567,7 +567,7 @@ class MapPage {
     const { mode, points, ready } = this.drawing;
     this.root.classList.toggle("drawing", Boolean(mode));
     const outlines = mode?.kind === "outline", said = outlines ? this.data.draw?.hint : null;
-    const now = JSON.stringify([mode?.id, points.length, said, this.data.words]);
+    const now = JSON.stringify([mode?.id, points.length, this.drawing.canUndo, said, this.data.words]);
     if (now === this.barred) return;
     this.barred = now;
     this.bar.hidden = !mode;
@@ -578,7 +578,7 @@ class MapPage {
     this.bar.replaceChildren(
       element("span", { text: said ? said : points.length && mode.kind !== "bent" ? words.corners.replace("{n}", points.length) : hint }),
       ...(mode.kind === "rows" ? [press(words.draw_done, () => this.selecting("rows"), { class: "main" })] : [
-        press(words.draw_back, () => this.drawing.undo(), { disabled: !points.length }),
+        press(words.draw_back, () => this.drawing.undo(), { disabled: !this.drawing.canUndo }),
         press(words.draw_drop, () => { this.drawing.drop(); if (mode.kind === "lasso") this.selecting("lasso"); })]),
       ...(outlines ? [press(words.corner_here, () => this.cornerHere())] : []),
       ...(["point", "lasso", "rows", "bent"].includes(mode.kind) ? [] : [press(words.draw_done, () => this.drawing.finish(), { disabled: !ready, class: "main" })]),

@@ -160,6 +160,31 @@ test("a corner is dragged, and dragged onto a neighbour it is gone", () => {
   assert.deepEqual(told.at(-1)[1], [[0.35, -0.1], ...SQUARE.slice(2)]);
 });
 
+test("what was done last to a plot's corners is taken back: one on an edge, a drag, all of them dropped", () => {
+  const { drawing, told } = outlined();
+  drawing.click([0.2, -0.1], view);
+  drawing.undo();
+  assert.deepEqual(drawing.points, SQUARE);
+  drawing.move(0, [0.15, -0.05], view);
+  drawing.move(0, [0.16, -0.05], view);
+  drawing.dropped(0, view);
+  drawing.dropped(0, view);
+  drawing.undo();
+  assert.deepEqual(drawing.points, SQUARE);
+  drawing.drop();
+  drawing.undo();
+  assert.deepEqual(told.at(-1), [OUTLINE, SQUARE]);
+  for (const left of [3, 2, 1, 0]) {
+    assert.equal(drawing.canUndo, true);
+    drawing.undo();
+    assert.equal(drawing.points.length, left);
+  }
+  assert.equal(drawing.canUndo, false);
+  drawing.begin({ ...OUTLINE, id: "outline 1", points: SQUARE });
+  drawing.undo();
+  assert.equal(drawing.points.length, 3, "of corners that there were, the last");
+});
+
 test("the outline of a plot is closed from three corners on", () => {
   const path = (n) => outlined(SQUARE.slice(0, n)).drawing.layers([0, 0, 0])[0].data[0].p;
   assert.equal(path(2).length, 2);

@@ -42,7 +42,7 @@ _IN_LINKS = (
     rf"!3d{_NUMBER}!4d{_NUMBER}",
     rf"[?&]mlat={_NUMBER}&mlon={_NUMBER}",
     rf"[?&](?:q|query|ll|coordinate|center|destination|daddr|viewpoint|cp)={_PAIR}",
-    rf"[@/]{_PAIR}",
+    rf"[@/]{_NUMBER},[\s+]*{_NUMBER}",
     rf"#(?:map=)?[\d.]+/{_NUMBER}/{_NUMBER}",
     rf"^geo:{_NUMBER},{_NUMBER}",
 )

@@ -75,6 +75,7 @@ def test_a_comma_is_read_as_the_language_writes_fractions(speaking):
         ("31.5", "must be written"),
         ("134.9, 231.5", "lies in"),
         ("https://maps.app.goo.gl/Xy12345", "holds none"),
+        ("https://example.org/plots/12+34/", "holds none"),
         ("https://www.google.com/maps/@31.5,234.9,17z", "lies in"),
     ],
 )

@@ -90,7 +90,7 @@ def in_panel(name: str) -> None:
     from .actions import ways_in  # noqa: PLC0415
     from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
     from .actions.choosing import choose, choose_display, mark_day  # noqa: PLC0415
-    from .state import notices  # noqa: PLC0415
+    from .state import drawn_plot, notices  # noqa: PLC0415
 
     if name == "today" and ways_in.is_first_run():
         with ways:
@@ -106,7 +106,7 @@ def in_panel(name: str) -> None:
             mark_day(chosen.choices, part)
             show_left_out(chosen.choices)
     with body:
-        if chosen.choices is None:
+        if chosen.choices is None or (part == "plot" and drawn_plot.is_open()):
             view("plot").bring(chosen.problem)
         else:
             try:

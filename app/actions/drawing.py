@@ -21,7 +21,7 @@ from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
 from ..state.plot_files import draw, drawn, laid, laying
 from ..words import texts
 from ..words.language import of_error
-from . import bending, turning_rows
+from . import bending, drawing_plot, turning_rows
 
 if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
@@ -107,6 +107,7 @@ def blocks(choices: Choices) -> None:
 
 def tools(choices: Choices) -> None:
     """Show what can be drawn, and undo."""
+    drawing_plot.offer_again()
     with st.expander(texts.DRAW, expanded=bool(_kind() or drawn(choices.plot_key))):
         st.caption(texts.DRAW_NOTE)
         kinds = [kind for kind in texts.DRAW_KINDS if kind != ROW or bending.can_bend(choices)]

@@ -16,8 +16,13 @@ from ..words.language import in_words, of_error
 from . import bringing_files
 
 if TYPE_CHECKING:
+    from datetime import date
+
+    from fieldmon.monitoring import Season
+
     from ..state.choices import Choices
     from ..state.kept_ground import Ground
+    from ..words.units import UnitsInLanguage
 
 _WHICH, _ADDRESS = "web_map", "web_map_address"
 _OSM, _OTHER = "osm", "other"
@@ -25,12 +30,12 @@ _OSM, _OTHER = "osm", "other"
 
 def show(choices: Choices) -> None:
     """Show the box for a file, and the maps that can be agreed to."""
-    made, agreed = ground.of(choices), ground.agreement(choices)
+    made, agreed = ground.of(choices), ground.agreement(choices.season)
     is_open = made is not None or agreed is not None or ground.GROUND in brought()
     with st.expander(texts.GROUND, expanded=is_open):
         st.caption(texts.GROUND_NOTE)
         _file(choices, made)
-        _web_map(choices, agreed)
+        web_map(choices.season, choices.today or choices.on, choices.units)
 
 
 def _file(choices: Choices, made: Ground | None) -> None:
@@ -60,14 +65,15 @@ def _say(made: Ground) -> None:
         st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in made.said))
 
 
-def _web_map(choices: Choices, agreed: Agreement | None) -> None:
+def web_map(season: Season | None, today: date, units: UnitsInLanguage) -> None:
     """Ask once, in words that say who then learns what; show what was agreed to, to take back."""
+    agreed = ground.agreement(season)
     if agreed is not None:
         host = texts.isolated(web_maps.host(agreed.address))
-        day = choices.units.said_day(agreed.on, choices.on)
+        day = units.said_day(agreed.on, today)
         st.markdown(texts.WEB_MAP_AGREED.format(host=host, day=day))
         st.button(texts.WEB_MAP_BACK.format(host=host), key="web_map_back", on_click=ground.agree,
-                  args=(choices, None))  # fmt: skip
+                  args=(season, None))  # fmt: skip
         return
     st.selectbox(texts.WEB_MAP, list(texts.WEB_MAPS), key=_WHICH, filter_mode=None,
                  format_func=texts.WEB_MAPS.__getitem__)  # fmt: skip
@@ -83,14 +89,13 @@ def _web_map(choices: Choices, agreed: Agreement | None) -> None:
     except FieldmonError as error:
         st.error(of_error(error))
         return
-    _ask(choices, address)
+    _ask(season, today, address)
 
 
-def _ask(choices: Choices, address: str) -> None:
+def _ask(season: Season | None, today: date, address: str) -> None:
     host = texts.isolated(web_maps.host(address))
-    kept = texts.WEB_MAP_SESSION if choices.season is None else texts.WEB_MAP_SEASON
+    kept = texts.WEB_MAP_SESSION if season is None else texts.WEB_MAP_SEASON
     st.info(f"{texts.WEB_MAP_ASK.format(host=host)} {kept}")
-    today = str(choices.today or choices.on)
-    agreed = Agreement(address, web_maps.credit(address), today)
+    agreed = Agreement(address, web_maps.credit(address), str(today))
     st.button(texts.WEB_MAP_AGREE.format(host=host), key="web_map_agree", type="primary",
-              on_click=ground.agree, args=(choices, agreed))  # fmt: skip
+              on_click=ground.agree, args=(season, agreed))  # fmt: skip

@@ -14,6 +14,8 @@ from .maps import ground_layers
 if TYPE_CHECKING:
     from pydeck import Layer
 
+    from fieldmon.monitoring import Season
+
     from ..state.choices import Choices
 
 
@@ -41,25 +43,31 @@ class GroundShown:
 
 def of(choices: Choices) -> GroundShown:
     """Return what lies under a plot: a map that was agreed to, and on it what was brought."""
-    agreed, made = ground.agreement(choices), ground.of(choices)
-    layers, credits_, worker = [], [], ""
-    if agreed is not None:
-        worker = web_maps.ASKED.worker(agreed.address)
-        layers += cached.layers(
-            f"ground {agreed}",
-            lambda: [ground_layers.web_map(agreed.address, web_maps.LAST_ZOOM)],
-        )
-        credits_.append(agreed.credit)
+    world, made = of_world(choices.season), ground.of(choices)
+    layers, credits_ = [*world.layers], [world.credit]
     if isinstance(made, GroundTiles):
         address = map_tiles.SHELF.publish(made.tiles)
         layers += cached.layers(address, lambda: [ground_layers.tiles(address, made.tiles)])
         credits_.append(made.tiles.credit)
     elif isinstance(made, GroundPicture):
         layers += _picture(made, dark=choices.dark)
-    is_picture = agreed is not None or (
+    is_picture = world.is_picture or (
         made is not None and not (isinstance(made, GroundPicture) and made.is_relief)
     )
-    return GroundShown(tuple(layers), " · ".join(filter(None, credits_)), is_picture, worker)
+    return GroundShown(tuple(layers), " · ".join(filter(None, credits_)), is_picture, world.worker)
+
+
+def of_world(season: Season | None) -> GroundShown:
+    """Return the map of the world that was agreed to, for a season or for this session."""
+    agreed = ground.agreement(season)
+    if agreed is None:
+        return GroundShown()
+    layers = cached.layers(
+        f"ground {agreed}",
+        lambda: [ground_layers.web_map(agreed.address, web_maps.LAST_ZOOM)],
+    )
+    worker = web_maps.ASKED.worker(agreed.address)
+    return GroundShown(tuple(layers), agreed.credit, is_picture=True, worker=worker)
 
 
 def _picture(made: GroundPicture, *, dark: bool) -> list[Layer]:

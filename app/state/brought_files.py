@@ -81,7 +81,11 @@ def brought() -> dict[str, File]:
 
 def keep(kind: str, parts: Iterable[UploadedFile]) -> None:
     """Keep what was dropped into a box, the parts of one file; nothing: take it out."""
-    uploads = tuple(Upload(part.name, part.getvalue()) for part in parts)
+    keep_uploads(kind, tuple(Upload(part.name, part.getvalue()) for part in parts))
+
+
+def keep_uploads(kind: str, uploads: tuple[Upload, ...]) -> None:
+    """Keep a file of these parts; none: take it out."""
     if not uploads:
         take_out(kind)
         return

@@ -20,6 +20,11 @@ def language() -> str:
     return code if code in LANGUAGES else ENGLISH
 
 
+def zone() -> str:
+    """Return the time zone of the browser's device; empty where it says none."""
+    return st.context.timezone or ""
+
+
 def is_phone() -> bool:
     """Return whether it is a phone's browser."""
     return "Mobi" in (st.context.headers.get("User-Agent") or "")

@@ -17,6 +17,7 @@ from .kept_ground import Agreement, Ground, GroundPicture, GroundTiles
 
 if TYPE_CHECKING:
     from fieldmon.io.options import Upload
+    from fieldmon.monitoring import Season
 
     from .brought_files import File, FileMessage
     from .choices import Choices
@@ -83,18 +84,18 @@ def shows(file: File) -> str:
 # -- maps on the internet
 
 
-def agreement(choices: Choices) -> Agreement | None:
+def agreement(season: Season | None) -> Agreement | None:
     """Return what was agreed to for the season, or for this session where there is none."""
-    if choices.season is not None:
-        return kept_ground.agreement(choices.season.path)
+    if season is not None:
+        return kept_ground.agreement(season.path)
     agreed: Agreement | None = st.session_state.get(_AGREED)
     return agreed
 
 
-def agree(choices: Choices, to: Agreement | None) -> None:
+def agree(season: Season | None, to: Agreement | None) -> None:
     """Agree to a map for the season, or for this session; None: take it back (for callbacks)."""
-    if choices.season is not None:
-        kept_ground.agree(choices.season.path, to)
+    if season is not None:
+        kept_ground.agree(season.path, to)
     else:
         st.session_state[_AGREED] = to
 

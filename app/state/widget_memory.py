@@ -71,6 +71,12 @@ def change(names: tuple[str, ...], new: Callable[[Any], Any]) -> None:
                 st.session_state[key] = new(now)
 
 
+def carry(old: str, new: str) -> None:
+    """Let widgets whose keys hold `new` begin with the values of those of `old` (for callbacks)."""
+    for key in [key for key in _values() if old in key]:
+        _values()[key.replace(old, new)] = ("", value(key))
+
+
 def put(key: str, new: object) -> None:
     """Let a widget hold a value, which may be none (for callbacks)."""
     page, _ = _values().get(key, ("", None))

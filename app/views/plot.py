@@ -11,6 +11,7 @@ from ..actions import (
     bringing_files,
     choosing_pest,
     drawing,
+    drawing_plot,
     laying_ground,
     rasters,
     turning_rows,
@@ -28,7 +29,9 @@ if TYPE_CHECKING:
 
 
 def bring(problem: FieldmonError | None) -> None:
-    """Show the boxes for files while there is no plot to show, and what is wrong with them."""
+    """Show the ways to a plot while there is none to show, and what is wrong with it."""
+    if drawing_plot.show():
+        return
     if problem is None:
         st.title(texts.TITLE)
         st.markdown(texts.EMPTY)
@@ -36,7 +39,7 @@ def bring(problem: FieldmonError | None) -> None:
     said, boxes = st.container(), st.container()
     if plot_source.chosen() == plot_source.FILES:
         with boxes:
-            bringing_files.show()
+            drawing_plot.offer()
     if problem is not None:
         with said:
             answering.show(problem)

@@ -61,7 +61,8 @@ NO_MAP = {"bring": "Your plot will be drawn here", "asked": "One question comes 
           "file": "This file cannot be drawn", "plot": "This plot cannot be drawn yet",
           "season": "This season cannot be opened"}  # fmt: skip
 NO_MAP_DO = {
-    "bring": "Drop its file into the first box: rows, plants and today's route then stand here.",
+    "bring": "Drop its file into the first box, or draw it beside: rows, plants and today's route "
+    "then stand here.",
     "asked": "Answer it beside: the plot is then drawn here.",
     "file": "Drop another file into its box, or take this one out.",
     "plot": "Change the rows, or take back what was drawn last, beside.",
@@ -148,7 +149,7 @@ CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
 CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
 CHOOSE_OTHER, AT_SEA = "Another answer", "in the sea"
-LEGEND_ZONE = "border of a time zone"
+LEGEND_ZONE, LEGEND_GRID = "border of a time zone", "grid of {near} and {far}"
 ANSWERS_ALT = Plural("Map of {n} place where the plot could lie.",
                      "Map of {n} places where the plot could lie.")  # fmt: skip
 RECORDS_ON_MAP = (
@@ -206,6 +207,13 @@ MAP_WORDS = {
     "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
     "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
     "away": "the server is not reached",
+    "here": "Where I am", "corner_here": "Corner where I stand",
+    "closer": "From so far away a corner is not exact: come closer, then tap again.",
+    "standing": "A corner where you stand, to about {off} m.",
+    "rough": "A corner must be known to {most} m, but you are seen to {off} m only. Wait a moment "
+             "under open sky, and press again.",
+    "nowhere": "The browser says no position: allow it, and open the app over https or on this "
+               "machine itself. Or type the position.",
 }  # fmt: skip
 SEASON_INTRO = (
     "A simulated season on this plot. The start is drawn from the chance map; insects spread to "
@@ -556,6 +564,62 @@ DRAW_CROSSED = (
 )
 DRAW_WRITTEN = "A position must be written lon,lat such as 35.1503,30.3601, but it is {text!r}."
 DRAW_RANGE = "A longitude lies in -180..180 and a latitude in -90..90, but this is {text!r}."
+# -- a plot without a file
+OUTLINE_BEGIN = "Draw it on the map"
+OUTLINE_OR = "No file? Tap the plot's corners on the map, type them, or walk to them with a phone."
+OUTLINE = "### Draw the plot"
+OUTLINE_NOTE = (
+    "Find the place, then tap the corners on the map, one way round. A tap on an edge adds a "
+    "corner there. A corner can be dragged; dragged onto the next one, it is gone."
+)
+OUTLINE_PLACE = "A position, or a link copied from a map"
+OUTLINE_PLACE_HELP = (
+    "Latitude first, as maps on the internet copy it, or with letters as in N 31.5012, E 34.9034. "
+    "A link is only read, not opened."
+)
+OUTLINE_GO, OUTLINE_ADD = "Show this place", "Add as a corner"
+OUTLINE_READ = "Read as latitude {lat}, longitude {lon}: {where}."
+OUTLINE_TURN = "Exchange latitude and longitude"
+OUTLINE_STANDING = (
+    "With a phone in the field: *Where I am* and *Corner where I stand*, on the map. The browser "
+    "asks you first. A computer without GPS asks a service of the browser's maker for its position."
+)
+OUTLINE_NO_MAP = "Without a map from the internet there is a grid to measure by."
+OUTLINE_EDGES = "Edges in order: {edges}."
+OUTLINE_SAID = Plural("{n} corner, {area}", "{n} corners, {area}")
+OUTLINE_USE, OUTLINE_LEAVE = "This is my plot", "Back to the files"
+OUTLINE_CORRECT, OUTLINE_DOWNLOAD = "Correct the corners", "Download the boundary (GeoJSON)"
+OUTLINE_NAME = "My plot"
+OUTLINE_ON_MAP = Plural("Map on which a plot is drawn: {n} corner so far.",
+                        "Map on which a plot is drawn: {n} corners so far.")  # fmt: skip
+OUTLINE_HINT = "Tap the corners of the plot, one way round."
+OUTLINE_LEAST = (
+    "A plot needs three corners or more, but {n} are set. Tap more on the map, or type them."
+)
+OUTLINE_CROSSED = (
+    "The edge of a plot must not cross itself, but the edge after corner {one} meets the one after "
+    "corner {other}. Set the corners in order, one way round, or drag one that is out of order."
+)
+OUTLINE_WIDE = (
+    "A plot that is drawn must fit within {most}, but from end to end these corners are {wide} "
+    "apart. Take back the corner that lies far off; draw plots that lie apart one by one."
+)
+OUTLINE_SMALL = (
+    "The corners of a plot must enclose an area, but these {n} enclose next to none. Come closer "
+    "on the map, and drag them to where they belong."
+)
+OUTLINE_WRITTEN = (
+    "A position must be written latitude, longitude such as 31.5012, 34.9034, but it is {text!r}. "
+    "Copy it from a map, or type it so."
+)
+OUTLINE_LINK = (
+    "A link must hold a position, as those of OpenStreetMap, Google, Apple or Bing do in the "
+    "address bar, but {text!r} holds none. Open it, move the map a little and copy the address "
+    "again, or copy the position itself."
+)
+OUTLINE_RANGE = (
+    "A latitude lies in -90..90 and a longitude in -180..180, but this is {text!r}. Correct it."
+)
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
 BEND_ROW = "Row to bend; the others follow it"
 BEND_MAKES = "This makes {rows} rows with {plants} plants. They are drawn over the plot."
@@ -602,7 +666,7 @@ SHADES = {"chance": "chance of infestation", "state": "found, clean, never inspe
           "age": "days since inspected"}  # fmt: skip
 MAP_LAYERS = {"before": "as it was before", "route": "route", "numbers": "stop numbers",
               "hot": "hot spots", "treated": "treated", "records": "records", "rows": "row numbers",
-              "plan": "plan of the plot", "ground": "ground"}  # fmt: skip
+              "plan": "plan of the plot", "ground": "ground", "grid": "grid"}  # fmt: skip
 
 # -- to treat or not
 DECIDE_NEEDS_SEASON = (

@@ -185,5 +185,6 @@ def zone_outline(zone: str, rough_deg: float) -> MultiPolygon:
     found = json.loads(get_tz_polygon_geojson(zone))
     (feature,) = found.get("features", [found])
     shape = shapely.from_geojson(json.dumps(feature["geometry"]))
-    parts = shapely.get_parts(shapely.simplify(shape, rough_deg))
-    return MultiPolygon([part for part in parts if not part.is_empty])
+    # the zones' own outlines cross themselves here and there
+    parts = shapely.get_parts(shapely.make_valid(shapely.simplify(shape, rough_deg)))
+    return MultiPolygon([part for part in parts if part.geom_type == "Polygon"])

@@ -592,6 +592,83 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     assert not set(remaining) & set(first[:8])
 
 
+def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
+    page.goto(f"{address}/plot?season=My+own+files")
+    page.get_by_role("button", name=texts.OUTLINE_BEGIN).click()
+    rest(page)
+    click(page, free(page))
+    page.get_by_text(texts.MAP_WORDS["closer"]).first.wait_for()
+    place = page.get_by_role("textbox", name=texts.OUTLINE_PLACE)
+    place.fill("https://www.openstreetmap.org/#map=17/31.5012/34.9034")
+    place.press("Enter")
+    page.get_by_role("button", name=texts.OUTLINE_GO).click()
+    until(lambda: view(page)["zoom"] > 15)
+    still(page)
+    x, y = free(page)
+    top = page.locator(MAP).bounding_box()["y"]
+    places = [(x + dx, y - top + dy) for dx, dy in ((-90, 120), (90, 120), (90, -120), (-90, -120))]
+    for number, corner in enumerate(places, start=1):
+        says = f"{number} corners, " if number > 2 else f"Points: {number}"
+        click(page, corner, says=says)
+        rest(page)
+    seen = view(page)
+    assert len(page.locator(".label.edge:visible").all()) == 4
+    dressed(page)
+    start, end = (np.add(one, (0, top)) for one in (places[1], np.add(places[1], (60, 0))))
+    area = page.locator(".drawbar span").inner_text()
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=4)
+    page.mouse.up()
+    until(lambda: page.locator(".drawbar span").inner_text() != area)
+    page.reload()
+    page.get_by_role("button", name=texts.OUTLINE_USE).wait_for(timeout=180_000)
+    page.locator(".drawbar").get_by_role("button", name="Finish").click()
+    page.get_by_role("img", name="Map of plot My plot").wait_for(timeout=240_000)
+    with page.expect_download() as kept:
+        page.get_by_role("button", name=texts.OUTLINE_DOWNLOAD).click()
+    boundary = gpd.read_file(kept.value.path()).geometry.iloc[0]
+    corners = pixels(seen, shapely.get_coordinates(boundary)[:-1])
+    wanted = np.array([places[0], np.add(places[1], (60, 0)), *places[2:]])
+    assert len(corners) == 4
+    assert np.linalg.norm(corners[:, None] - wanted, axis=2).min(axis=0).max() < 3
+    open_room(page, texts.ROOMS["today"])
+    assert len(plants_of(route_of(page))) > 10
+    assert all(asked.startswith((address, "blob:", "data:")) for asked in page.requests)
+
+
+@pytest.mark.parametrize("page", [PHONE], indirect=True)
+def test_corners_are_walked_to_with_a_phone_and_a_rough_position_is_none(page, address):
+    window, words = page.context, texts.MAP_WORDS
+    window.grant_permissions(["geolocation"], origin=address)
+    page.goto(f"{address}/plot?season=My+own+files")
+    page.get_by_role("button", name=texts.OUTLINE_BEGIN).click()
+    rest(page)
+    here = page.get_by_role("button", name=words["corner_here"])
+    lonlat = [(34.9, 31.5), (34.902, 31.5), (34.902, 31.502)]
+    for number, (lon, lat) in enumerate(lonlat, start=1):
+        window.set_geolocation({"longitude": lon, "latitude": lat, "accuracy": 3.2})
+        here.click()
+        says = f"{number} corners, " if number > 2 else f"Points: {number}"
+        page.locator(".drawbar", has_text=says).wait_for()
+        assert "to about 4 m" in page.locator(".map .tip").inner_text()
+    rest(page)
+    bar = page.locator(".drawbar").bounding_box()
+    inside = [(0 < x < 390, 0 < y < bar["y"]) for x, y in pixels(view(page), lonlat)]
+    assert all(map(all, inside)), "all corners are in view, none is behind the bar"
+    window.set_geolocation({"longitude": 34.9, "latitude": 31.502, "accuracy": 900})
+    here.click()
+    page.locator(".map .tip", has_text="you are seen to 900 m only").wait_for()
+    page.locator(".drawbar", has_text="3 corners").wait_for()
+    page.get_by_role("button", name=words["here"], exact=True).click()
+    until(lambda: abs(pixels(view(page), [[34.9, 31.502]])[0] - (195, 300)).max() < 150)
+    window.clear_permissions()
+    here.click()
+    page.locator(".map .tip", has_text="The browser says no position").wait_for()
+    page.get_by_role("button", name="Finish").click()
+    page.get_by_role("img", name="Map of plot My plot").wait_for(timeout=240_000)
+
+
 def record_eight(page):
     """Record the first eight stops of the route as clean."""
     open_part(page, texts.PARTS["record"])

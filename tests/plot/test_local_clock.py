@@ -11,7 +11,7 @@ from shapely import MultiPolygon, box
 
 from fieldmon.plot import local_clock as clocks
 from fieldmon.plot.field import Field
-from fieldmon.plot.local_clock import LocalClock, local_clock
+from fieldmon.plot.local_clock import LocalClock, local_clock, zone_outline
 
 
 def field_at(lon, lat):
@@ -101,3 +101,10 @@ def test_the_latest_moment_of_a_local_time_is_that_time_or_later(zone, local):
 def test_by_how_much_a_clock_is_put_forward_or_back_during_a_day(zone, start, hours, minutes):
     moved = LocalClock(zone).put_forward(datetime.fromisoformat(start), 3600 * hours)
     assert moved == timedelta(minutes=minutes)
+
+
+@pytest.mark.parametrize("zone", ["America/Asuncion", "America/Argentina/Cordoba"])
+def test_the_outline_of_a_zone_is_one_that_can_be_cut(zone):
+    # as it is published, it crosses itself
+    assert zone_outline(zone, 0.05).is_valid
+    assert zone_outline(zone, 0.05).intersection(box(-60, -30, -50, -20)).area > 0

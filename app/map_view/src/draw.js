@@ -8,16 +8,23 @@ export class Drawing {
     this.changed = changed;
     this.tell = tell;
     this.points = [];
+    this.past = []; // of a plot's corners, what was before each change
     this.mode = null;
   }
 
   // `mode` is null or {kind: "point" | "line" | "area" | "lasso", snap: [[lon, lat], ...], id};
-  // with `points` it begins with these, and each change of them is told at once (kind "bent")
+  // with `points` it begins with these, and each change of them is told at once (kinds "bent" and "outline")
   begin(mode) {
     if (mode?.id === this.mode?.id) return;
     this.mode = mode;
-    this.points = this.bends ? mode.points : [];
+    this.points = this.kept = this.bends || this.outlines ? mode.points : [];
+    this.past = [];
     this.changed();
+  }
+
+  // Whether a plot is drawn by its corners.
+  get outlines() {
+    return this.mode?.kind === "outline";
   }
 
   // Whether a line that is there is bent, rather than a new one drawn.
@@ -60,6 +67,12 @@ export class Drawing {
       this.told();
       return;
     }
+    if (this.outlines) {
+      const corner = this.grabbed(here, viewport);
+      if (corner < 0) this.add(here, this.onEdge(here, viewport));
+      else if (corner === 0) this.finish(); // as many are used to close an outline
+      return;
+    }
     this.points = [...this.points, this.snapped(here, viewport)];
     this.changed();
     if (this.mode.kind === "point") this.finish();
@@ -68,6 +81,34 @@ export class Drawing {
   move(k, here, viewport) {
     this.points = this.points.with(k, this.snapped(here, viewport));
     this.changed();
+  }
+
+  // Set a corner of a plot, the last one or another.
+  add(here, k = this.points.length) {
+    this.points = this.points.toSpliced(k, 0, here);
+    this.changed();
+    this.told();
+  }
+
+  // Return which corner one becomes that is set on an edge, or just the last.
+  onEdge(here, viewport) {
+    const at = viewport.project(here), corners = this.points.map((p) => viewport.project(p));
+    const k = corners.findIndex((a, i) => i + 1 < corners.length && offEdge(at, a, corners[i + 1]) <= SNAP_PX);
+    return k < 0 ? this.points.length : k + 1;
+  }
+
+  // Let go of a corner that was dragged: one that lies on the next or on the one before is gone.
+  dropped(k, viewport) {
+    if (this.outlines) {
+      const n = this.points.length, [x, y] = viewport.project(this.points[k]);
+      const meets = [k + 1, k + n - 1].some((j) => {
+        const [u, v] = viewport.project(this.points[j % n]);
+        return n > 1 && Math.hypot(x - u, y - v) <= SNAP_PX;
+      });
+      if (meets) this.points = this.points.toSpliced(k, 1);
+      this.changed();
+    }
+    this.told();
   }
 
   // Return where in a line a new corner comes: in its nearest step, or on at an end.
@@ -88,7 +129,9 @@ export class Drawing {
 
   // Tell how the line runs now; it stays to be bent on.
   told() {
-    if (this.bends && this.ready) this.tell(this.mode, this.points);
+    if (this.outlines && this.points !== this.kept) this.past.push(this.kept);
+    this.kept = this.points;
+    if ((this.bends && this.ready) || this.outlines) this.tell(this.mode, this.points);
   }
 
   trail(here) {
@@ -96,8 +139,13 @@ export class Drawing {
     this.changed();
   }
 
+  get canUndo() {
+    return this.points.length + this.past.length > 0;
+  }
+
   undo() {
-    this.points = this.points.slice(0, -1);
+    this.points = this.past.pop() ?? this.points.slice(0, -1);
+    this.kept = this.points;
     this.changed();
     this.told();
   }
@@ -110,6 +158,11 @@ export class Drawing {
 
   finish() {
     if (!this.ready || this.bends) return;
+    if (this.outlines) {
+      // it stays until the server has taken it: it may be none
+      this.tell({ ...this.mode, id: `${this.mode.id} done` }, this.points);
+      return;
+    }
     const done = this.points;
     this.points = [];
     this.changed();
@@ -119,7 +172,7 @@ export class Drawing {
   // Return the drawing so far as layers in pydeck's JSON.
   layers(colour) {
     if (!this.points.length) return [];
-    const area = ["area", "lasso"].includes(this.mode.kind) && this.points.length > 2;
+    const area = ["area", "lasso", "outline"].includes(this.mode.kind) && this.points.length > 2;
     const path = area ? [...this.points, this.points[0]] : this.points;
     // a casing lets it be seen on plants of its own colour
     const around = colour.reduce((sum, one) => sum + one, 0) > 382 ? [0, 0, 0] : [255, 255, 255];
@@ -132,4 +185,12 @@ export class Drawing {
       getLineWidth: 2, lineWidthUnits: "pixels",
     }];
   }
+}
+
+// Return how far a place is from an edge, in pixels; beyond its ends, and near them, it is not on it.
+function offEdge([x, y], [ax, ay], [bx, by]) {
+  const [u, v] = [bx - ax, by - ay], long = Math.hypot(u, v);
+  const along = ((x - ax) * u + (y - ay) * v) / Math.max(long, 1e-9);
+  if (along < GRAB_PX || along > long - GRAB_PX) return Infinity;
+  return Math.abs((x - ax) * v - (y - ay) * u) / long;
 }

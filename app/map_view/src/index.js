@@ -22,7 +22,7 @@ import { covered, keepShape, listed } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
 import { waitForBoxes } from "./turning.js";
-import { besideBox, metresPerPixel } from "./view.js";
+import { besideBox, fitted, metresPerPixel } from "./view.js";
 
 const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600, TURN_MS = 300;
 const NONE = [];
@@ -31,6 +31,8 @@ const DARK = matchMedia("(prefers-color-scheme: dark)");
 const FILM_PX = 1100, MOST_PICKED = 20000;
 // the legend stays so far from plants; so many of them are asked
 const MARGIN_PX = 8, MOST_ASKED = 4000;
+// from farther away a tap is no corner of a plot; nor is a position that is less exact
+const CORNER_M_A_PX = 5, CORNER_M = 30, WAIT_MS = 20000, NEAR_ZOOM = 18;
 
 class MapPage {
   constructor(parent) {
@@ -147,7 +149,16 @@ class MapPage {
     const { left, right, bottom } = covered(), tools = [30, this.tools.offsetWidth + 24];
     if (this.data.direction === "rtl") tools.reverse();
     // below the plot, the gate's name has room above the day's bar
-    return { left: left + tools[0], right: right + tools[1], top: this.top(), bottom: bottom + 76 };
+    return this.clearOfBar({ left: left + tools[0], right: right + tools[1], top: this.top(), bottom: bottom + 76 });
+  }
+
+  // Return the padding that leaves free what is drawn, too: its bar lies above it, or on a phone below.
+  clearOfBar(padding) {
+    if (this.bar.hidden) return padding;
+    const bar = this.bar.getBoundingClientRect(), map = this.root.getBoundingClientRect();
+    const above = bar.top - map.top < bar.height, side = above ? "top" : "bottom";
+    const reach = above ? bar.bottom - map.top : map.bottom - bar.top;
+    return { ...padding, [side]: Math.max(padding[side], reach + MARGIN_PX) };
   }
 
   // Return from where the map is free: on a phone the legend lies above the plot.
@@ -219,10 +230,11 @@ class MapPage {
     return this.data.drive ? view : { ...view, pitch: 0 };
   }
 
-  // a window or a panel that changes its size before anybody moved the map shows the whole plot again
+  // a window or a panel that changes its size before anybody moved the map shows the whole plot again, but
+  // not under the finger of who sets corners
   resized() {
     this.boxes = null;
-    if (this.deck && !this.moved) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });
+    if (this.deck && !this.moved && !(this.drawing.outlines && this.drawing.points.length)) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });
   }
 
   // -- drawing
@@ -304,13 +316,14 @@ class MapPage {
       if (off) this.hidden.add(key);
       else this.hidden.delete(key);
     }
-    const now = JSON.stringify([words, switches, shades, legend, this.data.select, this.data.ground?.ids]);
+    const now = JSON.stringify([words, switches, shades, legend, this.data.select, this.data.ground?.ids, this.data.draw?.kind]);
     if (now === this.furnished) return;
     this.furnished = now;
     this.tools.replaceChildren(
       button("plus", words.zoom_in, () => this.zoom(1)),
       button("minus", words.zoom_out, () => this.zoom(-1)),
       button("fit", words.whole_plot, () => this.whole()),
+      ...(this.data.draw?.kind === "outline" ? [button("here", words.here, () => this.goHere())] : []),
       button("layers", words.layers, () => this.openCard(), { "aria-expanded": String(!this.card.hidden), class: "tool layers" }),
       ...(this.data.select ? [
         button("lasso", words.select, () => this.selecting("lasso")),
@@ -473,6 +486,55 @@ class MapPage {
     this.pick(this.adding ? new Set([...this.picked, ...own]) : new Set(own));
   }
 
+  // -- where one stands
+
+  // Return where the browser says that one is: {at: [lon, lat], off (m)}; null, and a word, where it does not.
+  async standing() {
+    this.tip.hidden = true; // what was said of another place
+    const asked = new Promise((done, failed) => {
+      navigator.geolocation.getCurrentPosition(done, failed, { enableHighAccuracy: true, timeout: WAIT_MS, maximumAge: 0 });
+    });
+    try {
+      const { coords } = await asked;
+      return { at: [coords.longitude, coords.latitude], off: coords.accuracy };
+    } catch {
+      this.say(this.data.words.nowhere);
+      return null;
+    }
+  }
+
+  async goHere() {
+    const here = await this.standing();
+    if (here) this.tell("drawn", { kind: `${this.data.draw?.id} here`, points: [here.at] });
+  }
+
+  // Set a corner where one stands, if that is known well enough; it is in view then.
+  async cornerHere() {
+    const here = await this.standing(), { words } = this.data;
+    if (!here || !this.drawing.outlines) return;
+    const off = Math.ceil(here.off).toLocaleString(this.data.language);
+    if (here.off > CORNER_M) {
+      this.say(words.rough.replace("{off}", off).replace("{most}", CORNER_M));
+      return;
+    }
+    this.drawing.add(here.at);
+    this.say(words.standing.replace("{off}", off));
+    this.showCorners();
+  }
+
+  // Show all corners where the last one is out of view, or seen from too far.
+  showCorners() {
+    const view = this.viewport(), part = freePart(this.size(), covered()), { points } = this.drawing;
+    const [x, y] = view.project(points.at(-1));
+    const inView = x > part.x && y > part.y && x < part.x + part.width && y < part.y + part.height;
+    if (inView && metresPerPixel(view) <= CORNER_M_A_PX) return;
+    const [lon, lat] = [0, 1].map((k) => points.map((p) => p[k]));
+    const bounds = [Math.min(...lon), Math.min(...lat), Math.max(...lon), Math.max(...lat)];
+    const all = fitted(bounds, this.size(), this.padding());
+    this.moved = true;
+    this.deck.setProps({ initialViewState: { ...all, zoom: Math.min(all.zoom, NEAR_ZOOM), maxZoom: 24 } });
+  }
+
   places() {
     return this.jsons.find((one) => one.places)?.places;
   }
@@ -504,7 +566,8 @@ class MapPage {
   drawBar() {
     const { mode, points, ready } = this.drawing;
     this.root.classList.toggle("drawing", Boolean(mode));
-    const now = JSON.stringify([mode?.id, points.length, this.data.words]);
+    const outlines = mode?.kind === "outline", said = outlines ? this.data.draw?.hint : null;
+    const now = JSON.stringify([mode?.id, points.length, this.drawing.canUndo, said, this.data.words]);
     if (now === this.barred) return;
     this.barred = now;
     this.bar.hidden = !mode;
@@ -513,10 +576,11 @@ class MapPage {
     const press = (label, act, more = {}) => element("button", { type: "button", text: label, onclick: act, ...more });
     const hint = { lasso: words.lasso_hint, rows: words.rows_hint }[mode.kind] ?? mode.hint ?? words.draw_hint;
     this.bar.replaceChildren(
-      element("span", { text: points.length && mode.kind !== "bent" ? words.corners.replace("{n}", points.length) : hint }),
+      element("span", { text: said ? said : points.length && mode.kind !== "bent" ? words.corners.replace("{n}", points.length) : hint }),
       ...(mode.kind === "rows" ? [press(words.draw_done, () => this.selecting("rows"), { class: "main" })] : [
-        press(words.draw_back, () => this.drawing.undo(), { disabled: !points.length }),
+        press(words.draw_back, () => this.drawing.undo(), { disabled: !this.drawing.canUndo }),
         press(words.draw_drop, () => { this.drawing.drop(); if (mode.kind === "lasso") this.selecting("lasso"); })]),
+      ...(outlines ? [press(words.corner_here, () => this.cornerHere())] : []),
       ...(["point", "lasso", "rows", "bent"].includes(mode.kind) ? [] : [press(words.draw_done, () => this.drawing.finish(), { disabled: !ready, class: "main" })]),
     );
   }
@@ -572,7 +636,8 @@ class MapPage {
 
   leave() {
     this.tip.hidden = true;
-    if (this.drawing.mode && this.drawing.points.length) this.drawing.drop();
+    // corners of a plot may have been walked to: they are dropped by their button only
+    if (this.drawing.mode && this.drawing.points.length && !this.drawing.outlines) this.drawing.drop();
     else if (["lasso", "rows"].includes(this.drawing.mode?.kind)) this.selecting(this.drawing.mode.kind);
     else if (!this.card.hidden) this.openCard();
     else this.cross.hidden = true;
@@ -645,12 +710,13 @@ class MapPage {
       this.drawing.finish();
       return;
     }
-    if (held >= 0) {
-      this.drawing.told();
-      return;
-    }
     const near = (one) => Math.hypot(event.clientX - one.clientX, event.clientY - one.clientY);
     const here = this.at(event);
+    // a corner that is pressed and not moved is tapped
+    if (held >= 0 && !(this.drawing.outlines && held === 0 && from && near(from) <= STILL_PX)) {
+      this.drawing.dropped(held, this.viewport());
+      return;
+    }
     if (!here || !from || event.button || near(from) > STILL_PX) return;
     this.last = event;
     this.cross.hidden = true;
@@ -665,6 +731,10 @@ class MapPage {
     if (this.drawing.mode?.kind === "rows") {
       const hit = this.under(here, (json) => json.places);
       if (hit) this.pickRow(hit.row);
+      return;
+    }
+    if (this.drawing.outlines && metresPerPixel(this.viewport()) > CORNER_M_A_PX) {
+      this.say(this.data.words.closer);
       return;
     }
     if (this.drawing.mode) {

@@ -18,7 +18,7 @@ export function asked({ key, shiftKey, ctrlKey, metaKey, altKey }, mode) {
   if (key === "0" || key === "Home") return { whole: true };
   if (key === "Escape") return { leave: true };
   if (mode && key === "Backspace") return { back: true };
-  if (["line", "area", "lasso"].includes(mode)) {
+  if (["line", "area", "lasso", "outline"].includes(mode)) {
     // corners are set by the space bar; Enter ends them, as it does for who draws with a mouse
     if (key === " ") return { press: true };
     if (key === "Enter") return { finish: true };

@@ -107,3 +107,86 @@ test("a row that is there is bent by dragging and by new corners, each change to
   drawing.drop();
   assert.deepEqual(told[4][1], row.points, "dropped, it runs as it did");
 });
+
+const OUTLINE = { kind: "outline", id: "outline 0", points: [] };
+const SQUARE = [[0.1, -0.1], [0.3, -0.1], [0.3, -0.3], [0.1, -0.3]];
+
+function outlined(corners = SQUARE) {
+  const { drawing, told } = begun(OUTLINE);
+  for (const corner of corners) drawing.click(corner, view);
+  return { drawing, told };
+}
+
+test("of a plot each corner is told at once, and it goes on from the corners that there are", () => {
+  const { drawing, told } = outlined();
+  assert.deepEqual(told.map(([mode, points]) => [mode.id, points.length]), [1, 2, 3, 4].map((n) => ["outline 0", n]));
+  assert.deepEqual(drawing.points, SQUARE);
+  drawing.undo();
+  assert.deepEqual(told.at(-1), [OUTLINE, SQUARE.slice(0, 3)]);
+  drawing.drop();
+  assert.deepEqual(told.at(-1), [OUTLINE, []], "dropped is dropped");
+  drawing.begin({ ...OUTLINE, id: "outline 1", points: SQUARE });
+  assert.deepEqual(drawing.points, SQUARE);
+});
+
+test("a tap on an edge adds a corner there, one beside it or beyond its end comes last", () => {
+  const { drawing } = outlined();
+  drawing.click([0.2, -0.105], view);
+  assert.deepEqual(drawing.points[1], [0.2, -0.105]);
+  drawing.click([0.2, -0.2], view);
+  drawing.click([0.4, -0.1], view);
+  assert.deepEqual(drawing.points.slice(-2), [[0.2, -0.2], [0.4, -0.1]]);
+});
+
+test("a tap on the first corner finishes once there are three, one on another does nothing", () => {
+  const few = outlined(SQUARE.slice(0, 2));
+  few.drawing.click(SQUARE[0], view);
+  assert.equal(few.told.length, 2);
+  const { drawing, told } = outlined();
+  drawing.click([0.302, -0.101], view);
+  assert.equal(told.length, 4);
+  drawing.click([0.102, -0.101], view);
+  assert.deepEqual(told.at(-1), [{ ...OUTLINE, id: "outline 0 done" }, SQUARE]);
+  assert.deepEqual(drawing.points, SQUARE, "it stays: the server may refuse it");
+});
+
+test("a corner is dragged, and dragged onto a neighbour it is gone", () => {
+  const { drawing, told } = outlined();
+  drawing.move(1, [0.35, -0.1], view);
+  drawing.dropped(1, view);
+  assert.deepEqual(told.at(-1)[1][1], [0.35, -0.1]);
+  drawing.move(0, [0.102, -0.301], view);
+  drawing.dropped(0, view);
+  assert.deepEqual(told.at(-1)[1], [[0.35, -0.1], ...SQUARE.slice(2)]);
+});
+
+test("what was done last to a plot's corners is taken back: one on an edge, a drag, all of them dropped", () => {
+  const { drawing, told } = outlined();
+  drawing.click([0.2, -0.1], view);
+  drawing.undo();
+  assert.deepEqual(drawing.points, SQUARE);
+  drawing.move(0, [0.15, -0.05], view);
+  drawing.move(0, [0.16, -0.05], view);
+  drawing.dropped(0, view);
+  drawing.dropped(0, view);
+  drawing.undo();
+  assert.deepEqual(drawing.points, SQUARE);
+  drawing.drop();
+  drawing.undo();
+  assert.deepEqual(told.at(-1), [OUTLINE, SQUARE]);
+  for (const left of [3, 2, 1, 0]) {
+    assert.equal(drawing.canUndo, true);
+    drawing.undo();
+    assert.equal(drawing.points.length, left);
+  }
+  assert.equal(drawing.canUndo, false);
+  drawing.begin({ ...OUTLINE, id: "outline 1", points: SQUARE });
+  drawing.undo();
+  assert.equal(drawing.points.length, 3, "of corners that there were, the last");
+});
+
+test("the outline of a plot is closed from three corners on", () => {
+  const path = (n) => outlined(SQUARE.slice(0, n)).drawing.layers([0, 0, 0])[0].data[0].p;
+  assert.equal(path(2).length, 2);
+  assert.deepEqual(path(3), [...SQUARE.slice(0, 3), SQUARE[0]]);
+});

@@ -23,7 +23,7 @@ test("plus and minus zoom on any keyboard, nought shows the whole plot", () => {
 test("Enter opens a plant; where corners are drawn, space sets one and Enter ends", () => {
   assert.deepEqual(asked(key("Enter"), null), { press: true });
   assert.deepEqual(asked(key("Enter"), "rows"), { press: true });
-  for (const mode of ["line", "area", "lasso"]) {
+  for (const mode of ["line", "area", "lasso", "outline"]) {
     assert.deepEqual(asked(key(" "), mode), { press: true });
     assert.deepEqual(asked(key("Enter"), mode), { finish: true });
     assert.deepEqual(asked(key("Backspace"), mode), { back: true });

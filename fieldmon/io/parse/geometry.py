@@ -49,6 +49,11 @@ def area_m2(geometry: shapely.Geometry) -> float:
     return float(_measured(geometry).area_m2.sum())
 
 
+def steps_m(lonlat: Floats) -> Floats:
+    """Return how far each lon/lat position ``(n, 2)`` is from the next ``(n - 1,)``."""
+    return np.array(_GEOD.line_lengths(lonlat[:, 0], lonlat[:, 1]), dtype=np.float64)
+
+
 class _PolygonSizes(NamedTuple):
     """Area without holes, and length of the outlines, of each polygon ``(n,)``."""
 

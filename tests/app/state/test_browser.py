@@ -19,3 +19,10 @@ def test_a_page_is_light_unless_it_says_dark(visitor):
     assert not browser.is_dark()
     visitor.theme = {"type": "dark"}
     assert browser.is_dark()
+
+
+def test_a_device_says_its_time_zone_or_none(visitor):
+    visitor.timezone = "Asia/Jerusalem"
+    assert browser.zone() == "Asia/Jerusalem"
+    visitor.timezone = None
+    assert browser.zone() == ""

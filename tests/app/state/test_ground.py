@@ -37,7 +37,7 @@ def bring(data, name="ground.tif"):
 @pytest.mark.usefixtures("session")
 def test_without_a_file_or_an_agreement_there_is_nothing(plot):
     assert ground.of(chosen(plot)) is None
-    assert ground.agreement(chosen(plot)) is None
+    assert ground.agreement(None) is None
 
 
 def test_a_picture_lies_about_the_plot_and_heights_are_drawn_as_relief(plot, session):
@@ -87,11 +87,11 @@ def test_a_file_that_cannot_be_used_is_left_out_and_its_problem_kept_until_it_is
 
 
 @pytest.mark.usefixtures("session")
-def test_an_agreement_is_a_season_s_own_and_a_session_s_own(plot, season):
-    ground.agree(season, AGREED)
-    assert ground.agreement(season) == AGREED
-    assert ground.agreement(chosen(plot)) is None
-    ground.agree(chosen(plot), AGREED)
-    ground.agree(season, None)
-    assert ground.agreement(season) is None
-    assert ground.agreement(chosen(plot)) == AGREED
+def test_an_agreement_is_a_season_s_own_and_a_session_s_own(season):
+    ground.agree(season.season, AGREED)
+    assert ground.agreement(season.season) == AGREED
+    assert ground.agreement(None) is None
+    ground.agree(None, AGREED)
+    ground.agree(season.season, None)
+    assert ground.agreement(season.season) is None
+    assert ground.agreement(None) == AGREED

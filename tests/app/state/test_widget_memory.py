@@ -84,3 +84,13 @@ def test_values_of_widgets_by_the_first_word_of_their_keys_are_changed(session):
     assert widget_memory.value("row_spacing a") == 3.0
     assert widget_memory.value("row_spacing b") is None
     assert widget_memory.value("hours") == 8.0
+
+
+def test_values_are_carried_over_to_keys_of_another_name(session):
+    widget_memory.first("row_spacing old 1", 4.0)
+    widget_memory.first("hours", 8.0)
+    session["row_spacing old 1"] = 6.0
+    widget_memory.carry("old", "new")
+    assert widget_memory.value("row_spacing new 1") == 6.0
+    assert widget_memory.value("row_spacing old 1") == 6.0
+    assert widget_memory.value("hours") == 8.0

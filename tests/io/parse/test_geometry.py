@@ -1,5 +1,7 @@
 """Areas are what the ellipsoid says, whatever the shape."""
 
+from itertools import pairwise
+
 import numpy as np
 import pyproj
 import pytest
@@ -9,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon, box
 
-from fieldmon.io.parse.geometry import area_m2, areas_m2, boundaries, boundary
+from fieldmon.io.parse.geometry import area_m2, areas_m2, boundaries, boundary, steps_m
 
 GEOD = pyproj.Geod(ellps="WGS84")
 
@@ -66,3 +68,10 @@ def test_areas_together_are_what_they_are_one_by_one(seeds):
     told = [message for _, messages in alone for message in messages]
     assert sorted(map(str, said)) == sorted(map(str, told))
     np.testing.assert_allclose(areas_m2(together), [area_m2(one) for one, _ in alone])
+
+
+def test_steps_are_geodesic_and_one_position_has_none():
+    lonlat = np.array([[35.0, 31.0], [35.01, 31.0], [35.01, 31.02]])
+    expected = [GEOD.inv(*a, *b)[2] for a, b in pairwise(lonlat)]
+    assert steps_m(lonlat) == pytest.approx(expected)
+    assert len(steps_m(lonlat[:1])) == len(steps_m(lonlat[:0])) == 0

@@ -1,0 +1,279 @@
+"""A plot that is drawn: its corners so far, kept as files are, and the file that they make."""
+
+from __future__ import annotations
+
+import json
+import re
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TYPE_CHECKING
+from urllib.parse import unquote
+
+import numpy as np
+import shapely
+import streamlit as st
+from shapely import LineString, Polygon
+
+from fieldmon.errors import SettingError
+from fieldmon.io.options import Upload
+from fieldmon.io.parse.geometry import LARGEST_M2, SMALLEST_M2, area_m2, steps_m
+from fieldmon.io.parse.values import positions_in_cells
+
+from ..words import language, texts
+from . import brought_files, plot_source, widget_memory
+from .brought_files import PLOT
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..words.units import UnitsInLanguage
+    from .plot_edits import Points
+
+#: what the corners so far are kept as
+CORNERS = "corners"
+# a plot as wide as this is a slip of a finger, or two plots
+_WIDEST_M = LARGEST_M2**0.5
+_OPEN, _TURN, _FILE = "draws a plot", "plot drawn anew", "drawn.geojson"
+_NUMBER = r"(-?\d{1,3}(?:\.\d+)?)"
+_PAIR = rf"(?:loc:)?{_NUMBER}[,~\s+]+{_NUMBER}"
+# how maps on the internet write a position into an address, latitude first: a pin before the view
+_IN_LINKS = (
+    rf"!3d{_NUMBER}!4d{_NUMBER}",
+    rf"[?&]mlat={_NUMBER}&mlon={_NUMBER}",
+    rf"[?&](?:q|query|ll|coordinate|center|destination|daddr|viewpoint|cp)={_PAIR}",
+    rf"[@/]{_NUMBER},[\s+]*{_NUMBER}",
+    rf"#(?:map=)?[\d.]+/{_NUMBER}/{_NUMBER}",
+    rf"^geo:{_NUMBER},{_NUMBER}",
+)
+_LONGITUDE_FIRST = re.compile(r"//[^/]*\byandex\.")
+
+
+@dataclass(frozen=True)
+class DrawnCorners:
+    """What is drawn so far.
+
+    Parameters
+    ----------
+    corners
+        Lon/lat, in order.
+    at
+        The place that was found, lon/lat; None while none was.
+    """
+
+    corners: Points = ()
+    at: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class FoundPlace:
+    """A position that was typed, lon/lat, and whether its order was sure."""
+
+    lonlat: tuple[float, float]
+    is_certain: bool
+
+
+# -- the corners so far
+
+
+def is_open() -> bool:
+    """Return whether a plot is being drawn; corners without a plot are drawn on after a reload."""
+    if plot_source.chosen() != plot_source.FILES:
+        return False
+    brought = brought_files.brought()
+    return bool(st.session_state.get(_OPEN, CORNERS in brought and PLOT not in brought))
+
+
+def begin() -> None:
+    """Draw a plot, or go on with what was begun (for callbacks)."""
+    st.session_state[_OPEN] = True
+
+
+def correct() -> None:
+    """Draw on at the plot that was drawn (for callbacks)."""
+    keep(DrawnCorners(corners_of_plot()))
+    drawn_anew()
+    begin()
+
+
+def leave() -> None:
+    """Draw no more; what was begun waits, what was to be corrected stays as it was."""
+    st.session_state[_OPEN] = False
+    if corners_of_plot():
+        brought_files.take_out(CORNERS)
+
+
+def so_far() -> DrawnCorners:
+    """Return what is drawn so far."""
+    file = brought_files.brought().get(CORNERS)
+    if file is None or not isinstance(file.source, Upload):
+        return DrawnCorners()
+    said = json.loads(file.source.data)
+    return DrawnCorners(
+        tuple((lon, lat) for lon, lat in said["corners"]), said["at"] and (*said["at"],)
+    )
+
+
+def keep(made: DrawnCorners) -> None:
+    """Keep what is drawn so far, as files are kept: a reload finds it."""
+    data = json.dumps({"corners": made.corners, "at": made.at}).encode()
+    brought_files.keep_uploads(CORNERS, (Upload("corners.json", data),))
+
+
+def turn() -> int:
+    """Return what changes when corners were set elsewhere than on the map."""
+    count: int = st.session_state.get(_TURN, 0)
+    return count
+
+
+def drawn_anew() -> None:
+    """Let the map show the corners that are kept, whatever it held."""
+    st.session_state[_TURN] = turn() + 1
+
+
+# -- the plot they make
+
+
+def use(units: UnitsInLanguage) -> None:
+    """Let the plot be what is drawn, as if it had come in a file; raise `SettingError` if none."""
+    corners = checked(so_far().corners, units)
+    data = data_of_plot()
+    before = None if data is None else brought_files.brought()[PLOT]
+    name = texts.OUTLINE_NAME if data is None else _read(data)[1]
+    brought_files.keep_uploads(PLOT, (Upload(_FILE, geojson(corners, name)),))
+    if before is not None:
+        _carry(before.key, brought_files.brought()[PLOT].key)
+    brought_files.take_out(CORNERS)
+    st.session_state[_OPEN] = False
+
+
+def _carry(old: str, new: str) -> None:
+    """Let what was said and drawn of the plot hold for the corrected one, too."""
+    for key, value in list(st.session_state.items()):
+        if str(key).startswith(("edits ", "answers ")) and old in str(key):
+            st.session_state[str(key).replace(old, new)] = value
+    widget_memory.carry(old, new)
+
+
+def geojson(corners: Points, name: str) -> bytes:
+    """Return a plot as a GeoJSON file."""
+    ring = shapely.orient_polygons(Polygon(np.round(corners, 7)), exterior_cw=False).exterior
+    shape = {"type": "Polygon", "coordinates": [[[*at] for at in ring.coords]]}
+    feature = {"type": "Feature", "properties": {"name": name}, "geometry": shape}
+    return json.dumps(feature, ensure_ascii=False).encode()
+
+
+def data_of_plot() -> bytes | None:
+    """Return the plot's file if it was drawn here, or is as it would be; else None."""
+    file = brought_files.brought().get(PLOT)
+    if file is None or not isinstance(file.source, Upload):
+        return None
+    data = file.source.data
+    with suppress(ValueError, KeyError, TypeError):  # any other file
+        return data if geojson(*_read(data)) == data else None
+    return None
+
+
+def corners_of_plot() -> Points:
+    """Return the corners of the plot if it was drawn here; none otherwise."""
+    data = data_of_plot()
+    return () if data is None else _read(data)[0]
+
+
+def _read(data: bytes) -> tuple[Points, str]:
+    """Return corners and name from a file as `geojson` makes it."""
+    feature = json.loads(data)
+    (ring,) = feature["geometry"]["coordinates"]
+    return tuple((float(lon), float(lat)) for lon, lat in ring[:-1]), feature["properties"]["name"]
+
+
+def checked(corners: Points, units: UnitsInLanguage) -> Points:
+    """Return corners that can be a plot, none twice in a row; else raise `SettingError`."""
+    made = tuple(at for k, at in enumerate(corners) if not k or at != corners[k - 1])
+    while len(made) > 1 and made[-1] == made[0]:
+        made = made[:-1]
+    if len(made) < 3:
+        raise SettingError(texts.OUTLINE_LEAST.format(n=len(made)))
+    if (wide_m := _wide_m(made)) > _WIDEST_M:
+        most, wide = units.metres(_WIDEST_M), units.metres(wide_m)
+        raise SettingError(texts.OUTLINE_WIDE.format(most=most, wide=wide))
+    if (crossing := _crossing(made)) is not None:
+        one, other = crossing
+        raise SettingError(texts.OUTLINE_CROSSED.format(one=one + 1, other=other + 1))
+    if area_m2(Polygon(made)) < SMALLEST_M2:
+        raise SettingError(texts.OUTLINE_SMALL.format(n=len(made)))
+    return made
+
+
+def edges_m(corners: Points) -> NDArray[np.float64]:
+    """Return how long the edges are, the last one back to the first corner."""
+    closed = [*corners, *corners[:1]] if len(corners) > 2 else corners
+    return steps_m(np.reshape(closed, (-1, 2)).astype(np.float64))
+
+
+def drawn_area_m2(corners: Points) -> float:
+    """Return the area that corners enclose; 0 while they enclose none, or cross."""
+    if len(corners) < 3 or _crossing(corners) is not None:
+        return 0.0
+    return area_m2(Polygon(corners))
+
+
+def _wide_m(corners: Points) -> float:
+    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+    return float(steps_m(np.stack([low, high]))[0])
+
+
+def _crossing(corners: Points) -> tuple[int, int] | None:
+    """Return two edges that meet where they should not, each by the corner it begins at."""
+    n = len(corners)
+    edges = [LineString([at, corners[(k + 1) % n]]) for k, at in enumerate(corners)]
+    for one, other in combinations(range(n), 2):
+        if other - one in (1, n - 1):
+            meets = edges[one].intersection(edges[other]).length > 0  # folded back on itself
+        else:
+            meets = edges[one].intersects(edges[other])
+        if meets:
+            return one, other
+    return None
+
+
+# -- positions as people have them
+
+
+def place_of(text: str, *, longitude_first: bool = False) -> FoundPlace:
+    """Return the position that is typed, or that a link to a map holds.
+
+    `longitude_first` is how a pair is read of which nothing says so; a link is not opened.
+    """
+    text = text.strip()
+    if "://" in text or text.startswith(("geo:", "www.")):
+        found = _of_link(unquote(text))
+    else:
+        found = _typed(text, longitude_first=longitude_first)
+    lon, lat = found.lonlat
+    if not (abs(lon) <= 180 and abs(lat) <= 90):
+        raise SettingError(texts.OUTLINE_RANGE.format(text=text[:80]))
+    return found
+
+
+def _of_link(link: str) -> FoundPlace:
+    for pattern in _IN_LINKS:
+        if found := re.search(pattern, link):
+            lat, lon = (float(number) for number in found.groups())
+            is_turned = _LONGITUDE_FIRST.search(link) is not None
+            return FoundPlace((lat, lon) if is_turned else (lon, lat), is_certain=True)
+    raise SettingError(texts.OUTLINE_LINK.format(text=link[:80]))
+
+
+def _typed(text: str, *, longitude_first: bool) -> FoundPlace:
+    cell = text
+    if language.separators()[0] == "," and "." not in text:
+        cell = text.replace(",", ".")
+    read = positions_in_cells([cell.strip("()[] ")])
+    lon, lat = read.values[0].tolist()
+    if not np.isfinite([lon, lat]).all():
+        raise SettingError(texts.OUTLINE_WRITTEN.format(text=text[:80]))
+    found = FoundPlace((lon, lat), read.is_certain)
+    if longitude_first and not found.is_certain:
+        found = replace(found, lonlat=(lat, lon))
+    return found

@@ -217,7 +217,7 @@ def _show_rows(season: Season, now: Status) -> None:
 
     from fieldmon.compute.wording import counted
 
-    of_plant = season.plot.grid.row_line + 1
+    of_plant = season.plot.grid.row_number
     for line in np.unique(of_plant):
         days = now.days_since[of_plant == line]
         known = days[~np.isnan(days)]

@@ -52,6 +52,8 @@ class Field:
         ``(n,)`` the name of each measured plant's row; None: not known, then rows are found.
     plant_blocks
         ``(n,)`` the name of each measured plant's block; None: not known, then blocks are found.
+    plant_names
+        ``(n,)`` what each measured plant is called; None: not known.
     blocks
         Parts of the plot with rows of their own; empty: the plot is one.
     in_rows
@@ -80,6 +82,7 @@ class Field:
     plant_blocks: NDArray[np.str_] | None = None
     blocks: tuple[Block, ...] = ()
     in_rows: bool = True
+    plant_names: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
         let_have_parts(self, "boundary")
@@ -114,7 +117,7 @@ class Field:
         What later versions added counts only where it is said: digests of before stay valid.
         """
         said = dict(vars(self))
-        for name in ("plant_rows", "plant_blocks"):
+        for name in ("plant_rows", "plant_blocks", "plant_names"):
             if said[name] is None:
                 del said[name]
         del said["blocks"]

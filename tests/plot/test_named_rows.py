@@ -1,5 +1,8 @@
 """Rows that a person names hold the plants that people count in them."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
@@ -19,6 +22,17 @@ def grid():
 def test_all_plants_of_the_rows_are_meant_and_no_others(grid, said, rows):
     line = row_label(grid).line
     assert plants_in_rows(grid, said).tolist() == [one in rows for one in line.tolist()]
+
+
+def test_rows_are_named_as_in_the_file_of_their_plants(grid):
+    called = 101 + 2 * np.arange(len(grid.line_number))[::-1]
+    named = replace(grid, line_called=np.stack([called, called], axis=1))
+    assert (
+        plants_in_rows(named, "101-103").tolist()
+        == plants_in_rows(grid, f"{grid.n_rows - 1}-{grid.n_rows}").tolist()
+    )
+    with pytest.raises(SettingError, match="but row 102 is named"):
+        plants_in_rows(named, "101-102")
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from scipy.spatial import cKDTree
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.grid import block_label, row_in_block, row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -174,39 +174,33 @@ def _labelled(
     known, line = _key(label.line, label.number), rows.line[records]
     first = _found(known, _key(line, rows.number[records]))
     named = np.flatnonzero((rows.block[records] != "") & (grid.n_blocks > 1))
-    said = _about_blocks(grid, len(records) - len(named), int(label.line.max()))
+    said = _about_blocks(grid, len(records) - len(named))
     if not len(named):
         return first, said
-    # the first and the last row of each block, as counted on
-    of_plant = block_label(grid) - 1
-    low = np.full(grid.n_blocks, np.iinfo(np.int64).max)
-    high = np.zeros(grid.n_blocks, np.int64)
-    np.minimum.at(low, of_plant, label.line)
-    np.maximum.at(high, of_plant, label.line)
-    numbers = {str(k + 1): k for k in range(grid.n_blocks)}
-    block = np.array([numbers.get(name, -1) for name in rows.block[records[named]]])
-    low, high, line = low[block], high[block], line[named]
-    on = (block >= 0) & (low <= line) & (line <= high)
-    within = (block >= 0) & (line <= high - low + 1)
-    first[named] = np.where(on, first[named], -1)
-    also = _found(known, _key(low + line - 1, rows.number[records[named]]))
-    also = np.where(within, also, -1)
+    of_plant, within = block_label(grid), row_in_block(grid)
+    numbers = {str(k): k for k in range(1, grid.n_blocks + 1)}
+    block = np.array([numbers.get(name, 0) for name in rows.block[records[named]]])
+    first[named] = np.where(of_plant[first[named]] == block, first[named], -1)
+    # the row as its block counts, then as all are counted on
+    of_row = _found(_key(of_plant, within), _key(block, line[named]))
+    also = _found(known, _key(label.line[of_row], rows.number[records[named]]))
+    also = np.where(of_row >= 0, also, -1)
     if np.count_nonzero(also >= 0) > np.count_nonzero(first[named] >= 0):
         first[named] = also
         said = (*said, guessed(worded("Rows were taken as counted from 1 in each block.")))
     return first, said
 
 
-def _about_blocks(grid: PlantGrid, unnamed: int, last: int) -> tuple[ImportMessage, ...]:
+def _about_blocks(grid: PlantGrid, unnamed: int) -> tuple[ImportMessage, ...]:
     """Return what to say of records that name a row, but not which block's."""
-    if grid.n_blocks == 1 or not unnamed:
+    if grid.n_blocks == 1 or not unnamed or not grid.counts_on:
         return ()
     said = worded(
         "{n} {n:record names|records name} no block: {n:its row was|their rows were} taken as "
         "counted on from block to block, 1 "
         "to {last}. Where each block counts its rows from 1, give a column of blocks.",
         n=unnamed,
-        last=last,
+        last=int(grid.line_number.max()),
     )
     return (guessed(said),)
 

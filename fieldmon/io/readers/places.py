@@ -62,10 +62,10 @@ class Plants:
 
     @property
     def names(self) -> PlantNames:
-        """Return the names of rows, and of blocks, where all plants have one."""
+        """Return the names of rows, of blocks and of plants, where all plants have one."""
         row = None if (self.row == "").any() else self.row
         block = None if self.block is None or (self.block == "").any() else self.block
-        return PlantNames(row, block)
+        return PlantNames(row, block, None if (self.plant == "").any() else self.plant)
 
     def __len__(self) -> int:
         """Return the number of plants."""

@@ -13,7 +13,9 @@ from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.layout import lay
+from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
 from tests.io.readers.test_inspections import GRID, read
 from tests.io.tables_of_cells import sentences
 
@@ -134,6 +136,28 @@ def test_rows_of_a_named_block_may_be_counted_from_one_and_how_is_said(two_block
     wrong = read("block,row,plant,found\n7,1,1,x\n1,1,1,x\n", grid=grid)
     assert wrong.value.plant.tolist() == [plant_at(grid, 1, 1)]
     assert "row 1 of block 7 (blocks are 1 to 2" in wrong.of(Severity.DROPPED)[0].sentence
+
+
+def test_rows_and_plants_are_those_of_the_file_of_plants():
+    k, j = np.divmod(np.arange(60), 10)
+    xy_m = np.stack([2.0 * j, 3.0 * k], axis=1)
+    lonlat = GRID.frame.lonlat(xy_m)
+    names = PlantNames((6 - k).astype(np.str_), None, (20 - j).astype(np.str_))
+    grid = Plot.around("own", lonlat, names=names).grid
+    text = "".join(f"{6 - k[i]},{20 - j[i]},x\n" for i in (0, 15, 59))
+    imported = read(f"row,plant,found\n{text}", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 15, 59]], abs=1e-9)
+
+
+def test_rows_of_blocks_are_those_of_the_file_of_plants():
+    k, j = np.divmod(np.arange(60), 10)
+    block, row = np.where(k < 3, "1", "2"), np.where(k < 3, 3 - k, k - 2)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    names = PlantNames(row.astype(np.str_), block, (10 - j).astype(np.str_))
+    grid = Plot.around("own", lonlat, names=names).grid
+    text = "".join(f"{block[i]},{row[i]},{10 - j[i]},x\n" for i in (0, 25, 30, 59))
+    imported = read(f"block,row,plant,found\n{text}", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
 
 
 def test_how_far_a_position_is_off_is_measured_along_its_row_and_across(two_blocks):

@@ -202,6 +202,14 @@ class PlantGrid:
         return called is None or bool((called[:, 0] != called[:, 1]).any())
 
     @property
+    def line_signs(self) -> list[str]:
+        """Return what stands at each line on maps: its number, and its name if that says more."""
+        numbers = [f"{number}" for number in self.line_number.tolist()]
+        if self.line_called is not None or self.line_named is None:
+            return numbers
+        return [f"{n} · {name}" for n, name in zip(numbers, self.line_named.tolist(), strict=True)]
+
+    @property
     def row_number(self) -> NDArray[np.int64]:
         """Number of each row's line as people count or name them, ``(r,)``."""
         return self.line_number[self.row_line]

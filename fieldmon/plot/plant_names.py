@@ -114,21 +114,7 @@ def _tells_apart(grid: PlantGrid, plants: Int) -> bool:
 def said_of_numbers(grid: PlantGrid) -> list[str]:
     """Return which numbers rows and plants have whose names are no numbers; of many the first."""
     said: list[str] = []
-    if grid.line_named is not None:
-        own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
-        some = [worded("{name} is row {number}", name=name, number=n) for name, n in own]
-        said.append(
-            worded(
-                "Rows have the numbers in their names: {some}.",
-                some=first_few(some, 2),
-            )
-            if grid.line_called is not None
-            else worded(
-                "Rows count from 1, since no numbers in their names tell them apart: {some}.",
-                some=first_few(some, _NAMED),
-            )
-        )
-    elif grid.line_called is not None and grid.counts_on:
+    if grid.line_called is not None and grid.counts_on:
         first = np.unique(grid.row_line, return_index=True)[1]
         block = block_label(grid, grid.row_start[first])
         both = zip(*grid.line_called.T.tolist(), block.tolist(), strict=True)
@@ -140,6 +126,17 @@ def said_of_numbers(grid: PlantGrid) -> list[str]:
         said.append(
             worded(
                 "Rows of several blocks have the same names and are counted on: {some}.",
+                some=first_few(some, _NAMED),
+            )
+        )
+    elif grid.line_named is not None:
+        own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+        some = [worded("{name} is row {number}", name=name, number=n) for name, n in own]
+        said.append(
+            worded("Rows have the numbers in their names: {some}.", some=first_few(some, 2))
+            if grid.line_called is not None
+            else worded(
+                "Rows count from 1, since no numbers in their names tell them apart: {some}.",
                 some=first_few(some, _NAMED),
             )
         )
@@ -157,3 +154,20 @@ def said_of_numbers(grid: PlantGrid) -> list[str]:
             else worded("Plants have the numbers in their names: {some}.", some=", ".join(some))
         )
     return said
+
+
+def doubts_of_numbers(grid: PlantGrid) -> list[str]:
+    """Return what is to be said of rows whose names are numbers of other rows."""
+    if grid.line_named is None or grid.line_called is not None:
+        return []
+    own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+    both = [name for name, n in own if name.isdecimal() and 0 <= int(name) != n]
+    if not both:
+        return []
+    return [
+        worded(
+            "Rows are called {some} in the file, which are numbers of other rows here: such a row "
+            "is refused wherever rows are written. Number them from 1 in the file.",
+            some=first_few(both, _NAMED),
+        )
+    ]

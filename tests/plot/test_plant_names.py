@@ -5,7 +5,7 @@ import pytest
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.grid import plant_at, row_in_block, row_label
-from fieldmon.plot.plant_names import PlantNames, said_of_numbers
+from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, said_of_numbers
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
@@ -110,3 +110,16 @@ def test_what_rows_and_plants_are_called_here_is_said_where_it_is_no_number():
     block = np.where(ROW < 3, "east", "west")
     (said,) = said_of_numbers(named(np.where(ROW < 3, 3 - ROW, ROW - 2), None, block).grid)
     assert "row 1 of block 2 is row 4, row 2 of block 2 is row 5" in said
+
+
+def test_rows_that_are_called_by_numbers_of_other_rows_are_doubted():
+    (doubt,) = doubts_of_numbers(named(ROW).grid)
+    assert "Rows are called 0, 1, 2, 3, 4, 5 in the file, which are numbers of other rows" in doubt
+    for rows in (ROW + 1, 6 - ROW, np.array(list("FEDCBA"))[ROW], None):
+        assert doubts_of_numbers(named(rows).grid) == []
+
+
+def test_what_stands_at_rows_on_maps_has_their_names_where_these_are_no_numbers():
+    assert named(6 - ROW).grid.line_signs == ["6", "5", "4", "3", "2", "1"]
+    assert named([f"R{6 - k}" for k in ROW]).grid.line_signs == ["6", "5", "4", "3", "2", "1"]
+    assert named(np.array(list("FEDCBA"))[ROW]).grid.line_signs[:2] == ["1 · F", "2 · E"]

@@ -3,7 +3,8 @@
 Decisions
 ---------
 - A plant is known by its number in the grid, as every file given out has it (column ``plant``);
-  else by row and number in it, as people count; else by position. Where a file has a row but no
+  else by row and number in it, as people count, or by their names in the plot's file; else by
+  position. Where a file has a row but no
   number in it, ``plant`` is read as that number.
 - Where a plot has several blocks and a file names them, rows may be counted from 1 in each. How
   they were counted is said.
@@ -14,15 +15,18 @@ Decisions
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
 from fieldmon.plot.grid import block_label, row_in_block, row_label
+from fieldmon.plot.named_rows import CalledPlants, CalledRows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -114,6 +118,52 @@ def _is_near(lonlat: NDArray[np.float64], grid: PlantGrid) -> NDArray[np.bool_]:
         off[:, 0] = (off[:, 0] + 180.0) % 360.0 - 180.0  # across the date line it is near, too
         off = np.abs(off)
         return np.asarray((off < _FARTHEST_DEG).all(axis=1), dtype=bool)
+
+
+def by_name(
+    rows: InspectionRows, grid: PlantGrid
+) -> tuple[InspectionRows, dict[int, str], tuple[ImportMessage, ...]]:
+    """Return records with the numbers of plants that they call as the plot's file does.
+
+    And why some cannot be placed, and what else there is to say.
+    """
+    own = (grid.line_named, grid.plant_named, grid.plant_called)
+    if rows.row_called is None or rows.plant_called is None or all(one is None for one in own):
+        return rows, {}, ()
+    called, plants = CalledRows(grid), CalledPlants(grid)
+    plant, line, number = rows.plant.copy(), rows.line.copy(), rows.number.copy()
+    problems: dict[int, str] = {}
+    open_yet = ~np.isfinite(rows.lonlat.sum(axis=1))
+    alone = (line == 0) & open_yet
+    alone &= (rows.row_called == "") & (rows.plant_called != "")
+    for i in np.flatnonzero(alone).tolist():
+        found = plants.plant(str(rows.plant_called[i]))
+        alone[i] = found is not None
+        if found is not None:
+            plant[i] = found
+    label = row_label(grid, plant[alone])
+    line[alone], number[alone] = label.line, label.number
+    for i in np.flatnonzero((rows.row_called != "") & (rows.plant < 0)).tolist():
+        row, said = str(rows.row_called[i]), str(rows.plant_called[i])
+        try:
+            meant = called.number(row, str(rows.block[i]))
+        except SettingError as error:
+            problems[i] = str(error)
+            continue
+        which = None if meant is None else plants.number(meant, said)
+        if meant is not None and which is not None:
+            line[i], number[i] = meant, which
+        elif open_yet[i] and not (row.isdecimal() and said.isdecimal()):
+            problems[i] = worded("row {row} has no plant {plant} here", row=row, plant=said)
+    messages: tuple[ImportMessage, ...] = ()
+    if alone.any():
+        said_alone = worded(
+            "{n} {n:record names a plant|records name plants} alone: taken as the plot's file "
+            "calls {n:it|them}.",
+            n=int(alone.sum()),
+        )
+        messages = (guessed(said_alone),)
+    return replace(rows, plant=plant, line=line, number=number), problems, messages
 
 
 def by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> PlantsFound:

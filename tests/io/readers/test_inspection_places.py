@@ -160,6 +160,59 @@ def test_rows_of_blocks_are_those_of_the_file_of_plants():
     assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
 
 
+def own_names(row, plant):
+    """Return six rows of ten with names, and where each plant was measured."""
+    k, j = np.divmod(np.arange(60), 10)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    names = (np.array([name(*at) for at in zip(k, j, strict=True)]) for name in (row, plant))
+    rows, plants = names
+    return Plot.around("own", lonlat, names=PlantNames(rows, None, plants)).grid, lonlat
+
+
+def test_rows_and_plants_may_be_named_as_their_file_has_them():
+    grid, lonlat = own_names(lambda k, _: "FEDCBA"[k], lambda k, j: f"{'FEDCBA'[k]}v{10 - j:02d}")
+    for text in (
+        "row,plant,found\nF,Fv10,x\nb,bv1,x\nA,1,x\n",
+        "vine_id,found\nFv10,x\nBv01,x\nAV01,x\n",
+    ):
+        imported = read(text, grid=grid)
+        assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 49, 59]], abs=1e-9)
+    wrong = read("row,plant,found\nF,Av01,x\nG,1,x\nF,Fv11,x\n", grid=grid)
+    assert not len(wrong.value)
+    assert "row F has no plant Av01 here" in wrong.of(Severity.DROPPED)[0].sentence
+
+
+def test_a_plant_alone_is_the_one_that_its_file_names_so_and_that_is_said():
+    grid, lonlat = own_names(lambda k, _: f"{k + 1}", lambda k, j: f"{10 * k + 10 - j}")
+    imported = read("tree,found\n10,x\n25,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25]], abs=1e-9)
+    (said,) = imported.of(Severity.GUESSED)
+    assert "2 records name plants alone: taken as the plot's file calls them" in said.sentence
+    given_out = read("row,number,plant,found\n1,10,0,x\n", grid=grid)
+    assert given_out.value.plant.tolist() == [0]
+
+
+def test_a_name_of_one_row_that_is_the_number_of_another_is_refused():
+    grid, lonlat = own_names(lambda k, _: f"{k}", lambda _, j: f"{j + 1}")
+    imported = read("row,plant,found\n0,3,x\n3,3,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[2]], abs=1e-9)
+    assert "but 3 may be any of rows 3–4 here" in imported.of(Severity.DROPPED)[0].sentence
+
+
+def test_rows_of_blocks_may_be_named_as_their_file_has_them():
+    k, j = np.divmod(np.arange(60), 10)
+    block, row = np.where(k < 3, "1", "2"), np.where(k < 3, 3 - k, k - 2)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    rows = np.array([f"R{one}" for one in row])
+    grid = Plot.around("own", lonlat, names=PlantNames(rows, block, (j + 1).astype(np.str_))).grid
+    text = "".join(f"{block[i]},R{row[i]},{j[i] + 1},x\n" for i in (0, 25, 30, 59))
+    imported = read(f"block,row,plant,found\n{text}", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
+    unnamed = read("row,plant,found\nR1,1,x\n", grid=grid)
+    assert not len(unnamed.value)
+    assert "R1 may be any of rows 1, 4 here" in unnamed.of(Severity.DROPPED)[0].sentence
+
+
 def test_how_far_a_position_is_off_is_measured_along_its_row_and_across(two_blocks):
     grid = two_blocks
     for block, (east_m, north_m) in ((0, (1.3, 0.0)), (1, (0.0, 1.3))):

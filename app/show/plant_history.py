@@ -86,7 +86,7 @@ def show(choices: Choices) -> None:
     st.markdown(f"### {texts.HISTORY}")
     st.caption(texts.HISTORY_TAP)
     row, number = (
-        widget_memory.show(st.number_input, label, 1, key=key, default=first)
+        widget_memory.show(st.number_input, label, 0, key=key, default=first)
         for label, key, first in zip(
             (texts.HISTORY_ROW, texts.HISTORY_PLANT), (_ROW, _PLANT),
             _lowest(choices.plot.grid), strict=True,

@@ -70,16 +70,23 @@ class CalledRows:
             for name, number, of in zip(grid.line_named.tolist(), self.numbers, block, strict=True):
                 self._named[key(name)].append((number, of))
 
-    def number(self, said: str, block: str = "") -> int | None:
-        """Return the number of the row that is meant, perhaps in a block; None: there is none.
+    def meant(self, said: str, block: str = "") -> set[int]:
+        """Return the numbers of the rows that may be meant, perhaps those of a block.
 
-        Nor where blocks count by themselves and a number may be the block's own. Raise
-        `SettingError` where several may be meant.
+        Not where blocks count by themselves and a number may be the block's own.
         """
         meant = {n for n, of in self._named.get(key(said), ()) if block in {"", of}}
         is_own = bool(block) and self._counts_on
         if not is_own and said.strip().isdecimal() and int(said) in self._known:
             meant.add(int(said))
+        return meant
+
+    def number(self, said: str) -> int | None:
+        """Return the number of the row that is meant; None: there is none.
+
+        Raise `SettingError` where several may be meant.
+        """
+        meant = self.meant(said)
         if len(meant) > 1:
             raise SettingError(
                 worded(

@@ -79,10 +79,10 @@ def _beyond_numbers(names: NDArray[np.str_], numbers: Int) -> NDArray[np.str_] |
 
 
 def _numbers(names: NDArray[np.str_]) -> Int:
-    """Return the number at the end of each name ``(n,)``; 0 where there is none."""
+    """Return the number at the end of each name ``(n,)``; -1 where there is none."""
     known, which = np.unique(names, return_inverse=True)
     found = (_NUMBER.match(name.strip()) for name in known.tolist())
-    return np.array([int(one[1]) if one else 0 for one in found], np.int64)[which]
+    return np.array([int(one[1]) if one else -1 for one in found], np.int64)[which]
 
 
 def _lines_called(grid: PlantGrid, rows: Int) -> Int | None:
@@ -90,10 +90,12 @@ def _lines_called(grid: PlantGrid, rows: Int) -> Int | None:
     line = grid.row_line[grid.row]
     _, first = np.unique(line, return_index=True)
     called = rows[first]
-    if (called < 1).any() or (rows != called[line]).any():
+    if (called < 0).any() or (rows != called[line]).any():
         return None
     if len(np.unique(called)) == len(called):
         return np.stack([called, called], axis=1)
+    if (called < 1).any():  # counted on, a row 0 would have the number of one before
+        return None
     block = np.zeros(len(called), np.int64) if grid.block is None else grid.block[grid.row[first]]
     on = called.copy()
     for k in range(int(block[-1]) + 1):
@@ -108,7 +110,7 @@ def _tells_apart(grid: PlantGrid, plants: Int) -> bool:
     """Tell whether numbers ``(n,)`` tell the plants of each line apart."""
     keys = np.stack([grid.row_line[grid.row], plants], axis=1)
     vines = np.unique(grid.vine)
-    return bool((plants > 0).all()) and len(np.unique(keys[vines], axis=0)) == len(vines)
+    return bool((plants >= 0).all()) and len(np.unique(keys[vines], axis=0)) == len(vines)
 
 
 def said_of_numbers(grid: PlantGrid) -> list[str]:

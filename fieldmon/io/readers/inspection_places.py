@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.wording import worded
-from fieldmon.errors import SettingError
+from fieldmon.compute.wording import runs, worded
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
 from fieldmon.plot.grid import block_label, row_in_block, row_label
@@ -127,7 +126,7 @@ def by_name(
 
     And why some cannot be placed, and what else there is to say.
     """
-    own = (grid.line_named, grid.plant_named, grid.plant_called)
+    own = (grid.line_called, grid.line_named, grid.plant_called, grid.plant_named)
     if rows.row_called is None or rows.plant_called is None or all(one is None for one in own):
         return rows, {}, ()
     called, plants = CalledRows(grid), CalledPlants(grid)
@@ -145,15 +144,21 @@ def by_name(
     line[alone], number[alone] = label.line, label.number
     for i in np.flatnonzero((rows.row_called != "") & (rows.plant < 0)).tolist():
         row, said = str(rows.row_called[i]), str(rows.plant_called[i])
-        try:
-            meant = called.number(row, str(rows.block[i]))
-        except SettingError as error:
-            problems[i] = str(error)
+        meant = called.meant(row, str(rows.block[i]))
+        if len(meant) > 1:
+            problems[i] = worded(
+                "{row} may be any of rows {some} here, by their numbers or by their names in the "
+                "file of plants",
+                row=row,
+                some=runs(meant),
+            )
             continue
-        which = None if meant is None else plants.number(meant, said)
-        if meant is not None and which is not None:
-            line[i], number[i] = meant, which
-        elif open_yet[i] and not (row.isdecimal() and said.isdecimal()):
+        which = None
+        for one in meant:
+            which = plants.number(one, said)
+            if which is not None:
+                line[i], number[i] = one, which
+        if which is None and open_yet[i] and not (row.isdecimal() and said.isdecimal()):
             problems[i] = worded("row {row} has no plant {plant} here", row=row, plant=said)
     messages: tuple[ImportMessage, ...] = ()
     if alone.any():
@@ -169,7 +174,9 @@ def by_name(
 def by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> PlantsFound:
     """Place records that name a row and a number in it."""
     plant = np.full(len(rows), -1, np.int64)
-    records = np.flatnonzero(wanted & (rows.line > 0) & (rows.number > 0))
+    # both are 0 where none is named; a plot may have a row or a plant 0
+    is_named = (rows.line >= 0) & (rows.number >= 0) & (rows.line + rows.number > 0)
+    records = np.flatnonzero(wanted & is_named)
     if not len(records):
         return PlantsFound(plant, {}, {})
     first, said = _labelled(rows, grid, records)

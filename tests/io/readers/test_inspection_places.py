@@ -193,10 +193,18 @@ def test_a_plant_alone_is_the_one_that_its_file_names_so_and_that_is_said():
 
 
 def test_a_name_of_one_row_that_is_the_number_of_another_is_refused():
-    grid, lonlat = own_names(lambda k, _: f"{k}", lambda _, j: f"{j + 1}")
-    imported = read("row,plant,found\n0,3,x\n3,3,x\n", grid=grid)
+    rows = ["5a", "5", "4", "3", "2", "1"]
+    grid, lonlat = own_names(lambda k, _: rows[k], lambda _, j: f"{j + 1}")
+    imported = read("row,plant,found\n5A,3,x\n3,3,x\n", grid=grid)
     assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[2]], abs=1e-9)
-    assert "but 3 may be any of rows 3–4 here" in imported.of(Severity.DROPPED)[0].sentence
+    assert "3 may be any of rows 3–4 here" in imported.of(Severity.DROPPED)[0].sentence
+
+
+def test_rows_and_plants_may_count_from_zero_where_their_file_does():
+    grid, lonlat = own_names(lambda k, _: f"{5 - k}", lambda _, j: f"{j}")
+    imported = read("row,plant,found\n5,3,x\n0,3,x\n3,0,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[3, 53, 20]], abs=1e-9)
+    assert imported.of(Severity.DOUBTFUL) == ()
 
 
 def test_rows_of_blocks_may_be_named_as_their_file_has_them():

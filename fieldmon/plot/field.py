@@ -49,11 +49,12 @@ class Field:
         As stated for this plot, or None: direction of the rows clockwise from true north, and the
         distances from row to row and from plant to plant.
     plant_rows
-        ``(n,)`` the name of each measured plant's row; None: not known, then rows are found.
+        ``(n,)`` the name of each measured plant's row; None: not known. Rows are found unless all
+        plants have one.
     plant_blocks
         ``(n,)`` the name of each measured plant's block; None: not known, then blocks are found.
     plant_names
-        ``(n,)`` what each measured plant is called; None: not known.
+        ``(n,)`` what each measured plant is called, or nothing; None: not known.
     blocks
         Parts of the plot with rows of their own; empty: the plot is one.
     in_rows

@@ -112,7 +112,7 @@ class PlantGrid:
         1, with x.
     line_named, plant_named
         ``(lines,)``, ``(n,)`` what the plot's file calls each line and each plant, where that is
-        more than their numbers; None: it is not.
+        more than their numbers; None: it is not. Several names of a line are lines of text.
     """
 
     frame: Frame
@@ -207,7 +207,10 @@ class PlantGrid:
         numbers = [f"{number}" for number in self.line_number.tolist()]
         if self.line_called is not None or self.line_named is None:
             return numbers
-        return [f"{n} · {name}" for n, name in zip(numbers, self.line_named.tolist(), strict=True)]
+        own = zip(numbers, self.line_named.tolist(), strict=True)
+        return [
+            number if "\n" in name or not name else f"{number} · {name}" for number, name in own
+        ]
 
     @property
     def row_number(self) -> NDArray[np.int64]:

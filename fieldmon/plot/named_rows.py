@@ -67,8 +67,10 @@ class CalledRows:
         if grid.line_named is not None:
             first = grid.row_start[np.unique(grid.row_line, return_index=True)[1]]
             block = block_label(grid, first).astype(np.str_).tolist()
-            for name, number, of in zip(grid.line_named.tolist(), self.numbers, block, strict=True):
-                self._named[key(name)].append((number, of))
+            columns = grid.line_named.tolist(), self.numbers, block
+            for names, number, of in zip(*columns, strict=True):
+                for name in names.splitlines():
+                    self._named[key(name)].append((number, of))
 
     def meant(self, said: str, block: str = "") -> set[int]:
         """Return the numbers of the rows that may be meant, perhaps those of a block.

@@ -26,7 +26,10 @@ _NUMBER = re.compile(r"^(?!-?\d+[.,]\d*[1-9]\d*$)(?:.*\D)??0*(\d{1,6})(?:\.0+)?$
 
 
 class PlantNames(NamedTuple):
-    """The names ``(n,)`` of row, block and plant of each measured plant; None: not known."""
+    """The names ``(n,)`` of row, block and plant of each measured plant, empty where it has none.
+
+    None: no plant has one.
+    """
 
     row: NDArray[np.str_] | None = None
     block: NDArray[np.str_] | None = None
@@ -58,17 +61,16 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
 
     of = cKDTree(grid.frame.xy_m(lonlat)).query(grid.xy_m)[1]
     if names.row is not None:
-        line = grid.row_line[grid.row]
-        rows, first = names.row[of], np.unique(line, return_index=True)[1]
-        grid = replace(grid, line_called=_lines_called(grid, _numbers(rows)))
-        if (rows == rows[first][line]).all():
-            own = _beyond_numbers(rows[first], row_in_block(grid, first))
-            grid = replace(grid, line_named=own)
+        line, rows = grid.row_line[grid.row], names.row[of]
+        own = _lines_named(line, rows)
+        grid = replace(grid, line_called=_lines_called(grid, own))
+        in_block = row_in_block(grid, np.unique(line, return_index=True)[1])
+        grid = replace(grid, line_named=_beyond_numbers(own, in_block))
     if names.plant is not None:
         plants = _numbers(names.plant)[of]
         grid = replace(grid, plant_called=plants if _tells_apart(grid, plants) else None)
-        own = _beyond_numbers(names.plant[of], row_label(grid).number)
-        grid = replace(grid, plant_named=own)
+        number = row_label(grid).number
+        grid = replace(grid, plant_named=_beyond_numbers(names.plant[of], number))
     return grid
 
 
@@ -85,13 +87,13 @@ def _numbers(names: NDArray[np.str_]) -> Int:
     return np.array([int(one[1]) if one else -1 for one in found], np.int64)[which]
 
 
-def _lines_called(grid: PlantGrid, rows: Int) -> Int | None:
-    """Return the number of each line, and that in its block, from the row of each plant."""
-    line = grid.row_line[grid.row]
-    _, first = np.unique(line, return_index=True)
-    called = rows[first]
-    if (called < 0).any() or (rows != called[line]).any():
+def _lines_called(grid: PlantGrid, names: NDArray[np.str_]) -> Int | None:
+    """Return the number of each line, and that in its block, from its names ``(lines,)``."""
+    own = [set(_numbers(np.array(name.splitlines() or [""])).tolist()) for name in names.tolist()]
+    if any(len(one) > 1 or -1 in one for one in own):
         return None
+    called = np.array([one.pop() for one in own], np.int64)
+    first = np.unique(grid.row_line[grid.row], return_index=True)[1]
     if len(np.unique(called)) == len(called):
         return np.stack([called, called], axis=1)
     if (called < 1).any():  # counted on, a row 0 would have the number of one before
@@ -104,6 +106,18 @@ def _lines_called(grid: PlantGrid, rows: Int) -> Int | None:
             return None
         on[mine] += on[block < k].max(initial=0)
     return np.stack([on, called], axis=1)
+
+
+def _lines_named(line: NDArray[np.int32], rows: NDArray[np.str_]) -> NDArray[np.str_]:
+    """Return the name of each line, or its names as lines of text, from those of its plants.
+
+    Plants without a name say nothing.
+    """
+    names, which = np.unique(rows, return_inverse=True)
+    own: list[list[str]] = [[] for _ in range(int(line.max()) + 1)]
+    for at, name in np.unique(np.stack([line, which], axis=1), axis=0).tolist():
+        own[at] += [str(names[name])] if names[name] else []
+    return np.array(["\n".join(one) for one in own], np.str_)
 
 
 def _tells_apart(grid: PlantGrid, plants: Int) -> bool:
@@ -133,7 +147,11 @@ def said_of_numbers(grid: PlantGrid) -> list[str]:
         )
     elif grid.line_named is not None:
         own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
-        some = [worded("{name} is row {number}", name=name, number=n) for name, n in own]
+        some = [
+            worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
+            for name, n in own
+            if name
+        ]
         said.append(
             worded("Rows have the numbers in their names: {some}.", some=first_few(some, 2))
             if grid.line_called is not None
@@ -163,13 +181,19 @@ def doubts_of_numbers(grid: PlantGrid) -> list[str]:
     if grid.line_named is None or grid.line_called is not None:
         return []
     own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
-    both = [name for name, n in own if name.isdecimal() and 0 <= int(name) != n]
+    here = set(grid.line_number.tolist())
+    both = [
+        name
+        for names, n in own
+        for name in names.splitlines()
+        if name.isdecimal() and int(name) != n and int(name) in here
+    ]
     if not both:
         return []
     return [
         worded(
             "Rows are called {some} in the file, which are numbers of other rows here: such a row "
             "is refused wherever rows are written. Number them from 1 in the file.",
-            some=first_few(both, _NAMED),
+            some=first_few(list(dict.fromkeys(both)), _NAMED),
         )
     ]

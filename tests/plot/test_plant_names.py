@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from fieldmon.errors import PlotError
+from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import plant_at, row_in_block, row_label
+from fieldmon.plot.named_rows import plants_in_rows
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, said_of_numbers
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
@@ -124,3 +125,25 @@ def test_what_stands_at_rows_on_maps_has_their_names_where_these_are_no_numbers(
     assert named(6 - ROW).grid.line_signs == ["6", "5", "4", "3", "2", "1"]
     assert named([f"R{6 - k}" for k in ROW]).grid.line_signs == ["6", "5", "4", "3", "2", "1"]
     assert named(np.array(list("FEDCBA"))[ROW]).grid.line_signs[:2] == ["1 · F", "2 · E"]
+
+
+def test_names_that_are_not_those_of_rows_are_kept_and_never_taken_for_other_rows():
+    across = named(PLANT + 1, ROW + 1)
+    assert "rows were found instead" in " ".join(across.rows.doubts)
+    for row in ("1", "6", "9"):
+        with pytest.raises(SettingError, match="may be any of rows 1–6 here"):
+            plants_in_rows(across.grid, row)
+    assert across.grid.line_signs == ["1", "2", "3", "4", "5", "6"]
+    assert "Rows are called 2, 3, 4, 5, 6, 1 in the file" in doubts_of_numbers(across.grid)[0]
+    assert "1, 10, 2, ... is row 1, 1, 10, 2, ... is row 2" in said_of_numbers(across.grid)[0]
+
+
+def test_plants_whose_row_nobody_named_are_of_the_row_they_stand_in():
+    rows = (6 - ROW).astype(np.str_)
+    rows[[3, 14, 55]] = ""
+    assert labels(named(rows, 10 - PLANT)) == ((6 - ROW).tolist(), (10 - PLANT).tolist())
+    rows[ROW == 2] = ""
+    plot = named(rows)
+    assert plot.grid.line_signs == ["1 · 6", "2 · 5", "3", "4 · 3", "5 · 2", "6 · 1"]
+    with pytest.raises(SettingError, match="6 may be any of rows 1, 6 here"):
+        plants_in_rows(plot.grid, "6")

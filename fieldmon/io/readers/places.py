@@ -68,10 +68,10 @@ class Plants:
 
     @property
     def names(self) -> PlantNames:
-        """Return the names of rows, of blocks and of plants, where all plants have one."""
-        row = None if (self.row == "").any() else self.row
+        """Return the names of rows and of plants, and those of blocks where all plants have one."""
         block = None if self.block is None or (self.block == "").any() else self.block
-        return PlantNames(row, block, None if (self.plant == "").any() else self.plant)
+        row, plant = (one if (one != "").any() else None for one in (self.row, self.plant))
+        return PlantNames(row, block, plant)
 
     def __len__(self) -> int:
         """Return the number of plants."""

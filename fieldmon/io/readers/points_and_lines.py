@@ -113,8 +113,8 @@ def _of_blanks(names: NDArray[np.str_], column: str) -> ImportMessage:
     """Return what to say of names that some plants do not have."""
     return doubtful(
         worded(
-            "Column {column!r} is empty for {n} of {all} plants: none of its names is used. Fill "
-            "it in for all.",
+            "Column {column!r} is empty for {n} of {all} plants: its names do not tell which "
+            "plants stand together. Fill it in for all.",
             column=column,
             n=int((names == "").sum()),
             all=len(names),

@@ -35,10 +35,10 @@ def test_what_is_not_called_anything_has_no_label():
     assert len(plants) == 2
 
 
-def test_names_of_rows_that_some_plants_lack_are_not_used_and_that_is_said():
+def test_names_of_rows_that_some_plants_lack_do_not_tell_of_rows_and_that_is_said():
     shapes = [Point(5.0 + k * 1e-5, 45.0) for k in range(3)]
     imported = plants_of(layer_of(shapes, row=["1", "", "2"]), ANY)
-    assert "Column 'row' is empty for 1 of 3 plants: none" in sentences(imported)
+    assert "Column 'row' is empty for 1 of 3 plants: its names do not tell" in sentences(imported)
     assert "empty" not in sentences(plants_of(layer_of(shapes, row=["1", "1", "2"]), ANY))
 
 

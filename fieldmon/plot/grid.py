@@ -113,6 +113,8 @@ class PlantGrid:
     line_named, plant_named
         ``(lines,)``, ``(n,)`` what the plot's file calls each line and each plant, where that is
         more than their numbers; None: it is not. Several names of a line are lines of text.
+    block_named
+        ``(blocks,)`` the same of the blocks.
     """
 
     frame: Frame
@@ -142,6 +144,7 @@ class PlantGrid:
     plant_called: NDArray[np.int64] | None = None
     line_named: NDArray[np.str_] | None = None
     plant_named: NDArray[np.str_] | None = None
+    block_named: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
         for value in vars(self).values():

@@ -72,6 +72,9 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
         block=None if grid.block is None else _counted(grid.block[rows]),
         aisle=_picked(grid.aisle, rows),
         place_m=_picked(grid.place_m, kept),
+        block_named=_picked(
+            grid.block_named, np.arange(1) if grid.block is None else np.unique(grid.block[rows])
+        ),
         line_called=_picked(grid.line_called, lines),
         line_named=_picked(grid.line_named, lines),
         plant_called=_picked(grid.plant_called, kept),

@@ -63,22 +63,22 @@ class CalledRows:
         self.numbers = grid.line_number.tolist()
         self._known = set(self.numbers)
         self._counts_on = grid.n_blocks > 1 and grid.counts_on
-        self._named: dict[str, list[tuple[int, str]]] = defaultdict(list)
+        self._named: dict[str, list[tuple[int, int]]] = defaultdict(list)
         if grid.line_named is not None:
             first = grid.row_start[np.unique(grid.row_line, return_index=True)[1]]
-            block = block_label(grid, first).astype(np.str_).tolist()
+            block = block_label(grid, first).tolist()
             columns = grid.line_named.tolist(), self.numbers, block
             for names, number, of in zip(*columns, strict=True):
                 for name in names.splitlines():
                     self._named[key(name)].append((number, of))
 
-    def meant(self, said: str, block: str = "") -> set[int]:
+    def meant(self, said: str, block: int | None = None) -> set[int]:
         """Return the numbers of the rows that may be meant, perhaps those of a block.
 
         Not where blocks count by themselves and a number may be the block's own.
         """
-        meant = {n for n, of in self._named.get(key(said), ()) if block in {"", of}}
-        is_own = bool(block) and self._counts_on
+        meant = {n for n, of in self._named.get(key(said), ()) if block in {None, of}}
+        is_own = block is not None and self._counts_on
         if not is_own and said.strip().isdecimal() and int(said) in self._known:
             meant.add(int(said))
         return meant
@@ -129,6 +129,18 @@ class CalledPlants:
         """Return the plant whose name nobody else on the plot has; None: there is none."""
         meant = self._alone.get(key(said), set())
         return next(iter(meant)) if len(meant) == 1 else None
+
+
+def called_blocks(grid: PlantGrid) -> dict[str, int]:
+    """Return the number of each block by the `key` of what a person calls it.
+
+    Not by the number of one that is the name of another.
+    """
+    called = {f"{k}": {k} for k in range(1, grid.n_blocks + 1)}
+    for k, names in enumerate([] if grid.block_named is None else grid.block_named.tolist(), 1):
+        for name in names.splitlines():
+            called.setdefault(key(name), set()).add(k)
+    return {name: next(iter(meant)) for name, meant in called.items() if len(meant) == 1}
 
 
 def key(name: str) -> str:

@@ -55,11 +55,16 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
     of each block, and then count on from block to block; plants, if theirs tell all plants of each
     row apart. Else they count from 1. Names that are just their numbers are not kept.
     """
-    if not grid.in_rows or (names.row is None and names.plant is None):
+    if not grid.in_rows or all(one is None for one in names):
         return grid
     from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
 
     of = cKDTree(grid.frame.xy_m(lonlat)).query(grid.xy_m)[1]
+    if names.block is not None and grid.n_blocks > 1:
+        blocks = block_label(grid)
+        own = _lines_named(blocks - 1, names.block[of])
+        numbers = np.arange(1, grid.n_blocks + 1)
+        grid = replace(grid, block_named=_beyond_numbers(own, numbers))
     if names.row is not None:
         line, rows = grid.row_line[grid.row], names.row[of]
         own = _lines_named(line, rows)
@@ -108,7 +113,7 @@ def _lines_called(grid: PlantGrid, names: NDArray[np.str_]) -> Int | None:
     return np.stack([on, called], axis=1)
 
 
-def _lines_named(line: NDArray[np.int32], rows: NDArray[np.str_]) -> NDArray[np.str_]:
+def _lines_named(line: NDArray[np.integer], rows: NDArray[np.str_]) -> NDArray[np.str_]:
     """Return the name of each line, or its names as lines of text, from those of its plants.
 
     Plants without a name say nothing.
@@ -130,6 +135,12 @@ def _tells_apart(grid: PlantGrid, plants: Int) -> bool:
 def said_of_numbers(grid: PlantGrid) -> list[str]:
     """Return which numbers rows and plants have whose names are no numbers; of many the first."""
     said: list[str] = []
+    if grid.block_named is not None:
+        some = [
+            worded("{name} is block {number}", name=first_few(name.splitlines(), 3), number=k)
+            for k, name in enumerate(grid.block_named.tolist(), start=1)
+        ]
+        said.append(worded("Blocks count from 1: {some}.", some=first_few(some, _NAMED)))
     if grid.line_called is not None and grid.counts_on:
         first = np.unique(grid.row_line, return_index=True)[1]
         block = block_label(grid, grid.row_start[first])

@@ -110,7 +110,8 @@ def test_what_rows_and_plants_are_called_here_is_said_where_it_is_no_number():
     assert rows == "Rows have the numbers in their names: ROW01 is row 1, ROW02 is row 2, ...."
     assert "Plants have the numbers in their names: V10 is plant 10 of row 1, V9 is" in plants
     block = np.where(ROW < 3, "east", "west")
-    (said,) = said_of_numbers(named(np.where(ROW < 3, 3 - ROW, ROW - 2), None, block).grid)
+    blocks, said = said_of_numbers(named(np.where(ROW < 3, 3 - ROW, ROW - 2), None, block).grid)
+    assert blocks == "Blocks count from 1: east is block 1, west is block 2."
     assert "row 1 of block 2 is row 4, row 2 of block 2 is row 5" in said
 
 

@@ -25,7 +25,7 @@ from fieldmon.compute.wording import runs, worded
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
 from fieldmon.plot.grid import block_label, row_in_block, row_label
-from fieldmon.plot.named_rows import CalledPlants, CalledRows
+from fieldmon.plot.named_rows import CalledPlants, CalledRows, called_blocks, key
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -129,7 +129,7 @@ def by_name(
     own = (grid.line_called, grid.line_named, grid.plant_called, grid.plant_named)
     if rows.row_called is None or rows.plant_called is None or all(one is None for one in own):
         return rows, {}, ()
-    called, plants = CalledRows(grid), CalledPlants(grid)
+    called, plants, blocks = CalledRows(grid), CalledPlants(grid), called_blocks(grid)
     plant, line, number = rows.plant.copy(), rows.line.copy(), rows.number.copy()
     problems: dict[int, str] = {}
     open_yet = ~np.isfinite(rows.lonlat.sum(axis=1))
@@ -144,7 +144,8 @@ def by_name(
     line[alone], number[alone] = label.line, label.number
     for i in np.flatnonzero((rows.row_called != "") & (rows.plant < 0)).tolist():
         row, said = str(rows.row_called[i]), str(rows.plant_called[i])
-        meant = called.meant(row, str(rows.block[i]))
+        of = str(rows.block[i]) if grid.n_blocks > 1 else ""
+        meant = called.meant(row, blocks.get(key(of), 0) if of else None)
         if len(meant) > 1:
             problems[i] = worded(
                 "{row} may be any of rows {some} here, by their numbers or by their names in the "
@@ -235,8 +236,8 @@ def _labelled(
     if not len(named):
         return first, said
     of_plant, within = block_label(grid), row_in_block(grid)
-    numbers = {str(k): k for k in range(1, grid.n_blocks + 1)}
-    block = np.array([numbers.get(name, 0) for name in rows.block[records[named]]])
+    numbers = called_blocks(grid)
+    block = np.array([numbers.get(key(name), 0) for name in rows.block[records[named]].tolist()])
     first[named] = np.where(of_plant[first[named]] == block, first[named], -1)
     # the row as its block counts, then as all are counted on
     of_row = _found(_key(of_plant, within), _key(block, line[named]))

@@ -127,10 +127,11 @@ def labelled(
         return Plants(lonlat, row, plant)
     number = block_label(grid, first).astype(np.str_)
     within = row_in_block(grid, first).astype(np.str_)
-    known = [number, *_called(lonlat, blocks)]
+    own = [] if grid.block_named is None else [grid.block_named[block_label(grid, first) - 1]]
+    known = [*own, number, *_called(lonlat, blocks)]
     ways = [(block, row, False) for block in known]
     ways += [(block, within, True) for block in known]
-    return Plants(lonlat, row, plant, number, tuple(ways[1:]))
+    return Plants(lonlat, row, plant, known[0], tuple(ways[1:]))
 
 
 def _numbered(measured: Plants, grid: PlantGrid) -> Plants:

@@ -221,6 +221,23 @@ def test_rows_of_blocks_may_be_named_as_their_file_has_them():
     assert "R1 may be any of rows 1, 4 here" in unnamed.of(Severity.DROPPED)[0].sentence
 
 
+def test_blocks_are_those_of_the_file_of_plants():
+    k, j = np.divmod(np.arange(60), 10)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    row, plant = np.where(k < 3, 3 - k, k - 2).astype(np.str_), (j + 1).astype(np.str_)
+    for names in (("west", "east"), ("3", "4"), ("2", "10")):
+        block = np.where(k < 3, *names)
+        grid = Plot.around("own", lonlat, names=PlantNames(row, block, plant)).grid
+        text = "".join(f"{block[i]},{row[i]},{plant[i]},x\n" for i in (0, 25, 30, 59))
+        imported = read(f"block,row,plant,found\n{text}", grid=grid)
+        assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
+    block = np.where(k < 3, "2", "3")
+    grid = Plot.around("own", lonlat, names=PlantNames(row, block, plant)).grid
+    imported = read("block,row,plant,found\n3,1,1,x\n2,1,1,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[30]], abs=1e-9)
+    assert "row 1 of block 2" in imported.of(Severity.DROPPED)[0].sentence
+
+
 def test_how_far_a_position_is_off_is_measured_along_its_row_and_across(two_blocks):
     grid = two_blocks
     for block, (east_m, north_m) in ((0, (1.3, 0.0)), (1, (0.0, 1.3))):

@@ -196,6 +196,15 @@ def test_the_numbers_of_measured_plants_are_those_of_the_plot():
     assert grid.lonlat(np.array(there)) == pytest.approx(lonlat, abs=1e-9)
 
 
+def test_blocks_may_be_named_as_their_file_has_them():
+    k, j = np.divmod(np.arange(60), 10)
+    lonlat = np.stack([5 + 2e-5 * j, 45 + 3e-5 * k], axis=1)
+    row, block = np.where(k < 3, k + 1, k - 2).astype(np.str_), np.where(k < 3, "west", "east")
+    known = labelled(Plot.around("own", lonlat, names=PlantNames(row, block)).grid)
+    named = by_plant(cells("1", "2"), cells("1", "1"), known, cells("west", "east"))
+    assert named.lonlat[:, 1] == pytest.approx(lonlat[[0, 40], 1], abs=1e-9)
+
+
 def test_rows_counted_from_zero_are_refused_but_where_rows_are_called_so():
     with pytest.raises(ObservationError, match=r"counted from 1, but 1 record says 0: 0/1\."):
         by_plant(cells(0, 1), cells(1, 2), plants(0))

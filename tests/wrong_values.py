@@ -114,7 +114,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     "Observations.take": {"which": _PICKED},
     "Field": {
         "gate": {"list", "pair"}, "plants": {"empty array", "table"},
-        **{name: {"empty array", "array of texts"} for name in ("plant_rows", "plant_blocks")},
+        **{f"plant_{of}": {"empty array", "array of texts"} for of in ("rows", "blocks", "names")},
     },
     "Plot.without": {"missing": set()},
     "HotSpots": {

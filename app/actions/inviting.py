@@ -15,6 +15,8 @@ from ..state import morning, notices, phone, scout_page
 from ..words import language, texts
 
 if TYPE_CHECKING:
+    from fieldmon.monitoring import Season
+
     from ..state.choices import Choices
 
 _SHOWN = "code shown"
@@ -57,12 +59,17 @@ def _show_codes(choices: Choices) -> None:
         else:
             st.text_input(texts.INVITE_NAME, key="invite_name")
         left, right = st.columns(2)
-        rows = int(choices.season.label.line.max())
-        left.number_input(texts.INVITE_FIRST, 1, rows, None, key="invite_first")
-        right.number_input(texts.INVITE_LAST, 1, rows, None, key="invite_last")
+        ends = _ends(choices.season)
+        left.number_input(texts.INVITE_FIRST, *ends, None, key="invite_first")
+        right.number_input(texts.INVITE_LAST, *ends, None, key="invite_last")
         st.caption(texts.INVITE_RULES_TEAM if choices.team else texts.INVITE_RULES)
         st.form_submit_button(texts.INVITE_BUTTON, on_click=_invite, args=(choices,))
     _show_code()
+
+
+def _ends(season: Season) -> tuple[int, int]:
+    """Return the first and the last row of a season's plot."""
+    return int(season.label.line.min()), int(season.label.line.max())
 
 
 def _show_out(choices: Choices) -> None:
@@ -98,10 +105,10 @@ def _invite(choices: Choices) -> str:
     name, first, last = state["invite_name"], state["invite_first"], state["invite_last"]
     name = (name or "").strip()
     whole = first is None and last is None
-    lines = int(choices.season.label.line.max())
-    rows = None if whole else (int(first or 1), int(last or lines))
+    low, high = _ends(choices.season)
+    rows = low if first is None else int(first), high if last is None else int(last)
     before = {person(one.name) for one in scouts.scouts_of(choices.season)}
-    state[_SHOWN] = name, let_in(choices, name, rows)
+    state[_SHOWN] = name, let_in(choices, name, None if whole else rows)
     morning.note(choices, morning.SEND)
     return _what_follows(choices, name, had_code=person(name) in before)
 

@@ -77,8 +77,8 @@ def _show_one(choices: Choices) -> None:
     with st.form("one_plant_form", border=False, enter_to_submit=False):
         left, right = st.columns(2)
         # empty: what nobody said must not be recorded by one click
-        left.number_input(texts.HISTORY_ROW, 1, None, None, key=key("one_row"))
-        right.number_input(texts.HISTORY_PLANT, 1, None, None, key=key("one_plant"))
+        left.number_input(texts.HISTORY_ROW, 0, None, None, key=key("one_row"))
+        right.number_input(texts.HISTORY_PLANT, 0, None, None, key=key("one_plant"))
         st.segmented_control(
             texts.RESULT, list(texts.RESULTS_OF), default=None, key=key("one_result"),
             format_func=texts.RESULTS_OF.__getitem__,

@@ -158,7 +158,8 @@ PLOT: dict[str, Any] = {
             "type": "object",
             "properties": {
                 "start": _LIST | {"description": "Plants of row k: start[k] to start[k + 1]."},
-                "row": _LIST | {"description": "Its number on the ground, from 1."},
+                "row": _LIST
+                | {"description": "Its number, as named in the plot's file or from 1."},
                 "aisle": _LIST | {"description": "Rows of one number share their aisle."},
                 "side": _LIST
                 | {"description": "The aisle is left (1) or right (-1) of its plants in order."},

@@ -204,7 +204,9 @@ def _risen(choices: Choices, since: str) -> str:
     rise = (total[1] - total[0]) / np.maximum(np.bincount(line), 1)
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
     rises = [texts.isolated(f"+{number(100 * rise[k], '.1f')}") for k in top]
-    return listed(f"{k + 1}\u00a0({said})" for k, said in zip(top, rises, strict=True))
+    return listed(
+        f"{grid.line_number[k]}\u00a0({said})" for k, said in zip(top, rises, strict=True)
+    )
 
 
 def reasons(choices: Choices, plan: DayPlan) -> list[str]:

@@ -24,6 +24,8 @@ from .map_view import MapAnswers
 from .maps import plant_layers
 
 if TYPE_CHECKING:
+    from fieldmon.plot.grid import PlantGrid
+
     from ..state.choices import Choices
     from .map_view import MapContent, Selected, Tapped
 
@@ -84,9 +86,12 @@ def show(choices: Choices) -> None:
     st.markdown(f"### {texts.HISTORY}")
     st.caption(texts.HISTORY_TAP)
     row, number = (
-        widget_memory.show(st.number_input, label, 1, key=key, default=1)
-        for label, key in ((texts.HISTORY_ROW, _ROW), (texts.HISTORY_PLANT, _PLANT))
-    )
+        widget_memory.show(st.number_input, label, 0, key=key, default=first)
+        for label, key, first in zip(
+            (texts.HISTORY_ROW, texts.HISTORY_PLANT), (_ROW, _PLANT),
+            _lowest(choices.plot.grid), strict=True,
+        )
+    )  # fmt: skip
     plant = plant_at(choices.plot.grid, int(row), int(number))
     now = first = chosen_day.chance(choices)
     if choices.season is not None:
@@ -101,6 +106,13 @@ def show(choices: Choices) -> None:
         st.caption(texts.HISTORY_TREATED)
     st.markdown("\n".join(_inspections(choices, plant)))
     _show_photos(choices, plant)
+
+
+def _lowest(grid: PlantGrid) -> tuple[int, int]:
+    """Return the lowest row, and the lowest plant in it, that there is on a plot."""
+    label = row_label(grid)
+    row = int(label.line.min())
+    return row, int(label.number[label.line == row].min())
 
 
 def _show_photos(choices: Choices, plant: int) -> None:

@@ -67,7 +67,7 @@ def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> Non
         st.altair_chart(charts.season_days(days, axes, named), alt=texts.FOUND_AXIS)
     st.altair_chart(charts.still_out(days, (day, out), named), alt=out)
     st.markdown(f"**{texts.ROW_AGES}**")
-    line = choices.plot.grid.row_line.astype(np.int64) + 1
+    line = choices.plot.grid.row_number
     rows, seen = (len(np.unique(of)) for of in (line, line[~np.isnan(progress.days_since)]))
     if progress.inspected:
         ages = charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE))

@@ -242,9 +242,8 @@ def lay_around(
 
 
 def with_plants(field: Field, measured: Plants) -> Field:
-    """Return a field with the plants measured on it, and what their rows and blocks are called."""
-    plants, (row, block) = measured.lonlat.copy(), measured.names
-    return replace(field, plants=plants, plant_rows=row, plant_blocks=block)
+    """Return a field with the plants measured on it, and what they, rows and blocks are called."""
+    return measured.names.on(replace(field, plants=measured.lonlat.copy()))
 
 
 def _along_rows(request: PlotRequest, hearing: _Hearing) -> Laid:

@@ -218,7 +218,7 @@ class DayAhead:
         return tuple(sorted({one.plant for one in self.asked if mine[one.plant]}))
 
     def _lines(self, rows: tuple[int, int] | None) -> tuple[int, int]:
-        return rows or (1, int(self.label.line.max()))
+        return rows or (int(self.label.line.min()), int(self.label.line.max()))
 
 
 def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:

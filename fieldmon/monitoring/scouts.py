@@ -81,15 +81,16 @@ def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -
                 most=_LONGEST_NAME, n=len(name),
             )
         )  # fmt: skip
-    lines = int(season.label.line.max())
-    if rows is not None and not 1 <= rows[0] <= rows[1] <= lines:
+    least, lines = int(season.label.line.min()), int(season.label.line.max())
+    if rows is not None and not least <= rows[0] <= rows[1] <= lines:
         raise SettingError(
             worded(
-                "A part must be rows from 1 to {lines} on this plot, but it is {low} to {high}.",
-                lines=lines, low=rows[0], high=rows[1],
+                "A part must be rows from {least} to {lines} on this plot, "
+                "but it is {low} to {high}.",
+                least=least, lines=lines, low=rows[0], high=rows[1],
             )
         )  # fmt: skip
-    if rows == (1, lines):
+    if rows == (least, lines):
         rows = None
     key = secrets.token_urlsafe(_KEY_BYTES)
     first, last = rows or (None, None)

@@ -40,7 +40,7 @@ _FRAME, _IN_ROWS = "frame", "in_rows"
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 _ASSUMED = ("row_spacing_m", "plant_spacing_m")
 _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
-_NAMES = ("plant_rows", "plant_blocks")
+_NAMES = ("plant_rows", "plant_blocks", "plant_names")
 
 
 @dataclass(frozen=True)
@@ -171,9 +171,9 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
 
 def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
     lonlat, label = grid.lonlat(), row_label(grid)
-    lines = zip(row_corners(grid), grid.row_line, np.diff(grid.row_start), strict=True)
+    lines = zip(row_corners(grid), grid.row_number, np.diff(grid.row_start), strict=True)
     rows = [
-        (blob(LineString(grid.frame.lonlat(corners))), int(line) + 1, int(n))
+        (blob(LineString(grid.frame.lonlat(corners))), int(line), int(n))
         for corners, line, n in lines
     ]
     insert(db, schema.ROWS, rows)
@@ -254,6 +254,7 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
         in_rows=f"grid.{_IN_ROWS}" not in arrays,
         plant_rows=arrays.get("plant_rows"),
         plant_blocks=arrays.get("plant_blocks"),
+        plant_names=arrays.get("plant_names"),
         **stated,
     )
 

@@ -49,9 +49,12 @@ class Field:
         As stated for this plot, or None: direction of the rows clockwise from true north, and the
         distances from row to row and from plant to plant.
     plant_rows
-        ``(n,)`` the name of each measured plant's row; None: not known, then rows are found.
+        ``(n,)`` the name of each measured plant's row; None: not known. Rows are found unless all
+        plants have one.
     plant_blocks
         ``(n,)`` the name of each measured plant's block; None: not known, then blocks are found.
+    plant_names
+        ``(n,)`` what each measured plant is called, or nothing; None: not known.
     blocks
         Parts of the plot with rows of their own; empty: the plot is one.
     in_rows
@@ -80,6 +83,7 @@ class Field:
     plant_blocks: NDArray[np.str_] | None = None
     blocks: tuple[Block, ...] = ()
     in_rows: bool = True
+    plant_names: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
         let_have_parts(self, "boundary")
@@ -114,7 +118,7 @@ class Field:
         What later versions added counts only where it is said: digests of before stay valid.
         """
         said = dict(vars(self))
-        for name in ("plant_rows", "plant_blocks"):
+        for name in ("plant_rows", "plant_blocks", "plant_names"):
             if said[name] is None:
                 del said[name]
         del said["blocks"]

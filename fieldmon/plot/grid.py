@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import offsets, read_only
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, runs, worded
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class RowLabel(NamedTuple):
-    """Where plants stand, as people count: from 1, ``(k,)`` each.
+    """Where plants stand, as people count from 1 or as the plot's file has it, ``(k,)`` each.
 
     Rows are numbered on from block to block: a row and a number in it are one plant.
     """
@@ -104,6 +104,17 @@ class PlantGrid:
     in_rows
         Whether plants stand in rows. If not, each is a row by itself here, and people count
         plants only.
+    line_called
+        ``(lines, 2)`` the number by which people know each line, and that in its block, where
+        these count by themselves; None: lines count from 1, with y.
+    plant_called
+        ``(n,)`` the number by which people know each plant of its line; None: plants count from
+        1, with x.
+    line_named, plant_named
+        ``(lines,)``, ``(n,)`` what the plot's file calls each line and each plant, where that is
+        more than their numbers; None: it is not. Several names of a line are lines of text.
+    block_named
+        ``(blocks,)`` the same of the blocks.
     """
 
     frame: Frame
@@ -129,6 +140,11 @@ class PlantGrid:
     aisle_m: NDArray[np.float64] | None = None
     half_canopy_m: float | None = None
     in_rows: bool = True
+    line_called: NDArray[np.int64] | None = None
+    plant_called: NDArray[np.int64] | None = None
+    line_named: NDArray[np.str_] | None = None
+    plant_named: NDArray[np.str_] | None = None
+    block_named: NDArray[np.str_] | None = None
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -174,6 +190,35 @@ class PlantGrid:
         """Row of each plant, ``(n,)``."""
         rows = np.arange(self.n_rows, dtype=np.int32)
         return read_only(np.repeat(rows, np.diff(self.row_start)))
+
+    @cached_property
+    def line_number(self) -> NDArray[np.int64]:
+        """Number of each line as people count or name them, ``(lines,)``."""
+        if self.line_called is not None:
+            return self.line_called[:, 0]
+        return read_only(np.arange(1, int(self.row_line.max()) + 2))
+
+    @property
+    def counts_on(self) -> bool:
+        """Return whether lines are counted on from block to block: named are they once each."""
+        called = self.line_called
+        return called is None or bool((called[:, 0] != called[:, 1]).any())
+
+    @property
+    def line_signs(self) -> list[str]:
+        """Return what stands at each line on maps: its number, and its name if that says more."""
+        numbers = [f"{number}" for number in self.line_number.tolist()]
+        if self.line_called is not None or self.line_named is None:
+            return numbers
+        own = zip(numbers, self.line_named.tolist(), strict=True)
+        return [
+            number if "\n" in name or not name else f"{number} · {name}" for number, name in own
+        ]
+
+    @property
+    def row_number(self) -> NDArray[np.int64]:
+        """Number of each row's line as people count or name them, ``(r,)``."""
+        return self.line_number[self.row_line]
 
     @cached_property
     def adjacent(self) -> Csr:
@@ -236,13 +281,16 @@ class PlantGrid:
 
 
 def row_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> RowLabel:
-    """Return line and number within the line, both from 1, of the given plants, or of all.
+    """Return line and number within the line of the given plants, or of all.
 
-    Numbers run on along a line that is cut into pieces. Both faces of a plant share a label.
+    As the plot's file names them, where it does by numbers; else both count from 1. Numbers run on
+    along a line that is cut into pieces. Both faces of a plant share a label.
     """
     chosen = np.arange(len(grid)) if plants is None else np.asarray(plants)
-    group_start = _line_faces(grid)[1][grid.row[chosen]]
-    return RowLabel(grid.row_line[grid.row[chosen]].astype(np.int64) + 1, chosen - group_start + 1)
+    line = grid.row_number[grid.row[chosen]]
+    if grid.plant_called is not None:
+        return RowLabel(line, grid.plant_called[chosen])
+    return RowLabel(line, chosen - _line_faces(grid)[grid.row[chosen]] + 1)
 
 
 def block_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.int64]:
@@ -254,8 +302,14 @@ def block_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> N
 
 
 def row_in_block(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.int64]:
-    """Return the row, counted from 1 in each block, of the given plants, or of all, ``(k,)``."""
+    """Return the row of the given plants, or of all, as its block counts by itself, ``(k,)``.
+
+    That is from 1, or as the plot's file names them.
+    """
     row = grid.row if plants is None else grid.row[plants]
+    if grid.line_called is not None:
+        called: NDArray[np.int64] = grid.line_called[grid.row_line[row], 1]
+        return called
     block = np.zeros(grid.n_rows, np.int64) if grid.block is None else grid.block
     first = np.full(grid.n_blocks, np.iinfo(np.int64).max)
     np.minimum.at(first, block, grid.row_line)
@@ -265,29 +319,27 @@ def row_in_block(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> 
 
 def plant_at(grid: PlantGrid, line: int, number: int) -> int:
     """Return the plant with that label (its first face); raise `PlotError` if there is none."""
-    first_of_line, _ = _line_faces(grid)
-    n_lines = len(first_of_line)
-    if not 1 <= line <= n_lines:
+    label = row_label(grid)
+    in_line = label.line == line
+    if not in_line.any():
         raise PlotError(
             worded(
-                "A row must be one of 1 to {last} on this plot, but it is {line}.",
-                last=n_lines,
+                "A row must be one of {some} on this plot, but it is {line}.",
+                some=runs(grid.line_number.tolist()),
                 line=line,
             )
         )
-    plant = int(first_of_line[line - 1]) + number - 1
-    last = int(row_label(grid).number[grid.row_line[grid.row] == line - 1].max())
-    if not 1 <= number <= last:
+    found = np.flatnonzero(in_line & (label.number == number))
+    if not len(found):
         raise PlotError(
             worded(
-                "A plant in row {line} must be one of 1 to {last} on this plot, but it is "
-                "{number}.",
+                "A plant in row {line} must be one of {some} on this plot, but it is {number}.",
                 line=line,
-                last=last,
+                some=runs(label.number[in_line].tolist()),
                 number=number,
             )
         )
-    return plant
+    return int(found[0])
 
 
 def before_rows(
@@ -324,9 +376,10 @@ def nearest_plants(
     return np.where(first_face, grid.twin[plant], plant), distance_m
 
 
-def _line_faces(grid: PlantGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the first plant of each line, and for each row that of its line and face."""
+def _line_faces(grid: PlantGrid) -> NDArray[np.int64]:
+    """Return for each row the first plant of its line and face."""
     first = grid.row_start[:-1]
     new_line = np.diff(grid.row_line, prepend=-1) != 0
     new_face = new_line | (np.diff(grid.side, prepend=0) != 0)
-    return first[new_line], first[new_face][np.cumsum(new_face) - 1]
+    of_row: NDArray[np.int64] = first[new_face][np.cumsum(new_face) - 1]
+    return of_row

@@ -160,7 +160,7 @@ def grid_from_plants(
     check_apart(lonlat)
     if said is None:
         bearing = planting is not None and planting.row_bearing_deg is not None
-        names = PlantNames() if field is None else PlantNames(field.plant_rows, field.plant_blocks)
+        names = PlantNames() if field is None else PlantNames.of(field)
         said = said_rows(lonlat, names, field, bearing=bearing)
     if planting is None or planting.row_bearing_deg is None:
         planting = found_planting(lonlat, planting)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -18,14 +18,16 @@ if TYPE_CHECKING:
 
     Lists = tuple[NDArray[np.int32], NDArray[np.int32]]
 
+_T = TypeVar("_T", bound=np.generic)
+
 
 def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
     """Return a grid without the plants marked ``(n,)``, in the same order.
 
     A gap does not cut a row, and lanes and headlands stay where they are: nobody drives through a
     row because plants died in it. Plants beside a gap lose that neighbour. A row of which no plant
-    is left goes, and lines are counted anew where a whole line goes. Where both faces of a plant
-    are inspected, both go. Raise `PlotError` if none is left.
+    is left goes, and lines that are counted from 1 are so anew where a whole line goes. Where
+    both faces of a plant are inspected, both go. Raise `PlotError` if none is left.
     """
     if len(missing) != len(grid):
         raise PlotError(
@@ -49,6 +51,7 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
     new = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)
     n_plants = np.add.reduceat(kept.astype(np.int64), grid.row_start[:-1])
     rows = np.flatnonzero(n_plants)
+    lines = np.unique(grid.row_line[rows])
     twin = grid.twin[kept]
     along = _among(grid.along_start, grid.along_plant, new)
     across = _among(grid.across_start, grid.across_plant, new)
@@ -67,9 +70,21 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
         across_plant=across[1],
         twin=np.where(twin >= 0, new[twin], -1).astype(np.int32),
         block=None if grid.block is None else _counted(grid.block[rows]),
-        place_m=None if grid.place_m is None else grid.place_m[kept],
-        aisle=None if grid.aisle is None else grid.aisle[rows],
+        aisle=_picked(grid.aisle, rows),
+        place_m=_picked(grid.place_m, kept),
+        block_named=_picked(
+            grid.block_named, np.arange(1) if grid.block is None else np.unique(grid.block[rows])
+        ),
+        line_called=_picked(grid.line_called, lines),
+        line_named=_picked(grid.line_named, lines),
+        plant_called=_picked(grid.plant_called, kept),
+        plant_named=_picked(grid.plant_named, kept),
     )
+
+
+def _picked(values: NDArray[_T] | None, which: NDArray[Any]) -> NDArray[_T] | None:
+    """Return some of the values of a grid that may have none."""
+    return None if values is None else values[which]
 
 
 def _counted(numbers: NDArray[np.int32]) -> NDArray[np.int32]:

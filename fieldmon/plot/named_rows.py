@@ -1,14 +1,16 @@
-"""Rows that a person names, as 3-5,8, and the plants in them."""
+"""Rows and plants by what a person calls them: numbers, or names of the plot's file."""
 
 from __future__ import annotations
 
+import re
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import runs, worded
 from fieldmon.errors import SettingError
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import block_label, row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,32 +19,131 @@ if TYPE_CHECKING:
 
 
 def plants_in_rows(grid: PlantGrid, rows: str) -> NDArray[np.bool_]:
-    """Return which plants ``(n,)`` stand in rows as people count them.
+    """Return which plants ``(n,)`` stand in rows as people count or name them.
 
     Raises
     ------
     SettingError
         If they are not so written, or the plot has no such row.
     """
-    there, wanted = set((grid.row_line + 1).tolist()), set[int]()
+    called, wanted = CalledRows(grid), set[int]()
     for part in rows.split(","):
-        first, dash, last = part.strip().partition("-")
-        if not first.strip().isdecimal() or (dash and not last.strip().isdecimal()):
-            raise SettingError(
-                worded("Rows must be such as 3-5,8, but they are {rows}.", rows=rows)
-            )
-        ends = sorted({int(first), int(last if dash else first)})
-        # of a range that ends beyond the plot only what matters is counted out
-        within = range(max(ends[0], min(there)), min(ends[-1], max(there)) + 1)
-        if missing := [row for row in (*ends, *within) if row not in there]:
-            raise SettingError(
-                worded(
-                    "Rows of this plot are {first} to {last}, but row {row} is named.",
-                    first=min(there),
-                    last=max(there),
-                    row=missing[0],
-                )
-            )
-        wanted.update(within)
+        low, high = _ends(called, part.strip(), rows)
+        wanted.update(row for row in called.numbers if low <= row <= high)
     plants: NDArray[np.bool_] = np.isin(row_label(grid).line, sorted(wanted))
     return plants
+
+
+def _ends(called: CalledRows, part: str, rows: str) -> list[int]:
+    """Return the numbers of the first and the last row of a part such as 3-5 or 8."""
+    if (row := called.number(part)) is not None:
+        return [row, row]
+    # a name may have a dash in it
+    cuts = [(part[: m.start()], part[m.end() :]) for m in re.finditer(r"\s*-\s*", part)]
+    for cut in cuts:
+        first, last = map(called.number, cut)
+        if first is not None and last is not None:
+            return sorted((first, last))
+    for named in (*cuts, (part,)):
+        if all(one.isdecimal() for one in named):
+            raise SettingError(
+                worded(
+                    "Rows of this plot are {some}, but row {row} is named.",
+                    some=runs(called.numbers),
+                    row=next(int(one) for one in named if called.number(one) is None),
+                )
+            )
+    raise SettingError(worded("Rows must be such as 3-5,8, but they are {rows}.", rows=rows))
+
+
+class CalledRows:
+    """The rows of a plot by what a person calls them."""
+
+    def __init__(self, grid: PlantGrid) -> None:
+        self.numbers = grid.line_number.tolist()
+        self._known = set(self.numbers)
+        self._counts_on = grid.n_blocks > 1 and grid.counts_on
+        self._named: dict[str, list[tuple[int, int]]] = defaultdict(list)
+        if grid.line_named is not None:
+            first = grid.row_start[np.unique(grid.row_line, return_index=True)[1]]
+            block = block_label(grid, first).tolist()
+            columns = grid.line_named.tolist(), self.numbers, block
+            for names, number, of in zip(*columns, strict=True):
+                for name in names.splitlines():
+                    self._named[key(name)].append((number, of))
+
+    def meant(self, said: str, block: int | None = None) -> set[int]:
+        """Return the numbers of the rows that may be meant, perhaps those of a block.
+
+        Not where blocks count by themselves and a number may be the block's own.
+        """
+        meant = {n for n, of in self._named.get(key(said), ()) if block in {None, of}}
+        is_own = block is not None and self._counts_on
+        if not is_own and said.strip().isdecimal() and int(said) in self._known:
+            meant.add(int(said))
+        return meant
+
+    def number(self, said: str) -> int | None:
+        """Return the number of the row that is meant; None: there is none.
+
+        Raise `SettingError` where several may be meant.
+        """
+        meant = self.meant(said)
+        if len(meant) > 1:
+            raise SettingError(
+                worded(
+                    "A row must be one, but {name} may be any of rows {some} here, by their "
+                    "numbers or by their names in the file of plants.",
+                    name=said,
+                    some=runs(meant),
+                )
+            )
+        return next(iter(meant), None)
+
+
+class CalledPlants:
+    """The plants of a plot by what a person calls them."""
+
+    def __init__(self, grid: PlantGrid) -> None:
+        vines = np.unique(grid.vine)
+        label, names = row_label(grid, vines), grid.plant_named
+        self._known = set(zip(label.line.tolist(), label.number.tolist(), strict=True))
+        self._in_row: dict[tuple[int, str], set[int]] = defaultdict(set)
+        self._alone: dict[str, set[int]] = defaultdict(set)
+        if names is None and grid.plant_called is None:
+            return
+        called = label.number.astype(np.str_) if names is None else names[vines]
+        columns = (called.tolist(), label.line.tolist(), label.number.tolist(), vines.tolist())
+        for name, line, number, plant in zip(*columns, strict=True):
+            self._in_row[line, key(name)].add(number)
+            self._alone[key(name)].add(plant)
+
+    def number(self, line: int, said: str) -> int | None:
+        """Return the number in its row of the plant that is meant; None: none, or several."""
+        meant = self._in_row.get((line, key(said)), set())
+        if said.strip().isdecimal() and (line, int(said)) in self._known:
+            meant = meant | {int(said)}
+        return next(iter(meant)) if len(meant) == 1 else None
+
+    def plant(self, said: str) -> int | None:
+        """Return the plant whose name nobody else on the plot has; None: there is none."""
+        meant = self._alone.get(key(said), set())
+        return next(iter(meant)) if len(meant) == 1 else None
+
+
+def called_blocks(grid: PlantGrid) -> dict[str, int]:
+    """Return the number of each block by the `key` of what a person calls it.
+
+    Not by the number of one that is the name of another.
+    """
+    called = {f"{k}": {k} for k in range(1, grid.n_blocks + 1)}
+    for k, names in enumerate([] if grid.block_named is None else grid.block_named.tolist(), 1):
+        for name in names.splitlines():
+            called.setdefault(key(name), set()).add(k)
+    return {name: next(iter(meant)) for name, meant in called.items() if len(meant) == 1}
+
+
+def key(name: str) -> str:
+    """Return a name without capitals, without zeros before and a point behind whole numbers."""
+    bare = re.sub(r"(?<![\d.])(\d+)\.0+$", r"\1", name.strip().casefold())
+    return re.sub(r"0*(\d+)", r"\1", bare)

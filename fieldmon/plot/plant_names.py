@@ -1,19 +1,210 @@
-"""What people call the row and the block of each plant."""
+"""What people call each plant, its row and its block, and the numbers that follow from it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+import numpy as np
+
+from fieldmon.compute.wording import first_few, worded
+from fieldmon.plot.grid import block_label, row_in_block, row_label
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
+
+    from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
+
+    Int = NDArray[np.int64]
+
+# names in a sentence
+_NAMED = 12
+# a whole number at the end of a name: 7, 07, 7.0, ROW07, ROW01VINE07; not 2.07
+_NUMBER = re.compile(r"^(?!-?\d+[.,]\d*[1-9]\d*$)(?:.*\D)??0*(\d{1,6})(?:\.0+)?$")
 
 
 class PlantNames(NamedTuple):
-    """The names ``(n,)`` of the row and of the block of each measured plant; None: not known."""
+    """The names ``(n,)`` of row, block and plant of each measured plant, empty where it has none.
+
+    None: no plant has one.
+    """
 
     row: NDArray[np.str_] | None = None
     block: NDArray[np.str_] | None = None
+    plant: NDArray[np.str_] | None = None
 
     def __repr__(self) -> str:
         return f"<PlantNames: {0 if self.row is None else len(self.row)} plants>"
+
+    @classmethod
+    def of(cls, field: Field) -> Self:
+        """Return what a field's measured plants are called."""
+        return cls(field.plant_rows, field.plant_blocks, field.plant_names)
+
+    def on(self, field: Field) -> Field:
+        """Return a field whose measured plants are called so."""
+        return replace(field, plant_rows=self.row, plant_blocks=self.block, plant_names=self.plant)
+
+
+def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) -> PlantGrid:
+    """Return a grid of plants measured at ``(n, 2)`` with their names, and the numbers in these.
+
+    A number is one at the end of a name. Rows keep theirs if these tell all rows apart, or those
+    of each block, and then count on from block to block; plants, if theirs tell all plants of each
+    row apart. Else they count from 1. Names that are just their numbers are not kept.
+    """
+    if not grid.in_rows or all(one is None for one in names):
+        return grid
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
+    of = cKDTree(grid.frame.xy_m(lonlat)).query(grid.xy_m)[1]
+    if names.block is not None and grid.n_blocks > 1:
+        blocks = block_label(grid)
+        own = _lines_named(blocks - 1, names.block[of])
+        numbers = np.arange(1, grid.n_blocks + 1)
+        grid = replace(grid, block_named=_beyond_numbers(own, numbers))
+    if names.row is not None:
+        line, rows = grid.row_line[grid.row], names.row[of]
+        own = _lines_named(line, rows)
+        grid = replace(grid, line_called=_lines_called(grid, own))
+        in_block = row_in_block(grid, np.unique(line, return_index=True)[1])
+        grid = replace(grid, line_named=_beyond_numbers(own, in_block))
+    if names.plant is not None:
+        plants = _numbers(names.plant)[of]
+        grid = replace(grid, plant_called=plants if _tells_apart(grid, plants) else None)
+        number = row_label(grid).number
+        grid = replace(grid, plant_named=_beyond_numbers(names.plant[of], number))
+    return grid
+
+
+def _beyond_numbers(names: NDArray[np.str_], numbers: Int) -> NDArray[np.str_] | None:
+    """Return names ``(k,)`` if one of them says more than its number; else None."""
+    plain = np.char.isdecimal(names) & (_numbers(names) == numbers)
+    return None if plain.all() else names
+
+
+def _numbers(names: NDArray[np.str_]) -> Int:
+    """Return the number at the end of each name ``(n,)``; -1 where there is none."""
+    known, which = np.unique(names, return_inverse=True)
+    found = (_NUMBER.match(name.strip()) for name in known.tolist())
+    return np.array([int(one[1]) if one else -1 for one in found], np.int64)[which]
+
+
+def _lines_called(grid: PlantGrid, names: NDArray[np.str_]) -> Int | None:
+    """Return the number of each line, and that in its block, from its names ``(lines,)``."""
+    own = [set(_numbers(np.array(name.splitlines() or [""])).tolist()) for name in names.tolist()]
+    if any(len(one) > 1 or -1 in one for one in own):
+        return None
+    called = np.array([one.pop() for one in own], np.int64)
+    first = np.unique(grid.row_line[grid.row], return_index=True)[1]
+    if len(np.unique(called)) == len(called):
+        return np.stack([called, called], axis=1)
+    if (called < 1).any():  # counted on, a row 0 would have the number of one before
+        return None
+    block = np.zeros(len(called), np.int64) if grid.block is None else grid.block[grid.row[first]]
+    on = called.copy()
+    for k in range(int(block[-1]) + 1):
+        mine = block == k
+        if len(np.unique(called[mine])) < np.count_nonzero(mine):
+            return None
+        on[mine] += on[block < k].max(initial=0)
+    return np.stack([on, called], axis=1)
+
+
+def _lines_named(line: NDArray[np.integer], rows: NDArray[np.str_]) -> NDArray[np.str_]:
+    """Return the name of each line, or its names as lines of text, from those of its plants.
+
+    Plants without a name say nothing.
+    """
+    names, which = np.unique(rows, return_inverse=True)
+    own: list[list[str]] = [[] for _ in range(int(line.max()) + 1)]
+    for at, name in np.unique(np.stack([line, which], axis=1), axis=0).tolist():
+        own[at] += [str(names[name])] if names[name] else []
+    return np.array(["\n".join(one) for one in own], np.str_)
+
+
+def _tells_apart(grid: PlantGrid, plants: Int) -> bool:
+    """Tell whether numbers ``(n,)`` tell the plants of each line apart."""
+    keys = np.stack([grid.row_line[grid.row], plants], axis=1)
+    vines = np.unique(grid.vine)
+    return bool((plants >= 0).all()) and len(np.unique(keys[vines], axis=0)) == len(vines)
+
+
+def said_of_numbers(grid: PlantGrid) -> list[str]:
+    """Return which numbers rows and plants have whose names are no numbers; of many the first."""
+    said: list[str] = []
+    if grid.block_named is not None:
+        some = [
+            worded("{name} is block {number}", name=first_few(name.splitlines(), 3), number=k)
+            for k, name in enumerate(grid.block_named.tolist(), start=1)
+        ]
+        said.append(worded("Blocks count from 1: {some}.", some=first_few(some, _NAMED)))
+    if grid.line_called is not None and grid.counts_on:
+        first = np.unique(grid.row_line, return_index=True)[1]
+        block = block_label(grid, grid.row_start[first])
+        both = zip(*grid.line_called.T.tolist(), block.tolist(), strict=True)
+        some = [
+            worded("row {row} of block {block} is row {number}", row=row, block=k, number=n)
+            for n, row, k in both
+            if n != row
+        ]
+        said.append(
+            worded(
+                "Rows of several blocks have the same names and are counted on: {some}.",
+                some=first_few(some, _NAMED),
+            )
+        )
+    elif grid.line_named is not None:
+        own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+        some = [
+            worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
+            for name, n in own
+            if name
+        ]
+        said.append(
+            worded("Rows have the numbers in their names: {some}.", some=first_few(some, 2))
+            if grid.line_called is not None
+            else worded(
+                "Rows count from 1, since no numbers in their names tell them apart: {some}.",
+                some=first_few(some, _NAMED),
+            )
+        )
+    if grid.plant_named is not None:
+        label = row_label(grid)
+        some = [
+            worded("{name} is plant {number} of row {row}", name=name, number=n, row=row)
+            for name, n, row in zip(
+                grid.plant_named[:2].tolist(), label.number[:2], label.line[:2], strict=True
+            )
+        ]
+        said.append(
+            worded("Plants count from 1 in each row: {some}.", some=", ".join(some))
+            if grid.plant_called is None
+            else worded("Plants have the numbers in their names: {some}.", some=", ".join(some))
+        )
+    return said
+
+
+def doubts_of_numbers(grid: PlantGrid) -> list[str]:
+    """Return what is to be said of rows whose names are numbers of other rows."""
+    if grid.line_named is None or grid.line_called is not None:
+        return []
+    own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+    here = set(grid.line_number.tolist())
+    both = [
+        name
+        for names, n in own
+        for name in names.splitlines()
+        if name.isdecimal() and int(name) != n and int(name) in here
+    ]
+    if not both:
+        return []
+    return [
+        worded(
+            "Rows are called {some} in the file, which are numbers of other rows here: such a row "
+            "is refused wherever rows are written. Number them from 1 in the file.",
+            some=first_few(list(dict.fromkeys(both)), _NAMED),
+        )
+    ]

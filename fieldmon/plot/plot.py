@@ -18,7 +18,7 @@ from fieldmon.plot.layout import check_apart, grid_from_plants, lay, planting_in
 from fieldmon.plot.line_layout import lay_along
 from fieldmon.plot.measured_rows import said_rows
 from fieldmon.plot.missing_plants import without
-from fieldmon.plot.plant_names import PlantNames
+from fieldmon.plot.plant_names import PlantNames, numbered
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
 from fieldmon.plot.row_lines import Ground
@@ -71,7 +71,7 @@ def _in_rows(
     bearing = planting.row_bearing_deg is not None
     said = said_rows(plants, names, field, bearing=bearing).checked(plants)
     grid = grid_from_plants(plants, planting_in(rows, planting), field, said)
-    return grid, row_report(grid, rows, said)
+    return numbered(grid, plants, names), row_report(grid, rows, said)
 
 
 @checked
@@ -150,7 +150,7 @@ class Plot:
         if not field.in_rows:
             return cls.of_trees(field)
         if field.plants is not None:
-            names = PlantNames(field.plant_rows, field.plant_blocks)
+            names = PlantNames.of(field)
             grid, rows = _in_rows(field.plants, names, field, planting)
             return replace(cls._with(field, grid), rows=rows)
         return cls._with(field, lay(field, planting or planting_of(field)))
@@ -177,7 +177,7 @@ class Plot:
         gate
             ``(lon, lat)`` where days start and end; None: the nearest row end.
         names
-            Of the row and the block of each plant, where these are known.
+            Of each plant, its row and its block, where these are known.
 
         Raises
         ------
@@ -187,8 +187,7 @@ class Plot:
         names, plants = names or PlantNames(), lonlat_of("Plants", plants)
         grid, rows = _in_rows(plants, names, None, planting)
         boundary = grid.frame.geometry_lonlat(grid.drivable_m)
-        row, block = names
-        field = Field(name, boundary, gate=gate, plants=plants, plant_rows=row, plant_blocks=block)
+        field = names.on(Field(name, boundary, gate=gate, plants=plants))
         return replace(cls._with(field, grid), rows=rows)
 
     @classmethod

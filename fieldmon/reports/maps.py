@@ -351,8 +351,10 @@ def _row_numbers(grid: PlantGrid, placed: _ToPaper) -> list[Part]:
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * gap_mm >= 3.2)
     before_m = before_rows(grid, first, 0.5 * grid.plant_spacing_m + 2.4 / placed.scale)
     return [
-        Lettering(x, y, f"{line + 1}", 6.0, colours.SOFT, "middle")
-        for line, (x, y) in zip(lines.tolist(), placed(before_m).tolist(), strict=True)
+        Lettering(x, y, sign, 6.0, colours.SOFT, "middle")
+        for line, sign, (x, y) in zip(
+            lines.tolist(), grid.line_signs, placed(before_m).tolist(), strict=True
+        )
         if line == 0 or (line + 1) % every == 0
     ]
 

@@ -201,7 +201,7 @@ def _figures(facts: _Facts) -> KeyFigures:
 
 def _rows_seen(facts: _Facts) -> Iterator[str]:
     """Yield which rows nobody was in, ever or for a week."""
-    line = facts.season.plot.grid.row_line + 1
+    line = facts.season.plot.grid.row_number
     lines = np.unique(line)
     days = np.array([_least(facts.status.days_since[line == one]) for one in lines.tolist()])
     never, late = lines[np.isinf(days)], lines[np.isfinite(days) & (days >= _LATE_DAYS)]

@@ -3,11 +3,13 @@
 import shutil
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fieldmon.errors import AccessError, SettingError
 from fieldmon.monitoring import Season, scouts
 from fieldmon.planning.members import team_of
+from tests.monitoring.seasons import a_plot, a_season
 
 
 @pytest.fixture
@@ -121,3 +123,15 @@ def test_a_name_of_the_team_is_written_as_there_and_any_other_needs_rows(season)
     assert [one.name for one in scouts.scouts_of(season)] == ["robot-1", "Anna"]
     with pytest.raises(SettingError, match="robot-2 is of it: the team's plan"):
         scouts.let_in(season, "robot-2", (3, 4))
+
+
+def test_parts_are_of_the_rows_that_the_file_of_plants_names(tmp_path):
+    plot = a_plot()
+    called = 101 + 2 * np.arange(len(plot.grid.line_number))
+    grid = replace(plot.grid, line_called=np.stack([called, called], axis=1))
+    plot = replace(plot, aisles=replace(plot.aisles, grid=grid))
+    season, last = a_season(tmp_path / "own.gpkg", plot), int(called[-1])
+    assert scouts.who(season, scouts.let_in(season, "Ann", (103, 105))).rows == (103, 105)
+    assert scouts.who(season, scouts.let_in(season, "Ann", (101, last))).rows is None
+    with pytest.raises(SettingError, match=f"rows from 101 to {last} on this plot"):
+        scouts.let_in(season, "Ann", (1, 3))

@@ -102,16 +102,22 @@ def test_a_plot_comes_back_with_its_blocks_and_the_names_of_its_rows(db):
     assert sum(kind == "block" for (kind,) in kinds) == 2
 
 
-def test_measured_plants_come_back_with_the_names_of_their_rows_and_blocks(db):
+def test_measured_plants_come_back_with_their_names_and_those_of_their_rows_and_blocks(db):
     grid = Plot.of(replace(full_field(), plants=None)).grid
-    names = (grid.row_line[grid.row] + 1).astype(np.str_)
+    line = grid.row_line[grid.row]
+    names = (line.max() + 7 - line).astype(np.str_)
     field = replace(
         full_field(),
         plants=grid.lonlat(),
         plant_rows=names,
         plant_blocks=np.full(len(grid), "home"),
+        plant_names=np.array([f"vine {k + 1}" for k in range(len(grid))]),
     )
     check_comes_back(db, Plot.of(field))
+    for table in ("rows", "plants"):
+        lines = db.execute(f"SELECT line FROM {table} ORDER BY fid").fetchall()  # noqa: S608
+        assert lines[0] == (line.max() + 7,)
+    assert db.execute("SELECT number FROM plants ORDER BY fid").fetchall()[-1] == (len(grid),)
 
 
 def check_comes_back(db, plot):

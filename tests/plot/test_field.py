@@ -110,7 +110,8 @@ def test_what_was_added_later_is_told_only_where_it_is_said():
     field = Field("a", MultiPolygon([box(35.15, 30.36, 35.151, 30.361)]))
     rows = np.array(["1", "2"])
     assert len(replace(field, plant_rows=rows).content) == len(field.content) + 1
-    assert replace(field, plant_rows=rows).content[-1] is rows
+    for name in ("plant_rows", "plant_blocks", "plant_names"):
+        assert replace(field, **{name: rows}).content[-1] is rows
     assert set(map(type, field.content)) <= {type(value) for value in vars(field).values()}
 
 

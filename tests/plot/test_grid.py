@@ -75,7 +75,7 @@ def test_numbers_count_on_behind_a_hole_and_faces_share_their_label():
 
 @pytest.mark.parametrize(
     ("line", "number", "sentence"),
-    [(0, 1, "1 to 3"), (4, 1, "1 to 3"), (2, 0, "1 to 5"), (2, 6, "1 to 5"), (3, 6, "1 to 5")],
+    [(0, 1, "1–3"), (4, 1, "1–3"), (2, 0, "1–5"), (2, 6, "1–5"), (3, 6, "1–5")],
 )
 def test_labels_that_are_none_are_refused(line, number, sentence):
     with pytest.raises(PlotError, match=sentence):

@@ -1,9 +1,13 @@
 """Rows that a person names hold the plants that people count in them."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.layout import rectangle
 from fieldmon.plot.named_rows import plants_in_rows
 from tests.app.chosen import a_plot
 
@@ -21,6 +25,17 @@ def test_all_plants_of_the_rows_are_meant_and_no_others(grid, said, rows):
     assert plants_in_rows(grid, said).tolist() == [one in rows for one in line.tolist()]
 
 
+def test_rows_are_named_as_in_the_file_of_their_plants(grid):
+    called = 101 + 2 * np.arange(len(grid.line_number))[::-1]
+    named = replace(grid, line_called=np.stack([called, called], axis=1))
+    assert (
+        plants_in_rows(named, "101-103").tolist()
+        == plants_in_rows(grid, f"{grid.n_rows - 1}-{grid.n_rows}").tolist()
+    )
+    with pytest.raises(SettingError, match="but row 102 is named"):
+        plants_in_rows(named, "101-102")
+
+
 @pytest.mark.parametrize(
     ("said", "says"),
     [("a", "must be such as 3-5,8, but they are a"), ("3-", "such as"), ("", "such as"),
@@ -29,3 +44,25 @@ def test_all_plants_of_the_rows_are_meant_and_no_others(grid, said, rows):
 def test_what_is_no_row_of_the_plot_is_said(grid, said, says):
     with pytest.raises(SettingError, match=says):
         plants_in_rows(grid, said)
+
+
+ROWS = np.array(["Pinot-1", "Pinot-2", "Merlot", "B", "ROW05"])
+
+
+@pytest.mark.parametrize(
+    ("said", "rows"),
+    [("Pinot-2", {2}), ("pinot-01,b", {1, 4}), ("Pinot-1 - Merlot", {1, 2, 3}), ("row5-Pinot-2",
+     {2, 3, 4, 5}), ("Pinot-1-Pinot-2", {1, 2}), ("2-B", {2, 3, 4}), ("3", {3})],
+)  # fmt: skip
+def test_rows_are_named_as_their_file_has_them(said, rows):
+    grid = replace(rectangle(5, 4), line_named=ROWS)
+    assert set(row_label(grid).line[plants_in_rows(grid, said)].tolist()) == rows
+
+
+def test_a_name_that_is_another_rows_number_is_refused():
+    grid = replace(rectangle(5, 4), line_named=np.arange(5).astype(np.str_))
+    assert plants_in_rows(grid, "0").tolist() == plants_in_rows(rectangle(5, 4), "1").tolist()
+    with pytest.raises(SettingError, match="but 3 may be any of rows 3–4 here"):
+        plants_in_rows(grid, "3")
+    with pytest.raises(SettingError, match="such as 3-5,8, but they are Malbec"):
+        plants_in_rows(replace(grid, line_named=ROWS), "Malbec")

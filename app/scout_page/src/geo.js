@@ -47,6 +47,14 @@ export function pieceOf(plot, plant) {
 
 export const rowOf = (plot, plant) => plot.row[pieceOf(plot, plant)];
 
+const lines = new WeakMap();
+/** The line of each piece of a row, in their order on the ground: what rows are called says nothing of it. */
+export function linesOf(plot) {
+  let line = 0;
+  if (!lines.has(plot)) lines.set(plot, plot.row.map((row, k) => (k && row !== plot.row[k - 1] ? ++line : line)));
+  return lines.get(plot);
+}
+
 /** The plant with a row and a number as people count, or -1. */
 export function plantAt(plot, row, number) {
   for (let k = 0; k < plot.row.length; k++) {
@@ -77,13 +85,13 @@ export function offered(plot, position) {
 
 /** The plants next to one: in its row, and across in the rows on both sides. */
 export function neighbours(plot, plant) {
-  const piece = pieceOf(plot, plant), found = [];
+  const piece = pieceOf(plot, plant), line = linesOf(plot), found = [];
   if (plant > plot.start[piece]) found.push(plant - 1);
   if (plant + 1 < plot.start[piece + 1]) found.push(plant + 1);
   for (const side of [-1, 1]) {
     let best = 1.5 * plot.rowSpacing, across = -1;
     for (let k = 0; k < plot.row.length; k++) {
-      if (plot.row[k] !== plot.row[piece] + side) continue;
+      if (line[k] !== line[piece] + side) continue;
       for (let i = plot.start[k]; i < plot.start[k + 1]; i++) {
         const d = apart(plot, plant, i);
         if (d < best) { best = d; across = i; }

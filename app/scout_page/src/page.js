@@ -359,7 +359,7 @@ export class Page {
   }
 
   #other() {
-    const field = (name) => h("input", { type: "number", inputmode: "numeric", min: "1", id: `other_${name}`, required: true });
+    const field = (name) => h("input", { type: "number", inputmode: "numeric", min: "0", id: `other_${name}`, required: true });
     const row = field("row"), plant = field("plant");
     this.#ask(say("other_plant"), h("div", { class: "pair" }, h("label", {}, say("row"), row), h("label", {}, say("plant"), plant)), () => {
       const found = plantAt(this.field.plot, Number(row.value), Number(plant.value));

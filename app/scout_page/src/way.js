@@ -1,6 +1,6 @@
 // The way between plants as it is gone: along aisles and round the ends of rows, never through a row.
 
-import { apart, pieceOf } from "./geo.js";
+import { apart, linesOf, pieceOf } from "./geo.js";
 
 const sides = new WeakMap(), said = new WeakMap();
 
@@ -42,12 +42,12 @@ export function around(plot, a, b) {
 /** Past the ends of two rows, and of those on the way between that reach farther out. */
 function headland(plot, [one, other], last) {
   const out = outward(plot, one, last), begin = beyond(plot, one, out), end = beyond(plot, other, out);
-  const rows = [one, other].map((plant) => plot.row[pieceOf(plot, plant)]), low = Math.min(...rows), high = Math.max(...rows);
+  const line = linesOf(plot), rows = [one, other].map((plant) => line[pieceOf(plot, plant)]), low = Math.min(...rows), high = Math.max(...rows);
   const dot = (p, q) => p[0] * q[0] + p[1] * q[1], square = [-out[1], out[0]];
   const across = [end[0] - begin[0], end[1] - begin[1]];
   const between = [];
   for (let k = 0; k < plot.row.length; k++) {
-    if (plot.row[k] < low || plot.row[k] > high) continue;
+    if (line[k] < low || line[k] > high) continue;
     const plant = last ? plot.start[k + 1] - 1 : plot.start[k], by = plot.rowSpacing / 2;
     const at = [plot.x[plant] + out[0] * by, plot.y[plant] + out[1] * by], gone = [at[0] - begin[0], at[1] - begin[1]];
     const share = dot(gone, square) / dot(across, square), more = dot(gone, out) - share * dot(across, out);

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { apart, metres, metresPerDegree, nearest, neighbours, offered, pieceOf, plantAt, rowOf, walkSeconds } from "../src/geo.js";
-import { laid } from "./scene.mjs";
+import { apart, laidOut, metres, metresPerDegree, nearest, neighbours, offered, pieceOf, plantAt, rowOf, walkSeconds } from "../src/geo.js";
+import { aPlot, laid } from "./scene.mjs";
 
 const plot = laid(), robot = { speed_m_s: 1, row_change_s: 3 };
 
@@ -24,6 +24,12 @@ test("a plant is known by its row and number, and has them", () => {
 test("neighbours stand in the row and across", () => {
   assert.deepEqual(neighbours(plot, 7).sort((a, b) => a - b), [2, 6, 8, 12]);
   assert.deepEqual(neighbours(plot, 0).sort((a, b) => a - b), [1, 5]);
+});
+
+test("rows called by other numbers have the same neighbours", () => {
+  const document = aPlot(), named = laidOut({ ...document, rows: { ...document.rows, row: [30, 12, 7] } }, "p2");
+  for (let plant = 0; plant < 15; plant++) assert.deepEqual(neighbours(named, plant), neighbours(plot, plant));
+  assert.equal(plantAt(named, 12, 3), 7);
 });
 
 test("a position offers a plant only within its accuracy", () => {

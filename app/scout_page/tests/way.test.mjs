@@ -46,6 +46,11 @@ test("a way between any two plants begins and ends beside them and goes through 
   }
 });
 
+test("a way is the same whatever its rows are called", () => {
+  const one = plotOf([5, 9, 3, 12, 4, 6]), named = { ...one, row: Int32Array.from([5, 6, 1, 2, 3, 9]) };
+  for (let a = 0; a < one.x.length; a++) assert.deepEqual(around(named, 0, a), around(one, 0, a));
+});
+
 test("rows that share an aisle are both reached from it", () => {
   const line = around(plot, 0, 9);
   assert.ok(line.every(([, y]) => Math.abs(y - (plot.y[0] + plot.y[5]) / 2) < 0.01), "it stays in the middle of the aisle");

@@ -63,8 +63,8 @@ def rows(grid: PlantGrid) -> list[Label]:
     ends_m = [plant_m + times * (lane_m - plant_m) for times in (2.0, 3.0)]
     places = [np.round(grid.frame.lonlat(one), 7).tolist() for one in ends_m]
     return [
-        {"p": place, "away": away, "t": f"{number + 1}", "k": "row", "row": number + 1}
-        for number, place, away in zip(line.tolist(), *places, strict=True)
+        {"p": place, "away": away, "t": sign, "k": "row", "row": at + 1}
+        for at, sign, place, away in zip(line.tolist(), grid.line_signs, *places, strict=True)
     ]
 
 

@@ -3,7 +3,8 @@
 Decisions
 ---------
 - A plant is known by its number in the grid, as every file given out has it (column ``plant``);
-  else by row and number in it, as people count; else by position. Where a file has a row but no
+  else by row and number in it, as people count, or by their names in the plot's file; else by
+  position. Where a file has a row but no
   number in it, ``plant`` is read as that number.
 - Where a plot has several blocks and a file names them, rows may be counted from 1 in each. How
   they were counted is said.
@@ -14,15 +15,17 @@ Decisions
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import runs, worded
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.grid import block_label, row_in_block, row_label
+from fieldmon.plot.named_rows import CalledPlants, CalledRows, called_blocks, key
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -116,10 +119,65 @@ def _is_near(lonlat: NDArray[np.float64], grid: PlantGrid) -> NDArray[np.bool_]:
         return np.asarray((off < _FARTHEST_DEG).all(axis=1), dtype=bool)
 
 
+def by_name(
+    rows: InspectionRows, grid: PlantGrid
+) -> tuple[InspectionRows, dict[int, str], tuple[ImportMessage, ...]]:
+    """Return records with the numbers of plants that they call as the plot's file does.
+
+    And why some cannot be placed, and what else there is to say.
+    """
+    own = (grid.line_called, grid.line_named, grid.plant_called, grid.plant_named)
+    if rows.row_called is None or rows.plant_called is None or all(one is None for one in own):
+        return rows, {}, ()
+    called, plants, blocks = CalledRows(grid), CalledPlants(grid), called_blocks(grid)
+    plant, line, number = rows.plant.copy(), rows.line.copy(), rows.number.copy()
+    problems: dict[int, str] = {}
+    open_yet = ~np.isfinite(rows.lonlat.sum(axis=1))
+    alone = (line == 0) & open_yet
+    alone &= (rows.row_called == "") & (rows.plant_called != "")
+    for i in np.flatnonzero(alone).tolist():
+        found = plants.plant(str(rows.plant_called[i]))
+        alone[i] = found is not None
+        if found is not None:
+            plant[i] = found
+    label = row_label(grid, plant[alone])
+    line[alone], number[alone] = label.line, label.number
+    for i in np.flatnonzero((rows.row_called != "") & (rows.plant < 0)).tolist():
+        row, said = str(rows.row_called[i]), str(rows.plant_called[i])
+        of = str(rows.block[i]) if grid.n_blocks > 1 else ""
+        meant = called.meant(row, blocks.get(key(of), 0) if of else None)
+        if len(meant) > 1:
+            problems[i] = worded(
+                "{row} may be any of rows {some} here, by their numbers or by their names in the "
+                "file of plants",
+                row=row,
+                some=runs(meant),
+            )
+            continue
+        which = None
+        for one in meant:
+            which = plants.number(one, said)
+            if which is not None:
+                line[i], number[i] = one, which
+        if which is None and open_yet[i] and not (row.isdecimal() and said.isdecimal()):
+            problems[i] = worded("row {row} has no plant {plant} here", row=row, plant=said)
+    messages: tuple[ImportMessage, ...] = ()
+    if alone.any():
+        said_alone = worded(
+            "{n} {n:record names a plant|records name plants} alone: taken as the plot's file "
+            "calls {n:it|them}.",
+            n=int(alone.sum()),
+        )
+        messages = (guessed(said_alone),)
+    return replace(rows, plant=plant, line=line, number=number), problems, messages
+
+
 def by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> PlantsFound:
     """Place records that name a row and a number in it."""
     plant = np.full(len(rows), -1, np.int64)
-    records = np.flatnonzero(wanted & (rows.line > 0) & (rows.number > 0))
+    # both are 0 where none is named; a plot may have a row or a plant 0
+    is_named = (rows.line >= 0) & (rows.number >= 0) & (rows.line + rows.number > 0)
+    records = np.flatnonzero(wanted & is_named)
     if not len(records):
         return PlantsFound(plant, {}, {})
     first, said = _labelled(rows, grid, records)
@@ -174,39 +232,33 @@ def _labelled(
     known, line = _key(label.line, label.number), rows.line[records]
     first = _found(known, _key(line, rows.number[records]))
     named = np.flatnonzero((rows.block[records] != "") & (grid.n_blocks > 1))
-    said = _about_blocks(grid, len(records) - len(named), int(label.line.max()))
+    said = _about_blocks(grid, len(records) - len(named))
     if not len(named):
         return first, said
-    # the first and the last row of each block, as counted on
-    of_plant = block_label(grid) - 1
-    low = np.full(grid.n_blocks, np.iinfo(np.int64).max)
-    high = np.zeros(grid.n_blocks, np.int64)
-    np.minimum.at(low, of_plant, label.line)
-    np.maximum.at(high, of_plant, label.line)
-    numbers = {str(k + 1): k for k in range(grid.n_blocks)}
-    block = np.array([numbers.get(name, -1) for name in rows.block[records[named]]])
-    low, high, line = low[block], high[block], line[named]
-    on = (block >= 0) & (low <= line) & (line <= high)
-    within = (block >= 0) & (line <= high - low + 1)
-    first[named] = np.where(on, first[named], -1)
-    also = _found(known, _key(low + line - 1, rows.number[records[named]]))
-    also = np.where(within, also, -1)
+    of_plant, within = block_label(grid), row_in_block(grid)
+    numbers = called_blocks(grid)
+    block = np.array([numbers.get(key(name), 0) for name in rows.block[records[named]].tolist()])
+    first[named] = np.where(of_plant[first[named]] == block, first[named], -1)
+    # the row as its block counts, then as all are counted on
+    of_row = _found(_key(of_plant, within), _key(block, line[named]))
+    also = _found(known, _key(label.line[of_row], rows.number[records[named]]))
+    also = np.where(of_row >= 0, also, -1)
     if np.count_nonzero(also >= 0) > np.count_nonzero(first[named] >= 0):
         first[named] = also
         said = (*said, guessed(worded("Rows were taken as counted from 1 in each block.")))
     return first, said
 
 
-def _about_blocks(grid: PlantGrid, unnamed: int, last: int) -> tuple[ImportMessage, ...]:
+def _about_blocks(grid: PlantGrid, unnamed: int) -> tuple[ImportMessage, ...]:
     """Return what to say of records that name a row, but not which block's."""
-    if grid.n_blocks == 1 or not unnamed:
+    if grid.n_blocks == 1 or not unnamed or not grid.counts_on:
         return ()
     said = worded(
         "{n} {n:record names|records name} no block: {n:its row was|their rows were} taken as "
         "counted on from block to block, 1 "
         "to {last}. Where each block counts its rows from 1, give a column of blocks.",
         n=unnamed,
-        last=last,
+        last=int(grid.line_number.max()),
     )
     return (guessed(said),)
 

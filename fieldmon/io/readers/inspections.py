@@ -40,6 +40,7 @@ from fieldmon.io.read import read_inspection_rows
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspection_places import (
     by_label,
+    by_name,
     by_number,
     by_position,
     from_zero,
@@ -106,8 +107,9 @@ def look_up(
     rows: InspectionRows, grid: PlantGrid, options: InspectionOptions
 ) -> tuple[Inspections, tuple[ImportMessage, ...]]:
     """Return what a file says with its plants, and what was left out or guessed on the way."""
+    rows, misnamed, said_of_names = by_name(rows, grid)
     named = by_number(rows, grid)
-    plant, problems, doubts = named.plant, named.problems, named.doubts
+    plant, problems, doubts = named.plant, named.problems | misnamed, named.doubts
     labelled = by_label(rows, grid, plant < 0)
     plant = np.where(labelled.plant >= 0, labelled.plant, plant)
     problems |= labelled.problems
@@ -135,6 +137,7 @@ def look_up(
         ),
         *_about_order(rows, grid),
         *_about_numbers(rows, grid, named.plant, taken),
+        *said_of_names,
         *labelled.said,
         *_about_faces(rows, grid, plant, taken),
         *_about_accuracy(rows, options, open_yet & taken),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -16,7 +17,7 @@ from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.parse.values import is_missing
-from fieldmon.plot.grid import block_label, row_in_block, row_label
+from fieldmon.plot.grid import block_label, nearest_plants, row_in_block, row_label
 from fieldmon.plot.plant_names import PlantNames
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _MOST_NAMED = 12
+# a measured plant is that of the grid which stands so near
+_SAME_M = 0.01
 # a row or a plant 0 in a name such as "0/12"
 _ZERO = re.compile(r"(?:^|/)0+(?=/|$)")
 
@@ -48,6 +51,8 @@ class Plants:
     also
         Other labels ``(n,)`` of blocks and of rows by which people may name the same plants, and
         whether these rows count from 1 in each block; what stands first is preferred.
+    numbers
+        The numbers ``(n,)`` of rows and of plants here, where their labels say more; else None.
     """
 
     lonlat: NDArray[np.float64]
@@ -55,6 +60,7 @@ class Plants:
     plant: NDArray[np.str_]
     block: NDArray[np.str_] | None = None
     also: tuple[tuple[NDArray[np.str_], NDArray[np.str_], bool], ...] = ()
+    numbers: tuple[NDArray[np.str_], NDArray[np.str_]] | None = None
 
     def __post_init__(self) -> None:
         for values in (self.lonlat, self.row, self.plant):
@@ -62,10 +68,10 @@ class Plants:
 
     @property
     def names(self) -> PlantNames:
-        """Return the names of rows, and of blocks, where all plants have one."""
-        row = None if (self.row == "").any() else self.row
+        """Return the names of rows and of plants, and those of blocks where all plants have one."""
         block = None if self.block is None or (self.block == "").any() else self.block
-        return PlantNames(row, block)
+        row, plant = (one if (one != "").any() else None for one in (self.row, self.plant))
+        return PlantNames(row, block, plant)
 
     def __len__(self) -> int:
         """Return the number of plants."""
@@ -113,7 +119,7 @@ def labelled(
     blocks are known by their number, and by what they were called when they were drawn.
     """
     if measured is not None and (measured.plant != "").all():
-        return measured
+        return _numbered(measured, grid)
     label = np.stack(row_label(grid), axis=1)
     once, first = np.unique(label, axis=0, return_index=True)
     lonlat, row, plant = grid.lonlat(first), *once.astype(np.str_).T
@@ -121,10 +127,22 @@ def labelled(
         return Plants(lonlat, row, plant)
     number = block_label(grid, first).astype(np.str_)
     within = row_in_block(grid, first).astype(np.str_)
-    known = [number, *_called(lonlat, blocks)]
+    own = [] if grid.block_named is None else [grid.block_named[block_label(grid, first) - 1]]
+    known = [*own, number, *_called(lonlat, blocks)]
     ways = [(block, row, False) for block in known]
     ways += [(block, within, True) for block in known]
-    return Plants(lonlat, row, plant, number, tuple(ways[1:]))
+    return Plants(lonlat, row, plant, known[0], tuple(ways[1:]))
+
+
+def _numbered(measured: Plants, grid: PlantGrid) -> Plants:
+    """Return measured plants with their numbers on the plot, where their labels say more."""
+    if grid.line_named is None and grid.plant_named is None:
+        return measured
+    plant, _ = nearest_plants(grid, measured.lonlat, _SAME_M)
+    if (plant < 0).any():
+        return measured
+    row, number = (part.astype(np.str_) for part in row_label(grid, plant))
+    return replace(measured, numbers=(row, number))
 
 
 def _called(lonlat: NDArray[np.float64], blocks: tuple[Block, ...]) -> list[NDArray[np.str_]]:
@@ -180,6 +198,9 @@ def by_plant(
         wanted, parts = _names(plant), [(plants.plant,)]
     elif plants.block is None or block is None:
         wanted, parts = _both(row, plant), [(plants.row, plants.plant)]
+        if plants.numbers is not None:  # names of rows may stand beside numbers of plants
+            named = (plants.row, plants.plant)
+            parts = list(product(*zip(named, plants.numbers, strict=True)))
     else:
         wanted = _both(block, row, plant)
         ways = [(plants.block, plants.row), *((b, r) for b, r, _ in plants.also)]
@@ -188,7 +209,8 @@ def by_plant(
     if plants.block is not None and block is None and len(set(known[0])) < len(known[0]):
         raise ObservationError(_which_block(plants))
     joined = [_join(wanted, names) for names in known]
-    best = int(np.argmax([np.count_nonzero(match >= 0) for match, _ in joined]))
+    # of ways that place as many, one that compares them as they are
+    best = int(np.argmax([2 * np.count_nonzero(match >= 0) + (not how) for match, how in joined]))
     match, how = joined[best]
     _refuse_from_zero(wanted, match, known[best])
     lonlat = np.where(match[:, None] >= 0, plants.lonlat[match], np.nan)

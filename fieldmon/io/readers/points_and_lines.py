@@ -113,8 +113,8 @@ def _of_blanks(names: NDArray[np.str_], column: str) -> ImportMessage:
     """Return what to say of names that some plants do not have."""
     return doubtful(
         worded(
-            "Column {column!r} is empty for {n} of {all} plants: none of its names is used. Fill "
-            "it in for all.",
+            "Column {column!r} is empty for {n} of {all} plants: its names do not tell which "
+            "plants stand together. Fill it in for all.",
             column=column,
             n=int((names == "").sum()),
             all=len(names),
@@ -205,8 +205,12 @@ def _called(layer: Layer) -> str:
 
 def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineString]:
     """Return the rows of a layer of lines, or of points that are their end posts, lon/lat."""
+    column = options.column("row") or find("row", layer.columns)
+    has_names = column is not None and any(text(value) for value in layer.column(column))
+    lost = [_of_drawn_names(str(column))] if has_names else []
     if layer.geometry is not None and geometry_kinds(layer.geometry)[1].any():
-        return lines_of(layer, options)
+        lines = lines_of(layer, options)
+        return lines.having(lines.value, lost)
     posts = plants_of(layer, options)
     named = None if (posts.value.row == "").any() else posts.value.row
     rows = rows_from_posts(posts.value.lonlat, named)
@@ -214,7 +218,18 @@ def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineStrin
     said = guessed(
         worded("{n} points are the end posts of rows, paired {how}.", n=len(posts.value), how=how)
     )
-    return posts.having(rows, [said])
+    return posts.having(rows, [said, *lost])
+
+
+def _of_drawn_names(column: str) -> ImportMessage:
+    """Return what to say of drawn rows that have names."""
+    return doubtful(
+        worded(
+            "Rows that are drawn count from 1 here, whatever column {column!r} calls them: the map "
+            "shows which is which. Those of a file of plants keep their names.",
+            column=column,
+        )
+    )
 
 
 def drawn_blocks_of(layer: Layer, options: PlotOptions) -> Imported[DrawnBlocks]:

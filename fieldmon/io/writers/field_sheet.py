@@ -113,8 +113,8 @@ def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * gap_mm >= 2.5)
     ends = placed(before_rows(grid, first))
     texts = [
-        Markup('<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>').format(x, y, line + 1)
-        for line, (x, y) in zip(lines.tolist(), ends.tolist(), strict=True)
+        Markup('<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>').format(x, y, sign)
+        for line, sign, (x, y) in zip(lines.tolist(), grid.line_signs, ends.tolist(), strict=True)
         if line == 0 or (line + 1) % every == 0
     ]
     return Markup(

@@ -1,5 +1,6 @@
 """What is known of one plant."""
 
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
@@ -124,3 +125,15 @@ def test_the_plant_tapped_is_ringed_and_what_is_no_plant_changes_nothing():
     assert st.session_state["history row"] == label.line[0]
     st.session_state["history row"] = 9999
     assert plant_history.layers(choices) == []
+
+
+def test_what_is_shown_first_is_a_plant_also_where_rows_and_plants_have_numbers_of_their_file(said):
+    plot = a_plot()
+    called = np.arange(len(plot.grid.line_number))[::-1] + 101
+    grid = replace(
+        plot.grid, line_called=np.stack([called, called], axis=1),
+        plant_called=row_label(plot.grid).number * 5,
+    )  # fmt: skip
+    plant_history.show(chosen(replace(plot, aisles=replace(plot.aisles, grid=grid))))
+    assert said[-1] == "Never inspected."
+    assert (st.session_state["history row"], st.session_state["history plant"]) == (101, 5)

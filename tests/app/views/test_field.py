@@ -21,7 +21,7 @@ def test_the_map_tells_three_states_apart_by_shape_and_the_history_of_a_plant(ap
     assert "Chance of infestation now" in texts_of(app)
     app.number_input(key="history row").set_value(99_999).run()
     assert not app.exception
-    assert "must be one of 1 to" in app.error[0].value
+    assert "must be one of 1–" in app.error[0].value
 
 
 def test_hot_spots_are_told_in_words_under_their_numbers_on_the_map(app):

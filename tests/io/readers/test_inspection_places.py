@@ -13,7 +13,9 @@ from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.layout import lay
+from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
 from tests.io.readers.test_inspections import GRID, read
 from tests.io.tables_of_cells import sentences
 
@@ -134,6 +136,106 @@ def test_rows_of_a_named_block_may_be_counted_from_one_and_how_is_said(two_block
     wrong = read("block,row,plant,found\n7,1,1,x\n1,1,1,x\n", grid=grid)
     assert wrong.value.plant.tolist() == [plant_at(grid, 1, 1)]
     assert "row 1 of block 7 (blocks are 1 to 2" in wrong.of(Severity.DROPPED)[0].sentence
+
+
+def test_rows_and_plants_are_those_of_the_file_of_plants():
+    k, j = np.divmod(np.arange(60), 10)
+    xy_m = np.stack([2.0 * j, 3.0 * k], axis=1)
+    lonlat = GRID.frame.lonlat(xy_m)
+    names = PlantNames((6 - k).astype(np.str_), None, (20 - j).astype(np.str_))
+    grid = Plot.around("own", lonlat, names=names).grid
+    text = "".join(f"{6 - k[i]},{20 - j[i]},x\n" for i in (0, 15, 59))
+    imported = read(f"row,plant,found\n{text}", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 15, 59]], abs=1e-9)
+
+
+def test_rows_of_blocks_are_those_of_the_file_of_plants():
+    k, j = np.divmod(np.arange(60), 10)
+    block, row = np.where(k < 3, "1", "2"), np.where(k < 3, 3 - k, k - 2)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    names = PlantNames(row.astype(np.str_), block, (10 - j).astype(np.str_))
+    grid = Plot.around("own", lonlat, names=names).grid
+    text = "".join(f"{block[i]},{row[i]},{10 - j[i]},x\n" for i in (0, 25, 30, 59))
+    imported = read(f"block,row,plant,found\n{text}", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
+
+
+def own_names(row, plant):
+    """Return six rows of ten with names, and where each plant was measured."""
+    k, j = np.divmod(np.arange(60), 10)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    names = (np.array([name(*at) for at in zip(k, j, strict=True)]) for name in (row, plant))
+    rows, plants = names
+    return Plot.around("own", lonlat, names=PlantNames(rows, None, plants)).grid, lonlat
+
+
+def test_rows_and_plants_may_be_named_as_their_file_has_them():
+    grid, lonlat = own_names(lambda k, _: "FEDCBA"[k], lambda k, j: f"{'FEDCBA'[k]}v{10 - j:02d}")
+    for text in (
+        "row,plant,found\nF,Fv10,x\nb,bv1,x\nA,1,x\n",
+        "vine_id,found\nFv10,x\nBv01,x\nAV01,x\n",
+    ):
+        imported = read(text, grid=grid)
+        assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 49, 59]], abs=1e-9)
+    wrong = read("row,plant,found\nF,Av01,x\nG,1,x\nF,Fv11,x\n", grid=grid)
+    assert not len(wrong.value)
+    assert "row F has no plant Av01 here" in wrong.of(Severity.DROPPED)[0].sentence
+
+
+def test_a_plant_alone_is_the_one_that_its_file_names_so_and_that_is_said():
+    grid, lonlat = own_names(lambda k, _: f"{k + 1}", lambda k, j: f"{10 * k + 10 - j}")
+    imported = read("tree,found\n10,x\n25,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25]], abs=1e-9)
+    (said,) = imported.of(Severity.GUESSED)
+    assert "2 records name plants alone: taken as the plot's file calls them" in said.sentence
+    given_out = read("row,number,plant,found\n1,10,0,x\n", grid=grid)
+    assert given_out.value.plant.tolist() == [0]
+
+
+def test_a_name_of_one_row_that_is_the_number_of_another_is_refused():
+    rows = ["5a", "5", "4", "3", "2", "1"]
+    grid, lonlat = own_names(lambda k, _: rows[k], lambda _, j: f"{j + 1}")
+    imported = read("row,plant,found\n5A,3,x\n3,3,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[2]], abs=1e-9)
+    assert "3 may be any of rows 3–4 here" in imported.of(Severity.DROPPED)[0].sentence
+
+
+def test_rows_and_plants_may_count_from_zero_where_their_file_does():
+    grid, lonlat = own_names(lambda k, _: f"{5 - k}", lambda _, j: f"{j}")
+    imported = read("row,plant,found\n5,3,x\n0,3,x\n3,0,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[3, 53, 20]], abs=1e-9)
+    assert imported.of(Severity.DOUBTFUL) == ()
+
+
+def test_rows_of_blocks_may_be_named_as_their_file_has_them():
+    k, j = np.divmod(np.arange(60), 10)
+    block, row = np.where(k < 3, "1", "2"), np.where(k < 3, 3 - k, k - 2)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    rows = np.array([f"R{one}" for one in row])
+    grid = Plot.around("own", lonlat, names=PlantNames(rows, block, (j + 1).astype(np.str_))).grid
+    text = "".join(f"{block[i]},R{row[i]},{j[i] + 1},x\n" for i in (0, 25, 30, 59))
+    imported = read(f"block,row,plant,found\n{text}", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
+    unnamed = read("row,plant,found\nR1,1,x\n", grid=grid)
+    assert not len(unnamed.value)
+    assert "R1 may be any of rows 1, 4 here" in unnamed.of(Severity.DROPPED)[0].sentence
+
+
+def test_blocks_are_those_of_the_file_of_plants():
+    k, j = np.divmod(np.arange(60), 10)
+    lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
+    row, plant = np.where(k < 3, 3 - k, k - 2).astype(np.str_), (j + 1).astype(np.str_)
+    for names in (("west", "east"), ("3", "4"), ("2", "10")):
+        block = np.where(k < 3, *names)
+        grid = Plot.around("own", lonlat, names=PlantNames(row, block, plant)).grid
+        text = "".join(f"{block[i]},{row[i]},{plant[i]},x\n" for i in (0, 25, 30, 59))
+        imported = read(f"block,row,plant,found\n{text}", grid=grid)
+        assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
+    block = np.where(k < 3, "2", "3")
+    grid = Plot.around("own", lonlat, names=PlantNames(row, block, plant)).grid
+    imported = read("block,row,plant,found\n3,1,1,x\n2,1,1,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[30]], abs=1e-9)
+    assert "row 1 of block 2" in imported.of(Severity.DROPPED)[0].sentence
 
 
 def test_how_far_a_position_is_off_is_measured_along_its_row_and_across(two_blocks):

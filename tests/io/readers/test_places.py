@@ -24,7 +24,9 @@ from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import lay, rectangle
+from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
 
 NORTH, SOUTH, EAST = (
     Field(name, MultiPolygon([shapely.box(5.0 + east, 45.0, 5.001 + east, 45.001)]))
@@ -170,6 +172,37 @@ def test_records_of_a_file_are_put_into_the_block_they_name(two_blocks):
     rows = int(grid.row_line[np.asarray(grid.block) == 0].max()) + 1
     there = [plant_of(grid, rows + 1, 3), plant_of(grid, rows + 2, 4), plant_of(grid, 1, 1)]
     assert read.value.lonlat == pytest.approx(np.array(there))
+
+
+def test_rows_and_plants_may_be_named_by_their_numbers_here_as_well():
+    known = replace(
+        plants(0.0), row=np.array(["A", "A", "B"]), plant=np.array(["x", "y", "z"]),
+        numbers=(np.array(["1", "1", "2"]), np.array(["1", "2", "1"])),
+    )  # fmt: skip
+    for row, plant in (("A", "B"), ("y", "z")), (("A", "B"), (2, 1)), ((1, 2), (2, 1)):
+        named = by_plant(cells(*row), cells(*plant), known)
+        np.testing.assert_array_equal(named.lonlat, known.lonlat[[1, 2]])
+        assert named.messages == ()
+
+
+def test_the_numbers_of_measured_plants_are_those_of_the_plot():
+    k, j = np.divmod(np.arange(60), 10)
+    lonlat = np.stack([5 + 2e-5 * j, 45 + 3e-5 * k], axis=1)
+    rows, names = np.array(list("FEDCBA"))[k], np.array([f"v{10 - one}" for one in j])
+    grid = Plot.around("own", lonlat, names=PlantNames(rows, None, names)).grid
+    row, number = labelled(grid, Plants(lonlat, rows, names)).numbers
+    assert number.tolist() == [f"{10 - one}" for one in j]
+    there = [plant_at(grid, int(r), int(n)) for r, n in zip(row, number, strict=True)]
+    assert grid.lonlat(np.array(there)) == pytest.approx(lonlat, abs=1e-9)
+
+
+def test_blocks_may_be_named_as_their_file_has_them():
+    k, j = np.divmod(np.arange(60), 10)
+    lonlat = np.stack([5 + 2e-5 * j, 45 + 3e-5 * k], axis=1)
+    row, block = np.where(k < 3, k + 1, k - 2).astype(np.str_), np.where(k < 3, "west", "east")
+    known = labelled(Plot.around("own", lonlat, names=PlantNames(row, block)).grid)
+    named = by_plant(cells("1", "2"), cells("1", "1"), known, cells("west", "east"))
+    assert named.lonlat[:, 1] == pytest.approx(lonlat[[0, 40], 1], abs=1e-9)
 
 
 def test_rows_counted_from_zero_are_refused_but_where_rows_are_called_so():

@@ -9,7 +9,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import ReadOptions
-from fieldmon.io.readers.points_and_lines import lines_of, plants_of
+from fieldmon.io.readers.points_and_lines import drawn_rows_of, lines_of, plants_of
 from tests.io.tables_of_cells import column, sentences, table
 
 ANY = ReadOptions()
@@ -35,10 +35,10 @@ def test_what_is_not_called_anything_has_no_label():
     assert len(plants) == 2
 
 
-def test_names_of_rows_that_some_plants_lack_are_not_used_and_that_is_said():
+def test_names_of_rows_that_some_plants_lack_do_not_tell_of_rows_and_that_is_said():
     shapes = [Point(5.0 + k * 1e-5, 45.0) for k in range(3)]
     imported = plants_of(layer_of(shapes, row=["1", "", "2"]), ANY)
-    assert "Column 'row' is empty for 1 of 3 plants: none" in sentences(imported)
+    assert "Column 'row' is empty for 1 of 3 plants: its names do not tell" in sentences(imported)
     assert "empty" not in sentences(plants_of(layer_of(shapes, row=["1", "1", "2"]), ANY))
 
 
@@ -133,3 +133,16 @@ def test_plants_without_names_are_not_called_by_where_they_stand():
     cells = table(lon=["35.1416", "35.1417", "35.1416"], lat=["30.35", "30.35", "30.35"])
     with pytest.raises(ChoiceNeeded, match="the first of them one without a name"):
         plants_of(cells, ANY)
+
+
+@pytest.mark.parametrize("posts", [False, True])
+def test_names_of_rows_that_are_drawn_are_told_to_be_lost(posts):
+    ends = [(5.0, 45.0), (5.001, 45.0), (5.0, 45.001), (5.001, 45.001)]
+    shapes = [Point(one) for one in ends] if posts else [LineString(ends[:2]), LineString(ends[2:])]
+    names = ["12", "12", "11", "11"] if posts else ["12", "11"]
+    imported = drawn_rows_of(layer_of(shapes, row=names), ANY)
+    assert "doubtful: Rows that are drawn count from 1 here, whatever column 'row'" in sentences(
+        imported
+    )
+    for unnamed in ({}, {"row": [""] * len(shapes)}):
+        assert "calls them" not in sentences(drawn_rows_of(layer_of(shapes, **unnamed), ANY))

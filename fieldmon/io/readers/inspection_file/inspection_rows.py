@@ -47,6 +47,9 @@ class InspectionRows:
         What is named as the face, where it is none that is known; else empty. None: all empty.
     leaf
         Which leaf it is of; empty where none is named. None: all empty.
+    row_called, plant_called
+        What is named as the row, and as the plant of it or of the plot, as the file has it; empty
+        where nothing is. None: all empty.
     rest
         What all other columns say that tells it from another. None: nothing.
     """
@@ -69,6 +72,8 @@ class InspectionRows:
     block: NDArray[np.str_]
     face_word: NDArray[np.str_] | None = None
     leaf: NDArray[np.str_] | None = None
+    row_called: NDArray[np.str_] | None = None
+    plant_called: NDArray[np.str_] | None = None
     rest: NDArray[np.str_] | None = None
 
     def __len__(self) -> int:

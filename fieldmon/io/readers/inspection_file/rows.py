@@ -132,6 +132,8 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
         block=texts_in(layer, columns.block),
         face_word=unknown_faces(layer, columns),
         leaf=texts_in(layer, columns.leaf),
+        row_called=texts_in(layer, columns.line),
+        plant_called=texts_in(layer, columns.number or columns.plant),
         rest=_rest(layer, columns, options),
     )
     kept = InspectionRows(**{name: values[said] for name, values in vars(whole).items()})
@@ -159,6 +161,7 @@ def _mixed(
     if name is None or not (mixed := mixed_species(name, species.tolist())):
         return []
     columns = (rows.plant, rows.line, rows.number, rows.face, *np.nan_to_num(rows.lonlat).T)
+    columns += tuple(c for c in (rows.row_called, rows.plant_called) if c is not None)
     at = zip(*(column.tolist() for column in (*columns, rows.day.astype(np.int64))), strict=True)
     told: dict[tuple[object, ...], list[str]] = {}
     for key, kind in zip(at, species.tolist(), strict=True):

@@ -69,6 +69,14 @@ def test_every_row_has_its_number_before_its_first_plant():
         assert not PLOT.field.boundary.buffer(-1e-7).contains(Point(one["p"]))
 
 
+def test_rows_have_the_numbers_of_the_file_of_their_plants_on_the_map():
+    grid = PLOT.grid
+    called = np.arange(len(grid.line_number))[::-1] + 30
+    named = replace(grid, line_called=np.stack([called, called], axis=1))
+    told = [(one["p"], int(one["t"])) for one in labels.rows(named)]
+    assert told == [(one["p"], called[int(one["t"]) - 1]) for one in labels.rows(grid)]
+
+
 def test_the_gate_and_what_is_not_driven_through_are_named_where_they_are():
     lon, lat = CORNER
     pond = MultiPolygon([box(lon + 0.0004, lat + 0.0004, lon + 0.0006, lat + 0.0006)])

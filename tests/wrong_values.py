@@ -135,6 +135,8 @@ _FINE: dict[str, dict[str, set[str]]] = {
         **{name: {"None"} for name in ("observations", "settings", "risk")},
     },
     "SeasonSettings": {"believe": {"class", "function"}, "pests": {"class", "function"}},
+    # where that is, the plot says
+    "TeamMember": {"gate": {"list", "pair", "far pair"}},
     "Weather.chosen": {"which": {"empty array"}},
 }  # fmt: skip
 #: how sentences call parameters that they do not call by their names
@@ -142,7 +144,7 @@ _CALLED = {
     "at_s": ("clock",), "area": ("no area",), "as_format": ("can be written as",),
     "belief_settings": ("BeliefSettings",), "batch": ("number", "nothing to take back"),
     "bearing_deg": ("bearing",),
-    "chance": ("chance map",), "copy": ("author",), "efficacy": ("works",),
+    "chance": ("chance map",), "copy": ("author", "file of a season"), "efficacy": ("works",),
     "feature": ("plot",), "found": ("What was seen", "hot spots"), "frame": ("GeoDataFrame",),
     "gate": ("Everything on a plot",), "inspection": ("number", "inspection"),
     "into": ("number", "batch"), "level": ("share of plants",), "lonlat": ("Positions",),
@@ -154,6 +156,7 @@ _CALLED = {
     "product": ("treatment",), "reentry_hours": ("Re-entry",), "reward": ("Rewards",),
     "risk": ("risk map",), "said": ("pest",), "seconds": ("time for a route",),
     "source": ("file",), "state": ("plant",), "step_s": ("step",), "steps": ("Viewpoints",),
+    "rate_l_ha": ("rate in the zones",), "starts_s": ("start within a day",),
     "sure": ("to be right",), "value": ("dose",), "waiting_days": ("wait",),
     "water_l_ha": ("Water",), "width_m": ("width",),
     "who": ("named", "nobody", "author", "change of settings"),
@@ -296,7 +299,8 @@ def _of_settings() -> Iterator[Case]:
     known = fm.SeasonMetrics(*metrics, visit=np.ones(2, bool))
     for made in (fm.Application(), fm.Dose(0.5, "l/ha"), fm.ProductLabel("a"), fm.rover(), pest,
                  fm.Spread(), fm.Viewpoints(), fm.SeasonSettings(), known,
-                 fm.MonitoringSettings(TODAY)):  # fmt: skip
+                 fm.MonitoringSettings(TODAY), fm.PriorSettings(), fm.TeamMember("a"),
+                 fm.Teamwork(), fm.AdviceSettings()):  # fmt: skip
         yield Case(type(made).__name__, type(made), _fields_of(made))
     yield Case("Application.by_label", fm.Application().by_label, {"label": None})
     yield Case("Dose.share_of", fm.Dose(0.5, "l/ha").share_of,
@@ -335,6 +339,9 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
     yield Case("Monitor", fm.Monitor, {"plot": plot, "sampler": "naive", "robot": None,
                "chance": None, "belief_settings": None, "seed": 1})  # fmt: skip
     yield Case("Monitor.day_in", monitor.day_in, {"scene": day.scene})
+    yield Case("Monitor.estimate", monitor.estimate, {"sure": 0.9})
+    yield Case("Monitor.verdict", monitor.verdict, {"level": 0.05, "sure": 0.9})
+    yield Case("Monitor.forecast", monitor.forecast, {"nights": 3})
     yield Case("MonitorDay", fm.MonitorDay,
                {"monitor": monitor, "scene": day.scene, "sampler": own})  # fmt: skip
     yield Case("MonitorDay.ahead", lambda n: begun().ahead(n), {"n": 3})

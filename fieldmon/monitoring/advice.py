@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.arguments import USUAL_RATE_L_HA, must_be_rate
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import USUAL_SURE
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import (
@@ -87,6 +88,8 @@ class AdviceSettings:
     learnt_of: str = ""
 
     def __post_init__(self) -> None:
+        must_hold_kinds(self, "The advice's")
+        AskedVerdict(self.level, self.sure)  # refuses what cannot be
         must_be_rate(self.rate_l_ha)
 
     def assumed(self, units: Units | None = None) -> Worded:

@@ -16,12 +16,14 @@ from fieldmon.compute.arguments import (
     array_of,
     must_be,
     must_be_chances,
+    must_be_in,
     must_be_shaped,
     shown,
 )
 from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.compute.ranges import DAYS
 from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.forecast import NIGHTS, forecast
@@ -240,6 +242,7 @@ class Monitor:
         """
         return as_seen(self._told.chance)
 
+    @checked
     def estimate(self, sure: float = 0.9) -> PlotEstimate:
         """Return how many plants are believed infested and not found yet, as `Season.status` does.
 
@@ -273,8 +276,10 @@ class Monitor:
         asked = AskedVerdict.on(told, level, sure, self._left)
         return map_verdict(self.plot.grid, told.chance, asked, told.pair_chance)
 
+    @checked
     def forecast(self, nights: int = NIGHTS) -> Forecast:
-        """Return how many are infested after so many `nights` on which nobody inspects."""
+        """Return how many are infested after each of so many `nights` if nobody inspects."""
+        must_be_in("A forecast's nights", DAYS, nights)
         ahead = [self.belief_settings.spread] * nights
         now = estimate_of(self.plot.grid, self._told, found=self._left)
         return forecast(self._belief, self.plot.grid, ahead, now=now, found=self._left)

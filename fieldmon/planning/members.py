@@ -53,6 +53,7 @@ class TeamMember:
     starts_s: float = 0.0
 
     def __post_init__(self) -> None:
+        must_hold_kinds(self, "A team member's")
         if not 0.0 <= self.starts_s < 24 * 3600.0:
             raise SettingError(
                 worded(

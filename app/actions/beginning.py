@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -9,7 +10,9 @@ import streamlit as st
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.history import BeliefSettings
 
+from ..show.assumed import of_rows
 from ..state import (
+    assumptions,
     chosen_day,
     chosen_pest,
     notices,
@@ -19,7 +22,7 @@ from ..state import (
     work_day,
 )
 from ..words import language, texts
-from . import acting, assuming
+from . import acting, assuming, drawing
 
 if TYPE_CHECKING:
     from fieldmon.infestation.earlier_season import EarlierSeason
@@ -38,7 +41,35 @@ def show(choices: Choices) -> None:
         # outside the form: it counts for the button above, too, which begins at once
         assuming.finds_are(widget_memory.show, _FINDS, default=True)
         pressed = _form(choices)
+        ask(choices, "form")
+    acting.once(pressed, begin_or_ask, choices, "form")
+
+
+def ask(choices: Choices, place: str) -> None:
+    """Ask whether the rows are right, with what they are in boxes; only where it was begun."""
+    if assumptions.asked(choices) != place:
+        return
+    key, grid = choices.plot_key, choices.plot.grid
+    with st.container(border=True, key="begin_asks"):
+        st.markdown(of_rows(assumptions.of_rows(choices.plot), choices.units))
+        with st.container(horizontal=True):
+            pressed = st.button(texts.BEGIN_RIGHT, key="begin_right", type="primary")
+            st.button(texts.BEGIN_NOT_YET, key="begin_not_yet", on_click=assumptions.ask,
+                      args=(choices, ""))  # fmt: skip
+        drawing.spacings(key, {name: getattr(grid, name) for name in assumptions.SPACINGS})
+        if grid.aisles_m is None:
+            drawing.direction(key, grid.frame.bearing_deg % 180.0)
+        if choices.plot.field.gate is None:
+            st.button(texts.BEGIN_GATE, key="begin_gate", on_click=drawing.set_gate)
     acting.once(pressed, begin, choices)
+
+
+def begin_or_ask(choices: Choices, place: str) -> None:
+    """Begin a season where people or files said how its rows run; else ask first."""
+    if assumptions.are_rows_assumed(choices):
+        assumptions.ask(choices, place)
+    else:
+        begin(choices)
 
 
 def _form(choices: Choices) -> bool:
@@ -81,7 +112,10 @@ def begin(choices: Choices) -> str:
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]
     path = seasons_folder.new_path(name)
-    Season.create(path, choices.plot, choices.records, settings, messages, choices.risk)
+    # rows that were asked about are assumed no more
+    sure = assumptions.asked(choices) != ""
+    plot = replace(choices.plot, assumed=()) if sure else choices.plot
+    Season.create(path, plot, choices.records, settings, messages, choices.risk)
     plot_source.open_season(name)
     if choices.on != choices.clock.today():
         work_day.choose(name, choices.on)  # what is shown stays what it was

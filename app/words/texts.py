@@ -107,6 +107,7 @@ ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
     "row_spacing_m": "rows {value} apart",
     "plant_spacing_m": "plants {value} apart",
+    "row_bearing_deg": "the rows {value}° from north",
     "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
@@ -438,6 +439,9 @@ EARLIER_HELP = (
     "Detection, arrivals and jumps, as a season on this plot or estate learnt them, are a first "
     "guess. It counts little against the finds of this season."
 )
+BEGIN_ASKS = "**Is this right: {what}?** Not all of it was said, and a season keeps it for good."
+BEGIN_RIGHT, BEGIN_NOT_YET = "Right, begin the season", "Not yet"
+BEGIN_GATE = "Set the gate on the map"
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
 LAST_VISIT, VISIT_ON = "Last visit", "{day}: {what}"

@@ -14,6 +14,7 @@ import streamlit as st
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import counting_copy, findings
 from fieldmon.monitoring.transactions import is_season
@@ -36,7 +37,10 @@ if TYPE_CHECKING:
 
 # batches shown, the last ones
 _MOST = 20
+_LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 _GEOPACKAGE = b"SQLite format 3"
+#: what a season's file calls what was typed in here, whatever the page's language
+TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
 _ONE, _ROUTE, _FILE = "one_plant", "route", "file"
 
@@ -102,7 +106,7 @@ def _record_one(choices: Choices) -> str:
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
     )
-    return said_of(recorded(choices, results, texts.TYPED_IN, _ONE))
+    return said_of(recorded(choices, results, TYPED_IN, _ONE))
 
 
 # -- the stops of the route
@@ -150,7 +154,7 @@ def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, list[in
         raise SettingError(texts.RECORD_UNSAID)
     result = np.where(is_found, FOUND, CLEAN)[said]
     results = Inspections.of(plants[said], result, np.datetime64(choices.day))
-    return said_of(recorded(choices, results, texts.ROUTE_TABLE, _ROUTE))
+    return said_of(recorded(choices, results, _ROUTE_TABLE, _ROUTE))
 
 
 # -- a file
@@ -185,6 +189,8 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
         read = read_inspections(source, choices.plot.grid, options)
         corrected = "" if copy is None else _corrected(choices, copy, name, boxes)
     messages = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
+    if any(message.severity in _LEFT_OUT for message in read.messages):
+        notices.warn()
     # what was said of a file may be answered: it stays to be read again
     said = said_of(recorded(choices, read.value, name, "" if read.messages else _FILE))
     return "\n\n".join(part for part in (corrected, said + messages if said else "") if part)
@@ -200,6 +206,8 @@ def _record_saved(choices: Choices, source: Upload) -> str:
     problems = sorted({one.problem for one in taken} - {""})
     said = [message.sentence for message in saved.messages]
     said += [*findings.of_others(choices.season, saved.value), *problems]
+    if problems:
+        notices.warn()
     told = texts.RECORDED.format(new=sum(good), known=len(good) - sum(good))
     if not said:
         fresh_boxes.empty(_FILE)
@@ -278,7 +286,8 @@ def ask_about_contradictions(choices: Choices) -> None:
         return
     others = len(waiting.results) - len(said)
     asked = texts.CONTRADICTING if others else texts.CONTRADICTING_ALL
-    st.warning(asked.format(n=len(said), others=others, source=waiting.source))
+    source = recorded_batches.source(waiting.source)
+    st.warning(asked.format(n=len(said), others=others, source=source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
     if len(said) > _MOST:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
@@ -295,8 +304,8 @@ def ask_about_contradictions(choices: Choices) -> None:
 
 def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
     """Ask whether to record what waited and contradicts nothing any more."""
-    n = len(waiting.results)
-    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=waiting.source))
+    n, source = len(waiting.results), recorded_batches.source(waiting.source)
+    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=source))
     with st.container(horizontal=True):
         st.button(texts.RECORD_THESE.format(n=n), key="record_these", on_click=_record_these,
                   args=(choices,))  # fmt: skip

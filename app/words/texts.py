@@ -798,6 +798,7 @@ LEAVE_OUT = Plural("Leave these out, record the other one", "Leave these out, re
 HOLDS = Plural("The new one holds", "The new ones hold")
 CONFIRM = Plural("Record this too, both hold", "Record these {n} too, both hold")
 RECORD_NONE = "Record nothing"
+NOTICE_CLOSE = "Close this message"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
 RESULT_COUNTED = "{result}, count {n}"
@@ -807,7 +808,9 @@ BATCHES_SAID = {
     "corrections": "corrections: {source}",
 }
 BATCH_OF_DAY = "inspected {days}"
-TYPED_IN, ROUTE_TABLE = "typed in", "route table"
+# as a season's file names them, in English: another language may be read later
+BATCH_SOURCES = {"typed in": "typed in", "route table": "route table", "scout mode": "scout mode",
+                 "phone": "phone"}  # fmt: skip
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
 TREAT_ROWS, TREAT_ROWS_HELP = "Rows (empty: the whole plot)", "Rows as people count, such as 3-5,8."
 TREAT_SELECTED = "Only the {plants} selected on the map"

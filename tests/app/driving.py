@@ -42,11 +42,12 @@ def opened(season=None, **address):
 
 
 def go(app, page):
-    """Turn to a part of a room, as its link does: the address is bare, the next run is its own."""
+    """Turn to a part of a room by its address: it says nothing else, the next run is its own."""
     room = rooms.room_of(page)
     app._page_hash = calc_hash("" if room == "today" else room)
     app.session_state[rooms.key(room)] = page
     app.query_params.clear()
+    app.query_params[rooms.KEY] = page
     return app.run()
 
 

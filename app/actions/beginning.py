@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.errors import SettingError
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.history import BeliefSettings
 
@@ -31,6 +33,9 @@ if TYPE_CHECKING:
 
 #: the box for what happens with a find
 _FINDS = "begin_finds"
+_FROM = "season begun from"
+# of one plot in one year
+_MOST_NAMED = 100
 
 
 def show(choices: Choices) -> None:
@@ -84,8 +89,14 @@ def _form(choices: Choices) -> bool:
 
 
 def _proposed(choices: Choices) -> str:
-    """Return what a season is called unless somebody says otherwise."""
-    return f"{choices.plot.field.name} {choices.on.year}"
+    """Return what a season is called unless somebody says otherwise: a name that none has yet."""
+    name = f"{choices.plot.field.name} {choices.on.year}"
+    if choices.season is not None:
+        return name
+    names = (name, *(f"{name} ({n})" for n in range(2, _MOST_NAMED)))
+    with suppress(SettingError):  # a name that no file can have is refused when it is used
+        return next((one for one in names if not seasons_folder.path_of(one).exists()), name)
+    return name
 
 
 def _name_box(choices: Choices) -> str:
@@ -116,8 +127,22 @@ def begin(choices: Choices) -> str:
     sure = assumptions.asked(choices) != ""
     plot = replace(choices.plot, assumed=()) if sure else choices.plot
     Season.create(path, plot, choices.records, settings, messages, choices.risk)
+    assumptions.ask(choices, "")
+    st.session_state[_FROM] = plot_source.chosen()
     plot_source.open_season(name)
     if choices.on != choices.clock.today():
         work_day.choose(name, choices.on)  # what is shown stays what it was
     left_out = map(language.in_words, chosen_day.messages_on_records(choices))
     return "\n- ".join([texts.BEGUN.format(name=texts.isolated(name), path=path), *left_out])
+
+
+def another(choices: Choices) -> None:
+    """Offer to begin another season of the plot, laid otherwise, while nothing is recorded."""
+    if choices.season.batches():
+        return
+    st.markdown(texts.ANOTHER_NOTE)
+    st.button(texts.ANOTHER, key="begin_another", on_click=_open_files)
+
+
+def _open_files() -> None:
+    plot_source.open_season(st.session_state.get(_FROM, plot_source.FILES))

@@ -537,6 +537,10 @@ BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
 BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
+ANOTHER_NOTE = (
+    "Nothing is recorded yet: another season can be begun with other rows. This one stays as it is."
+)
+ANOTHER = "Begin another season"
 DRAW, DRAW_KIND = "Gate, paths, no-go areas, rows", "A click on the map sets"
 DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area", "row": "how rows bend",

@@ -116,6 +116,30 @@ def test_rows_that_nobody_confirmed_are_asked_about_before_a_season_keeps_them(
     assert Season(file).plot.assumed == ()
 
 
+def test_while_nothing_is_recorded_another_season_is_begun_with_other_rows(
+    app, tmp_path, seasons_folder
+):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square())))
+    go(app, "today")
+    press(app, "Begin a season")
+    press(app, texts.BEGIN_RIGHT)
+    go(app, "plot")
+    press(app, texts.ANOTHER)
+    assert app.selectbox(key="season").value == "My own files"
+    row_box(app, "row_spacing").set_value(2.5).run()
+    go(app, "today")
+    assert "Is this right" not in texts_of(app)
+    press(app, "Begin a season")
+    press(app, texts.BEGIN_RIGHT)
+    assert not app.exception
+    first, second = sorted(seasons_folder.glob("*.gpkg"), key=lambda file: len(file.stem))
+    assert second.stem == f"{first.stem} (2)"
+    assert [Season(file).plot.grid.row_spacing_m for file in (first, second)] == [4.0, 2.5]
+    kept = Season(second)
+    kept.record(Inspections.of(np.array([0]), np.array([0]), np.datetime64(kept.settings.begins)))
+    assert texts.ANOTHER not in {one.label for one in go(app, "plot").button}
+
+
 def test_the_gate_is_set_on_the_map_before_a_season_begins(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square())))
     go(app, "today")

@@ -52,7 +52,7 @@ HELD = (
     ("infestation/tracing", ("trace", "_raise", "rescale_traced"),
      ("test_each_plant", "test_what_jumps_brought_counts")),
     ("infestation/traced_pairs", ("_count", "_share", "_share_traced", "_of_late", "times",
-                                  "counting", "_lowered", "without_arrivals", "_brought",
+                                  "counting", "_lowered", "_brought",
                                   "_shares_after", "_overnight", "doubt"),
      ("test_a_night_brings", "test_known_finds_keep", "test_the_number", "test_finds_are",
       "test_what_a", "test_the_wind", "test_counts", "test_without", "test_what_was_found")),

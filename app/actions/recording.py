@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import zlib
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,8 +15,8 @@ from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
-from fieldmon.monitoring import counting_copy, findings
-from fieldmon.monitoring.transactions import is_season
+from fieldmon.monitoring.brought_findings import read_brought, record_saved
+from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
 
 from ..show import plant_history, recorded_batches
@@ -29,16 +28,14 @@ from ..words.language import in_words
 from . import acting, treating
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
+    from fieldmon.monitoring.brought_findings import BroughtFile
 
     from ..state.choices import Choices
 
 # batches shown, the last ones
 _MOST = 20
 _LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
-_GEOPACKAGE = b"SQLite format 3"
 #: what a season's file calls what was typed in here, whatever the page's language
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
@@ -165,7 +162,7 @@ def _show_file(choices: Choices) -> None:
     brought = st.file_uploader(texts.RECORD_FILE_IN, key=key("findings_file"))
     st.checkbox(texts.TAKE_DOUBTFUL, key=key("take_doubtful"))
     if brought is not None:
-        if brought.getvalue().startswith(_GEOPACKAGE):
+        if brought.getvalue().startswith(MAGIC):
             st.text_input(texts.CORRECTED_BY, key=key("corrected_by"),
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
         pressed = st.button(texts.RECORD_BUTTON, key="record_file", type="primary")
@@ -175,73 +172,40 @@ def _show_file(choices: Choices) -> None:
 @notices.reporting
 def _record_file(choices: Choices, name: str, data: bytes) -> str:
     """Record findings from a file: a route filled in, a table, positions, a copy of the season."""
-    # what reads files is half a second to import
-    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
-    from fieldmon.io.readers.inspections import read_inspections  # noqa: PLC0415
-    from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415 - late
 
-    if is_phone_file(Upload(name, data)):
-        return _record_saved(choices, Upload(name, data))
-    boxes = FreshBoxes(_FILE, choices)
-    options = InspectionOptions(take_doubtful=bool(boxes.said("take_doubtful")))
-    options = options.choose("day", choices.day).on(choices.plot.field)
-    with _source(choices, name, data) as (source, copy):
-        read = read_inspections(source, choices.plot.grid, options)
-        corrected = "" if copy is None else _corrected(choices, copy, name, boxes)
-    messages = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
+    boxes, season = FreshBoxes(_FILE, choices), choices.season
+    options = InspectionOptions(
+        work_day=np.datetime64(choices.day), take_doubtful=bool(boxes.said("take_doubtful"))
+    ).on(choices.plot.field)
+    with working_folder() as folder:
+        read = read_brought(season, Upload(name, data), options, Path(folder))
+        corrected = _corrected(choices, read, boxes)
+    messages = [message.sentence for message in read.messages]
     if any(message.severity in _LEFT_OUT for message in read.messages):
         notices.warn()
-    # what was said of a file may be answered: it stays to be read again
-    said = said_of(recorded(choices, read.value, name, "" if read.messages else _FILE))
-    return "\n\n".join(part for part in (corrected, said + messages if said else "") if part)
+    if read.saved is None:
+        # what was said of a file may be answered: it stays to be read again
+        said = said_of(recorded(choices, read.findings, name, "" if messages else _FILE))
+    else:
+        done, more = record_saved(season, read.saved, choices.who or "")
+        said, messages = said_of(done), [*messages, *more]
+        if more:
+            notices.warn()
+        if not messages:
+            fresh_boxes.empty(_FILE)
+    listed = "".join(f"\n- {in_words(sentence)}" for sentence in messages)
+    return "\n\n".join(part for part in (corrected, said + listed if said else "") if part)
 
 
-def _record_saved(choices: Choices, source: Upload) -> str:
-    """Record what a phone saved because it could not send it."""
-    from fieldmon.io.read import read_phone_file  # noqa: PLC0415
-
-    saved = read_phone_file(source)
-    taken = findings.take_saved(choices.season, saved.value, choices.who or "")
-    good = [one.new for one in taken if not one.problem]
-    problems = sorted({one.problem for one in taken} - {""})
-    said = [message.sentence for message in saved.messages]
-    said += [*findings.of_others(choices.season, saved.value), *problems]
-    if problems:
-        notices.warn()
-    told = texts.RECORDED.format(new=sum(good), known=len(good) - sum(good))
-    if not said:
-        fresh_boxes.empty(_FILE)
-    return told + "".join(f"\n- {in_words(sentence)}" for sentence in said)
-
-
-@contextmanager
-def _source(
-    choices: Choices, name: str, data: bytes
-) -> Iterator[tuple[Upload | Path, Path | None]]:
-    """Return what to read findings from, and the file where it is a copy of a season.
-
-    Of a copy only what is new is read: what was corrected there is no new finding.
-    """
-    with working_folder() as folder:
-        copy = Path(folder) / "copy.gpkg"
-        if data.startswith(_GEOPACKAGE):
-            copy.write_bytes(data)
-        if not is_season(copy):
-            yield Upload(name, data), None
-            return
-        corrected = [one.row for one in choices.season.corrections_in(copy)]
-        (Path(folder) / "new").mkdir()
-        yield counting_copy(copy, Path(folder) / "new", corrected), copy
-
-
-def _corrected(choices: Choices, copy: Path, name: str, boxes: FreshBoxes) -> str:
+def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes) -> str:
     """Take what another program corrected or deleted in a copy; return how many were new."""
-    if not choices.season.corrections_in(copy):
+    if read.copy is None or not read.corrections:
         return ""
     who = str(boxes.said("corrected_by") or "").strip()
     if not who:
         raise SettingError(texts.CORRECTED_UNSAID)
-    return texts.CORRECTED.format(n=choices.season.take_corrections(copy, name, who))
+    return texts.CORRECTED.format(n=choices.season.take_corrections(read.copy, read.name, who))
 
 
 def recorded(

@@ -277,13 +277,10 @@ _PICTURE = {
 }
 _AT = {"name": "season", "in": "path", "required": True, "schema": {"type": "string"}}
 _PHOTO = {"name": "photo", "in": "path", "required": True, "schema": ID}
-_MAYBE = {"type": "number", "default": None}
 _OF_PHOTO = {
     "finding": ID | {"description": "The finding that it belongs to, which may come later."},
     "at": _MOMENT,
-    "lon": _MAYBE,
-    "lat": _MAYBE,
-    "accuracy_m": _MAYBE,
+    **{name: _within(name, "number") | {"default": None} for name in ("lon", "lat", "accuracy_m")},
 }
 
 

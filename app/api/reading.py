@@ -9,7 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import ObservationError
-from fieldmon.io.readers.phone_file import day, fields_of, moment
+from fieldmon.io.readers.phone_file import LEAST_MOST, day, fields_of, moment
 from fieldmon.monitoring.findings import Finding
 from fieldmon.monitoring.photos import Photo
 
@@ -45,7 +45,7 @@ def asked_photo(name: str, body: bytes) -> tuple[int, str]:
     """Return of which plant a photo is asked for, and the note."""
     _matches(name, description.ID)
     sent = _checked(body, "ASKED_PHOTO")
-    return sent["plant"], sent.get("note", "")
+    return int(sent["plant"]), sent.get("note", "")
 
 
 def photo(name: str, query: Mapping[str, str], data: bytes) -> Photo:
@@ -55,13 +55,13 @@ def photo(name: str, query: Mapping[str, str], data: bytes) -> Photo:
         if known not in query:
             raise ObservationError(f"A photo's address must say its {known}, but it does not.")
     _matches(query["finding"], description.ID)
-    lon, lat = (_number(query, name, most) for name, most in (("lon", 180.0), ("lat", 90.0)))
+    lon, lat = _number(query, "lon"), _number(query, "lat")
     lonlat = None if lon is None or lat is None else (lon, lat)
-    accuracy_m = _number(query, "accuracy_m", 1e7)
-    return Photo(name, query["finding"], data, moment(query["at"]), lonlat, accuracy_m)
+    at, accuracy_m = moment(query["at"]), _number(query, "accuracy_m")
+    return Photo(name, query["finding"], data, at, lonlat, accuracy_m)
 
 
-def _number(query: Mapping[str, str], name: str, most: float) -> float | None:
+def _number(query: Mapping[str, str], name: str) -> float | None:
     text = query.get(name)
     if not text:
         return None
@@ -69,8 +69,11 @@ def _number(query: Mapping[str, str], name: str, most: float) -> float | None:
         number = float(text)
     except ValueError:
         number = math.nan
-    if not abs(number) <= most:
-        raise ObservationError(f"{name} must be a number up to {most:g}, but it is {text[:60]!r}.")
+    least, most = LEAST_MOST[name]
+    if not least <= number <= most:
+        raise ObservationError(
+            f"{name} must be a number from {least:g} to {most:g}, but it is {text[:60]!r}."
+        )
     return number
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import shapely
 from pydeck import Layer
 
-from ..state.shared_plots import DUE_DAYS
+from fieldmon.monitoring.estate_day import DUE_DAYS
+
 from ..words import texts
 from ..words.language import about, listed
 from .map_view import MapContent

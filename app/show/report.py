@@ -75,7 +75,7 @@ def _with_estimates(facts: DayFacts, season: Season | None, on: date) -> DayFact
     """Return facts with what takes a while: how many are infested, what inspections detect."""
     if season is None:
         return facts
-    infested = float(season.evening_planned_by(on)[facts.route.plant].sum())
+    infested = float(season.evening(on)[facts.route.plant].sum())
     return replace(facts, infested=infested, settings=facts.settings.with_learnt(season, on))
 
 

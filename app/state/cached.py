@@ -8,7 +8,6 @@ leaves out, beside a key that stands for them. `cached_files` and `cached_simula
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import worked_route
-from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed, plan_in
+from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
 from fieldmon.reports import season as reports
 
 from ..words import language, texts
@@ -42,13 +41,14 @@ if TYPE_CHECKING:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice import Advice, AdviceSettings
+    from fieldmon.monitoring.estate_day import EstateTurn
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.reports.content import Report
-    from fieldmon.samplers.base import Sampler, Scene
+    from fieldmon.samplers.base import Scene
 
     Array = NDArray[np.float64]
 
@@ -154,9 +154,9 @@ def season_scene(key: str, revision: str, day: str, _season: Season) -> Scene:
 
 
 @st.cache_resource(max_entries=_DAYS)
-def turn_plan(key: str, robot: Robot, _scene: Scene, _sampler: Sampler) -> DayPlan:
+def turn_plan(key: str, robot: Robot, _turn: EstateTurn) -> DayPlan:
     """Return the day of one who has only some hours for a plot; `key` stands for the rest."""
-    return plan_in(replace(_scene, robot=robot, seconds_left=robot.day_s), _sampler)
+    return _turn.plan()
 
 
 @st.cache_resource(max_entries=FEW)

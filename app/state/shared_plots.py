@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from datetime import datetime, time, timedelta
+from datetime import timedelta
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring.closures import any_closed, left_off_in_words, open_to_people
+from fieldmon.monitoring import estate_day
+from fieldmon.monitoring.closures import any_closed, left_off_in_words
+from fieldmon.monitoring.estate_day import EstatePlot
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
-from fieldmon.planning.shared_day import PlotNeed, share_day
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import USUAL, sampler
@@ -33,20 +32,16 @@ from .chosen_day import STARTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-    from datetime import date
+    from datetime import datetime
 
-    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.closures import Closure
+    from fieldmon.monitoring.estate_day import EstateTurn
     from fieldmon.planning.plan import DayPlan
-    from fieldmon.planning.shared_day import PlotTurn
-    from fieldmon.samplers.base import Sampler, Scene
 
     from .estate import PlotState
 
     #: told how many plots are ready, and of how many
     Progress = Callable[[int, int], None]
-
-#: a plot is due so many days after it was seen
-DUE_DAYS = 3
 
 
 @dataclass(frozen=True)
@@ -79,7 +74,6 @@ class PlannedTurn:
     plan: DayPlan
     sampler: str
     closed: tuple[str, ...] = ()
-    is_shut: bool = False
 
     @property
     def ends(self) -> datetime:
@@ -102,25 +96,27 @@ class SharedPlots:
 
 @dataclass(frozen=True, eq=False)
 class _Ready:
-    """A plot that can be planned: what is believed of it on its day, and who decides there.
-
-    `key` stands for all of it. Of a `season`, which tells what is closed to people.
-    """
+    """A plot that can be planned, and who decides there; `key` stands for all of it."""
 
     plot: PlotState
     key: str
-    on: date
-    scene: Scene
     sampler: str
-    decides: Sampler
-    season: Season | None = None
+    known: EstatePlot
+
+    def closed_in_words(self, closed: tuple[Closure, ...]) -> tuple[str, ...]:
+        """Return what is left off as people may not be there yet, and until when."""
+        season = self.known.season
+        if season is None:
+            return ()
+        units = chosen_units.units().in_sentences(self.known.on)
+        of = self.known.scene.grid, season.label
+        return tuple(map(in_words, left_off_in_words(closed, of, units)))
 
 
 def due(plots: Iterable[PlotState]) -> list[PlotState]:
-    """Return the plots to be planned: those due; if none is, those not seen today."""
+    """Return the plots to be planned."""
     some = [*plots]
-    wanted = [one for one in some if one.days_since is None or one.days_since >= DUE_DAYS]
-    return wanted or [one for one in some if one.days_since]
+    return [some[k] for k in estate_day.due([one.days_since for one in some])]
 
 
 def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> SharedPlots:
@@ -133,52 +129,35 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         except FieldmonError as error:
             problems.append(f"{texts.isolated(plot.name)}: {of_error(error)}")
     members = crew.members()
-    needs = [PlotNeed(float(one.scene.chance.sum()), _whole_s(one.scene, members)) for one in ready]
-    shared = share_day(needs, members, 60.0 * crew.move_min)
-    turns = []
-    for k, turn in enumerate(shared):
+    known = [one.known for one in ready]
+    shared = estate_day.share_estate(known, members, STARTS, 60.0 * crew.move_min)
+    said = [one.closed_in_words(closed) for one, closed in zip(ready, shared.closed, strict=True)]
+    turns, waiting = [], {*shared.waiting}
+    for k, turn in enumerate(shared.turns):
         progress(len(plots) + k, 2 * len(plots))
-        turns.append(_planned(ready[turn.plot], turn, members[turn.who]))
-    worked = [one for one in turns if len(one.plan.route)]
-    served = {id(one.plot) for one in turns if len(one.plan.route) or one.is_shut}
-    closed = [f"{texts.isolated(one.plot.name)}: {said}" for one in turns for said in one.closed]
-    waiting = [one.plot for one in ready if id(one.plot) not in served]
-    said = tuple(dict.fromkeys(closed))
-    return SharedPlots(tuple(worked), tuple(waiting), tuple(problems), said)
-
-
-def _planned(ready: _Ready, turn: PlotTurn, member: TeamMember) -> PlannedTurn:
-    # to the second, so that the same turn is planned once
-    robot = replace(member.robot, hours=max(round(turn.seconds), 1) / 3600)
-    begins = datetime.combine(ready.on, STARTS) + timedelta(seconds=round(turn.starts_s))
-    season, key, scene, said, shut = ready.season, ready.key, ready.scene, (), np.False_
-    if season is not None:
-        begins_s = (begins - datetime.combine(ready.on, time())).total_seconds()
-        closed = season.closed_between(ready.on, begins_s, begins_s + robot.day_s)
-        shut = any_closed(closed, len(scene.chance))
-        key = f"{key} {digest(shut)}"
-        scene = open_to_people(scene, closed)
-        units = chosen_units.units().in_sentences(ready.on)
-        said = tuple(map(in_words, left_off_in_words(closed, (scene.grid, season.label), units)))
-    plan = cached.turn_plan(key, robot, scene, ready.decides)
-    return PlannedTurn(
-        ready.plot, member.name, turn.who, begins, plan, ready.sampler, said, bool(shut.all())
-    )
-
-
-def _whole_s(scene: Scene, members: Iterable[TeamMember]) -> float:
-    """Return about how long it takes to inspect all plants, for the slowest."""
-    grid = scene.grid
-    lanes_m = float(np.ptp(grid.lane_x_m, axis=1).sum())
-    return max(
-        (
-            len(grid) * one.robot.visit_s
-            + lanes_m / one.robot.speed_m_s
-            + grid.n_rows * one.robot.row_change_s
-            for one in members
+        one, who = ready[turn.plot], members[turn.who].name
+        plan = _plan(one, turn)
+        if len(plan.route):
+            turns.append(PlannedTurn(one.plot, who, turn.who, turn.begins, plan, one.sampler,
+                                     said[turn.plot]))  # fmt: skip
+        else:
+            waiting.add(turn.plot)
+    return SharedPlots(
+        tuple(turns),
+        tuple(ready[k].plot for k in sorted(waiting)),
+        tuple(problems),
+        tuple(
+            f"{texts.isolated(one.plot.name)}: {sentence}"
+            for one, sentences in zip(ready, said, strict=True)
+            for sentence in sentences
         ),
-        default=0.0,
     )
+
+
+def _plan(ready: _Ready, turn: EstateTurn) -> DayPlan:
+    shut = any_closed(turn.closed, len(turn.scene.chance))
+    key = f"{ready.key} {digest(shut)}" if shut.any() else ready.key
+    return cached.turn_plan(key, turn.scene.robot, turn)
 
 
 def _ready(plot: PlotState) -> _Ready:
@@ -192,7 +171,8 @@ def _of_season(plot: PlotState) -> _Ready:
     now = cached.revision_on(season, on)
     key = f"{season.key} {now} {on}"
     scene = cached.season_scene(season.key, now, str(on), season)
-    return _Ready(plot, key, on, scene, settings.sampler, settings.decides(), season)
+    known = EstatePlot(on, scene, settings.decides(), season)
+    return _Ready(plot, key, settings.sampler, known)
 
 
 def _of_files(plot: PlotState) -> _Ready:
@@ -206,4 +186,4 @@ def _of_files(plot: PlotState) -> _Ready:
     chance = cached.chance_map(made.key, str(on), settings.prior, made.plot, known)
     scene = plan_from(made.plot, chance, settings).scene
     key = f"{made.key} {on} {settings.prior}"
-    return _Ready(plot, key, on, scene, USUAL, settings.sampler)
+    return _Ready(plot, key, USUAL, EstatePlot(on, scene, settings.sampler))

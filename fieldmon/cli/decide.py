@@ -13,16 +13,15 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.season_files import day_meant
 from fieldmon.cli.times import day
-from fieldmon.compute.arguments import RATE_L_HA
-from fieldmon.compute.ranges import MOST_COUNTED, SURE
-from fieldmon.decisions.sprayer import COSTS, SWITCHED
+from fieldmon.compute.arguments import RATE_L_HA, USUAL_RATE_L_HA
+from fieldmon.compute.ranges import MOST_COUNTED, SURE, USUAL_SURE
+from fieldmon.decisions.sprayer import COSTS, SWITCHED, Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from datetime import date
 
-    from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
     from fieldmon.decisions.thresholds import Threshold
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.advice import Advice
@@ -51,7 +50,7 @@ class DecideOptions:
     on: LastDate = None
     sure: Annotated[
         float, typer.Option(help="How sure a verdict must be, 0.5 to 1.", callback=within(SURE))
-    ] = 0.9
+    ] = USUAL_SURE
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ class ZoneFileOptions:
         typer.Option(
             help="Litres per hectare in the zones, for the files.", callback=within(RATE_L_HA)
         ),
-    ] = 300.0
+    ] = USUAL_RATE_L_HA
     product: Annotated[str, typer.Option(help="What is sprayed, for the files.")] = ""
     output: Annotated[
         list[Path] | None,
@@ -117,20 +116,20 @@ class SprayerOptions:
             help="Rows that a section covers; 0: a knapsack sprayer.",
             callback=within(SWITCHED["rows"]),
         ),
-    ] = 2
+    ] = Sprayer.rows
     least_on: Annotated[
         float,
         typer.Option(
             help="Least length of a zone along the rows, metres.",
             callback=within(SWITCHED["least_on_m"]),
         ),
-    ] = 6.0
+    ] = Sprayer.least_on_m
     least_off: Annotated[
         float,
         typer.Option(
             help="Least gap between two zones, metres.", callback=within(SWITCHED["least_off_m"])
         ),
-    ] = 6.0
+    ] = Sprayer.least_off_m
     boom: Annotated[
         float,
         typer.Option(help="Width of the boom, metres; with --sections.", callback=within(0, 1000)),
@@ -144,7 +143,7 @@ class SprayerOptions:
             help="Knapsack: how many plants around each are sprayed with it.",
             callback=within(SWITCHED["ring"]),
         ),
-    ] = 0
+    ] = Sprayer.ring
 
     def idle(self) -> Iterator[tuple[object, str]]:
         """Yield whether a part of it would be passed over, and what to say then."""
@@ -155,8 +154,6 @@ class SprayerOptions:
 
     def sprayer(self, row_spacing_m: float) -> Sprayer:
         """Return what it can switch on rows so far apart."""
-        from fieldmon.decisions.sprayer import Sprayer
-
         rows = self.section_rows
         if self.boom:
             rows = Sprayer.of_boom(self.boom, self.sections, row_spacing_m).rows
@@ -172,31 +169,31 @@ class CostOptions:
         typer.Option(
             help="Cost of product, water and work per hectare.", callback=within(COSTS["per_ha"])
         ),
-    ] = 100.0
+    ] = TreatmentCosts.per_ha
     per_zone: Annotated[
         float,
         typer.Option(
             help="Cost of switching on and off, per zone.", callback=within(COSTS["per_zone"])
         ),
-    ] = 0.5
+    ] = TreatmentCosts.per_zone
     loss: Annotated[
         float,
         typer.Option(
             help="Loss per plant that is infested for a day.",
             callback=within(COSTS["infested_plant_day"]),
         ),
-    ] = 0.1
+    ] = TreatmentCosts.infested_plant_day
     days: Annotated[
         float,
         typer.Option(
             help="Days that an untreated plant stays infested.", callback=within(COSTS["days"])
         ),
-    ] = 14.0
+    ] = TreatmentCosts.days
     works: Annotated[
         float | None,
         typer.Option(
             help="Chance that treating cleans a plant, 0 to 1; else as the season learnt it of the "
-            "product, or of the last one used; 0.9 if it learnt nothing.",
+            f"product, or of the last one used; {TreatmentCosts.works:g} if it learnt nothing.",
             callback=within(COSTS["works"]),
         ),
     ] = None
@@ -206,12 +203,10 @@ class CostOptions:
             help="Share of the plot that is never sprayed, for predators, 0 to 1.",
             callback=within(COSTS["reserve"]),
         ),
-    ] = 0.0
+    ] = TreatmentCosts.reserve
 
     def costs(self, learnt: float | None) -> TreatmentCosts:
         """Return them as decisions take them; how well treating works may be `learnt`."""
-        from fieldmon.decisions.sprayer import TreatmentCosts
-
         told = TreatmentCosts(
             self.per_ha, self.per_zone, self.loss, self.days, reserve=self.reserve
         )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fieldmon.cli.messages import tell_assumed
+from fieldmon.cli.messages import tell_assumed, tell_past_midnight
 from fieldmon.cli.numbers import refusing, within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
@@ -30,7 +30,7 @@ from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.season_files import refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
-from fieldmon.errors import SettingError
+from fieldmon.errors import FieldmonError, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -234,6 +234,7 @@ def _season(options: DriveOptions, file: Path) -> None:
     made_up = "" if options.robot is Drives.VDA5050 else ", finds made up"
     today = SeasonDay(season, on, f"{_name(options)}{made_up}")
     tell_assumed(season.assumed(settings))
+    tell_past_midnight(on, settings)
     _tell_others(season, on, today.left_out)
     if told := aisles.shut_sentence():
         typer.echo(told)
@@ -245,7 +246,7 @@ def _season(options: DriveOptions, file: Path) -> None:
     with _driver(options, season.plot, worker, (season.morning(on), on)) as driver:
         try:
             driven = _driven(options, today, aisles, (worker, driver), begins, so_far)
-        except KeyboardInterrupt:
+        except BaseException:  # whatever ended it: what was driven is written
             _write(so_far, on, options, _name(options), before)
             _tell_replanned(today.replanned - 1)
             _tell_stopped(season, on, today.batch)
@@ -273,18 +274,17 @@ def _team(options: DriveOptions, file: Path) -> bool:
     from fieldmon.drive.team_season import TeamSeason
     from fieldmon.drive.vda5050.team import drive_team
     from fieldmon.drive.vda5050.wire import Broker
-    from fieldmon.monitoring.history import made_by
 
     asked = [path for path in (options.output, options.bag) if path is not None]
     today = TeamSeason(season, on, options.manufacturer)
     files = files_of_each(asked, today.robots) if asked else [[] for _ in today.robots]
     tell_assumed(season.assumed(settings))
+    tell_past_midnight(on, settings)
     _tell_left_out([one.name for one in today.team if one not in today.robots])
     if today.batch is not None:
         typer.echo(f"{on} goes on (batch {today.batch}).")
         _tell_plan(goes_on=today.goes_on)
-    done = season.history.inspections.on(on)
-    before = {one.name: len(made_by(done, one.name)) for one in today.robots}
+    before = {one.name: len(season.worked(on, one.name)) for one in today.robots}
     recordings = {
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
@@ -295,7 +295,7 @@ def _team(options: DriveOptions, file: Path) -> bool:
     missing: dict[str, None] = {}
     for one, paths in zip(today.robots, files, strict=True):
         each = driven[one.name]
-        if isinstance(each, SettingError):
+        if isinstance(each, FieldmonError):
             missing[str(each)] = None
             continue
         own = [*paths]

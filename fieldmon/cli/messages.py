@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from datetime import time, timedelta
+from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING
 
 import typer
@@ -14,13 +14,14 @@ from fieldmon.errors import ChoiceNeeded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
-    from datetime import date, datetime
+    from datetime import date
 
     import numpy as np
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.prepared import Laid, SourceMessage
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
@@ -180,12 +181,14 @@ def tell_clock_change(start: datetime, hours: float, field: Field) -> None:
     )
 
 
-def tell_past_midnight(start: datetime, hours: float) -> None:
+def tell_past_midnight(on: date, settings: MonitoringSettings) -> None:
     """Print that a season's work goes past midnight, if so: what is found then is of the next day.
 
     That day's own work begins with fewer hours.
     """
-    ends = start + timedelta(hours=hours)
+    start = datetime.combine(on, settings.starts)
+    team = (timedelta(seconds=m.starts_s, hours=m.robot.hours) for m in settings.team)
+    ends = start + max(team, default=timedelta(hours=settings.robot.hours))
     if ends.date() > start.date() and ends.time() != time():
         typer.echo(
             f"doubtful: The work goes past midnight, to {ends:%H:%M}: what is found after that "

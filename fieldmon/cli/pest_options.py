@@ -42,7 +42,8 @@ WeatherChoices = Annotated[
     typer.Option(
         "--weather-option",
         help="What the weather file does not say, as NAME=VALUE: zone=Asia/Jerusalem, "
-        "wind_unit=km/h, temperature_unit=F, rain_unit=in, date_order=dmy, location=1.",
+        "wind_unit=km/h, temperature_unit=F, rain_unit=in, rain_is=each, date_order=dmy, "
+        "location=1.",
     ),
 ]
 

@@ -52,7 +52,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     _tell_settings_of_then(season, on, settings)
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, field)
-    tell_past_midnight(datetime.combine(on, settings.starts), hours)
+    tell_past_midnight(on, settings)
     if settings.team:
         _plan_team(season, options, on, settings)
         return
@@ -73,7 +73,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
         )
     seen = season.history.on(today.scene.day)
     done = f"{len(seen)} done, " if len(seen) else ""
-    infested = float(season.evening_planned_by(on)[route.plant].sum())
+    infested = float(season.evening(on)[route.plant].sum())
     typer.echo(f"{on}: {done}{day_in_words(route, infested)}")
     if [*season.codes_on(on).values()] not in ([], [None]):
         typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)

@@ -20,11 +20,13 @@ from fieldmon.errors import ChoiceNeeded, ContradictionError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from datetime import date
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.brought_findings import BroughtFile
 
 FindingFiles = Annotated[
     list[Path],
@@ -84,69 +86,78 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     from fieldmon.io.sandbox import process
 
     process.warm("fieldmon.io.sandbox.tasks")  # it loads while the season is read
+    import numpy as np
+
     from fieldmon.io.readers.inspection_options import InspectionOptions
-    from fieldmon.io.readers.phone_file import is_phone_file
     from fieldmon.monitoring import Season
 
     kept = Season(season)
-    saved = [file for file in files if is_phone_file(file)]
-    files = [file for file in files if file not in saved]
-    options = InspectionOptions(take_doubtful=flags.take_doubtful)
-    if flags.on is not None:
-        options = options.choose("day", str(day(flags.on)))
+    work_day = None if flags.on is None else np.datetime64(day(flags.on), "D")
+    options = InspectionOptions(work_day=work_day, take_doubtful=flags.take_doubtful)
     options = chosen(options, flags.finding_option).on(kept.plot.field)
     tell_drafts(kept.drafts)
-    told = [(file, _read_saved(file)) for file in saved]
     with working_folder() as folder:
-        copies = _copies(files, Path(folder))
-        last, read = None, _read(kept, files, options, copies)
-        if not flags.contradicting:
-            _refuse_contradictions(kept, read)
-        _take_corrections(kept, copies, flags.who)
-    read = [
-        one if file in copies else _of(flags.who, one, file)
-        for one, file in zip(read, files, strict=True)
-    ]
-    named = [(one, file.name) for one, file in zip(read, files, strict=True)]
-    with _naming_confirmation():  # somebody may have recorded since
-        every = kept.record_all(named, flags.who, confirmed=flags.contradicting)
-    for file, inspections, done in zip(files, read, every, strict=True):
-        if len(inspections):
-            last = max(last or inspections.date.max(), inspections.date.max())
-        batch = "" if done.batch is None else f" (batch {done.batch})"
-        typer.echo(f"{file.name}: {done.new} new, {done.known} known already{batch}")
-    for file, one in told:
-        _take_saved(kept, file, one, flags.who)
-    on = kept.last_date() if told else None if last is None else last.item()
+        read = _read(kept, files, options, Path(folder))
+        last = _record(kept, [one for one in read if one.saved is None], flags)
+    saved = [(one.name, one.saved) for one in read if one.saved is not None]
+    for name, one in saved:
+        _take_saved(kept, name, one, flags.who)
+    on = kept.last_date() if saved else last
     if on is not None:
         with kept.one_moment():
             typer.echo("\n".join(lines(kept, kept.status(on))))
 
 
-def _read_saved(file: Path) -> PhoneFile:
-    """Return what a phone saved, and say what of it cannot be read."""
-    from fieldmon.io.read import read_phone_file
+def _read(
+    season: Season, files: list[Path], options: InspectionOptions, folder: Path
+) -> list[BroughtFile]:
+    """Return what is in files, all of them before any is recorded: nothing is left half-done."""
+    from fieldmon.monitoring.brought_findings import read_brought
 
-    read = read_phone_file(file)
-    for message in read.messages:
-        typer.echo(f"{file.name}: {message.line(FLAGS['findings'])}", err=True)
-    return read.value
+    read = []
+    for k, file in enumerate(files):
+        (own := folder / str(k)).mkdir()
+        with Terminal().answering(), _naming(file):
+            read.append(read_brought(season, file, options, own))
+    for one in read:
+        for message in one.messages:
+            typer.echo(f"{one.name}: {message.line(FLAGS['findings'])}", err=True)
+    return read
 
 
-def _take_saved(season: Season, file: Path, saved: PhoneFile, who: str) -> None:
+def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date | None:
+    """Record what files say, all of it or nothing; return the last day of it."""
+    if not read:
+        return None
+    # in a copy, who is named corrected
+    found = [one.findings if one.copy else _of(flags.who, one.findings, one.name) for one in read]
+    named = [(inspections, one.name) for inspections, one in zip(found, read, strict=True)]
+    copies = [one.copy if one.corrections else None for one in read]
+    try:
+        every = season.record_all(named, flags.who, confirmed=flags.contradicting, copies=copies)
+    except ContradictionError as error:
+        raise ContradictionError(f"{error} Confirm with: --contradicting") from None
+    for one, done in zip(read, every, strict=True):
+        if one.corrections:
+            n = done.corrected
+            typer.echo(f"{one.name}: {n} correction{'' if n == 1 else 's'} taken, by {flags.who}")
+        batch = "" if done.batch is None else f" (batch {done.batch})"
+        typer.echo(f"{one.name}: {done.new} new, {done.known} known already{batch}")
+    days = [inspections.date.max().item() for inspections in found if len(inspections)]
+    return max(days, default=None)
+
+
+def _take_saved(season: Season, name: str, saved: PhoneFile, who: str) -> None:
     """Record what a phone saved, as what it sends."""
-    from fieldmon.monitoring.findings import of_others, take_saved
+    from fieldmon.monitoring.brought_findings import record_saved
 
-    taken = take_saved(season, _saved_of(who, season, saved, file))
-    new, known = (
-        sum(one.new is is_new and not one.problem for one in taken) for is_new in (True, False)
-    )
-    typer.echo(f"{file.name}: {new} new, {known} known already")
-    for said in (*of_others(season, saved), *sorted({one.problem for one in taken} - {""})):
-        typer.echo(f"{file.name}: {said}", err=True)
+    done, said = record_saved(season, _saved_of(who, season, saved, name), who)
+    typer.echo(f"{name}: {done.new} new, {done.known} known already")
+    for sentence in said:
+        typer.echo(f"{name}: {sentence}", err=True)
 
 
-def _of(who: str, read: Inspections, file: Path) -> Inspections:
+def _of(who: str, read: Inspections, file: str) -> Inspections:
     """Return the inspections of a file as those of somebody, and say whose they were by it."""
     import numpy as np
 
@@ -162,7 +173,7 @@ def _of(who: str, read: Inspections, file: Path) -> Inspections:
     return replace(read, who=np.full(len(read), who, object))
 
 
-def _saved_of(who: str, season: Season, saved: PhoneFile, file: Path) -> PhoneFile:
+def _saved_of(who: str, season: Season, saved: PhoneFile, file: str) -> PhoneFile:
     """Return what a phone saved as that of somebody, and say whose it was by it."""
     from fieldmon.compute.wording import counted
 
@@ -175,78 +186,12 @@ def _saved_of(who: str, season: Season, saved: PhoneFile, file: Path) -> PhoneFi
     return saved.by(who)
 
 
-def _tell_others(file: Path, names: list[str], what: str, who: str) -> None:
+def _tell_others(file: str, names: list[str], what: str, who: str) -> None:
     typer.echo(
-        f"{file.name}: seen: By the file {', '.join(names)} made {what}; taken as those of {who}, "
+        f"{file}: seen: By the file {', '.join(names)} made {what}; taken as those of {who}, "
         "as --who says.",
         err=True,
     )
-
-
-def _refuse_contradictions(season: Season, read: list[Inspections]) -> None:
-    """Refuse files that contradict the season, or one another, before any is recorded."""
-    from fieldmon.monitoring.recorded_before import contradictions
-
-    every = read[0] if read else None
-    for inspections in read[1:]:
-        every = inspections if every is None else every.and_those(inspections)
-    if every is not None:
-        with _naming_confirmation():
-            contradictions(every, season.history.inspections).refuse(season.label)
-
-
-@contextmanager
-def _naming_confirmation() -> Iterator[None]:
-    """Say of contradictions how they are confirmed here."""
-    try:
-        yield
-    except ContradictionError as error:
-        raise ContradictionError(f"{error} Confirm with: --contradicting") from None
-
-
-def _copies(files: list[Path], folder: Path) -> dict[Path, Path]:
-    """Return copies to read of the files that are seasons."""
-    from fieldmon.monitoring.transactions import copy_season, is_season
-
-    copies = {}
-    for k, file in enumerate(files):
-        if is_season(file):
-            (folder / str(k)).mkdir()
-            copies[file] = folder / str(k) / file.name
-            copy_season(file, copies[file])
-    return copies
-
-
-def _take_corrections(season: Season, copies: dict[Path, Path], who: str) -> None:
-    """Take what QGIS or QField corrected and deleted in copies of this season."""
-    for file, copy in copies.items():
-        if season.corrections_in(copy):
-            n = season.take_corrections(copy, file.name, who)
-            typer.echo(f"{file.name}: {n} correction{'' if n == 1 else 's'} taken, by {who}")
-
-
-def _read(
-    season: Season, files: list[Path], options: InspectionOptions, copies: dict[Path, Path]
-) -> list[Inspections]:
-    """Return what is in files, all of them before any is recorded: nothing is left half-done."""
-    from fieldmon.io.readers.inspections import dated, read_inspections
-    from fieldmon.monitoring import counting_copy
-
-    with working_folder() as folder:
-        sources = dict(zip(files, files, strict=True))
-        for k, (file, copy) in enumerate(copies.items()):
-            (Path(folder) / str(k)).mkdir()
-            # what was corrected there is no new finding
-            corrected = [one.row for one in season.corrections_in(copy)]
-            sources[file] = counting_copy(copy, Path(folder) / str(k), corrected)
-        read = []
-        for file in files:
-            with Terminal().answering(), _naming(file):
-                read.append(dated(read_inspections(sources[file], season.plot.grid, options)))
-    for file, found in zip(files, read, strict=True):
-        for message in found.messages:
-            typer.echo(f"{file.name}: {message.line(FLAGS['findings'])}", err=True)
-    return [found.value for found in read]
 
 
 @contextmanager

@@ -21,7 +21,6 @@ from fieldmon.decisions.labels import WAITS_DAYS, WAITS_HOURS
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from fieldmon.decisions.doses import Dose
     from fieldmon.monitoring import Application, Season
 
 Area = Annotated[
@@ -96,12 +95,13 @@ class TreatOptions:
 
     def application(self) -> Application:
         """Return what was applied."""
+        from fieldmon.decisions.doses import Dose
         from fieldmon.decisions.labels import irac_groups
         from fieldmon.monitoring import Application
 
         return Application(
             product=self.product,
-            dose=None if self.dose is None else _dose(self.dose),
+            dose=None if self.dose is None else Dose.of(self.dose, "--dose"),
             water_l_ha=self.water,
             operator=self.operator,
             reason=self.reason,
@@ -163,6 +163,8 @@ def treat(options: TreatOptions) -> None:
 
 def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
     """Print what a treatment asks for: waiting periods and warnings."""
+    from fieldmon.monitoring.cautions import label_of, waits
+
     (one,) = (treatment for treatment in kept.treatments() if treatment.batch == batch)
     if learnt:
         typer.echo(
@@ -173,26 +175,11 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
             f"Taken as over midnight: it ended on {one.on + timedelta(days=1)} at "
             f"{one.application.ended:%H:%M}. If that is wrong: fieldmon undo"
         )
-    waits = one.waits
-    if waits.entry_from is not None:
-        typer.echo(f"Enter there from {waits.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
-    if waits.harvest_from is not None:
-        typer.echo(f"Harvest there from {waits.harvest_from} on.")
+    period = waits(one, label_of(one, kept.labels()))
+    if period.entry_from is not None:
+        typer.echo(f"Enter there from {period.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
+    if period.harvest_from is not None:
+        typer.echo(f"Harvest there from {period.harvest_from} on.")
     for caution in kept.cautions(one.on):
         if caution.batch == batch:
             typer.echo(f"warning: {caution.sentence}", err=True)
-
-
-def _dose(text: str) -> Dose:
-    """Return a dose as it was written: a number, and its unit behind it."""
-    from fieldmon.decisions.doses import Dose
-
-    bare = text.strip()
-    letters = next((k for k, one in enumerate(bare) if one not in "0123456789.,"), len(bare))
-    try:
-        value = float(bare[:letters].replace(",", "."))
-    except ValueError as error:
-        raise SettingError(
-            f"--dose must be a number with its unit, such as '0.5 l/ha', but it is {text!r}."
-        ) from error
-    return Dose(value, bare[letters:].strip())

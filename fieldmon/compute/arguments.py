@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 _LONGEST = 40
 _FARTHEST_DEG = (360.0, 90.0)
 RATE_L_HA = AllowedRange(0.0, 100_000.0, above=True, below=True, unit=" litres per hectare")
+USUAL_RATE_L_HA = 300.0
 
 
 def must_be(

@@ -83,6 +83,8 @@ CHANCE = AllowedRange(0.0, 1.0, said=worded("a chance in 0..1"))
 #: of something of which there are some, and others
 SHARE = AllowedRange(0.0, 1.0, above=True, below=True, said=worded("a share between 0 and 1"))
 SURE = AllowedRange(0.5, 1.0, above=True, below=True, said=worded("a chance between 0.5 and 1"))
+#: how sure a season's advice is unless somebody says otherwise
+USUAL_SURE = 0.9
 #: what a season file can hold, and a generator of random numbers takes
 SEED = AllowedRange(0, 2**63 - 1, said="a whole number from 0 to 2^63 - 1")
 #: numbers of batches and rows in a season file

@@ -69,6 +69,31 @@ class Dose:
         """Return it as people write it."""
         return f"{self.value:g} {self.unit}"
 
+    @classmethod
+    def of(cls, text: str, called: str = "A dose") -> Dose:
+        """Return a dose as people write it: a number, and its unit behind it.
+
+        Examples
+        --------
+        >>> Dose.of("0,5 l/ha")
+        Dose(value=0.5, unit='l/ha')
+        """
+        from fieldmon.io.parse.values import told_number  # noqa: PLC0415 - commands start without
+
+        bare = text.strip()
+        unit = re.sub(r"^[0-9.,]+", "", bare)
+        digits = bare.removesuffix(unit)
+        if not digits:
+            raise SettingError(
+                worded(
+                    "{called} must be a number with its unit, such as '0.5 l/ha', but it is "
+                    "{text!r}.",
+                    called=called,
+                    text=text,
+                )
+            )
+        return cls(told_number(digits, called), unit.strip())
+
     def share_of(self, other: Dose, water_l_ha: float | None = None) -> float | None:
         """Return how many times the `other` dose this is; None where the two cannot be compared.
 

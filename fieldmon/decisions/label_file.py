@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,7 @@ from fieldmon.io.options import Upload, source_name
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.own_table import own_table
 from fieldmon.io.parse.text import decode
-from fieldmon.io.parse.values import could_be_thousands, number
+from fieldmon.io.parse.values import told_number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -145,26 +144,7 @@ def _dose(said: Mapping[str, str]) -> Dose | None:
 
 def _number(said: Mapping[str, str], role: str) -> float | None:
     cell = said.get(role, "")
-    if not cell:
-        return None
-    if could_be_thousands(cell):
-        bare = cell.replace(",", ".")
-        raise SettingError(
-            worded(
-                "{role} is {cell}: is that {bare:g} or {other:g}? Write it without the mark, "
-                "or with other decimals.",
-                role=role,
-                cell=cell,
-                bare=float(bare.replace(".", "")),
-                other=float(bare.partition(".")[0] + "." + bare.partition(".")[2].replace(".", "")),
-            )
-        )
-    value = number(cell, "," if "," in cell and "." not in cell else ".")
-    if not math.isfinite(value):
-        raise SettingError(
-            worded("{role} must be a number, but it is {cell!r}.", role=role, cell=cell)
-        )
-    return value
+    return told_number(cell, role) if cell else None
 
 
 def _whole(said: Mapping[str, str], role: str) -> int | None:

@@ -95,6 +95,9 @@ class AskedVerdict:
         (`Belief.doubt_of_rates`).
     since
         What the number may have become on days without inspections (`Belief.since_inspected`).
+    found
+        ``(n,)`` plants that were found infested and left: of them nothing is in doubt. None: there
+        are none.
 
     Raises
     ------
@@ -106,11 +109,18 @@ class AskedVerdict:
     sure: float = 0.9
     doubt: float = 0.0
     since: Since | None = None
+    found: NDArray[np.bool_] | None = None
 
     @classmethod
-    def on(cls, belief: Belief, level: float, sure: float = 0.9) -> AskedVerdict:
+    def on(
+        cls,
+        belief: Belief,
+        level: float,
+        sure: float = 0.9,
+        found: NDArray[np.bool_] | None = None,
+    ) -> AskedVerdict:
         """Return what is asked of a belief, which says itself how doubtful its number is."""
-        return cls(level, sure, belief.doubt_of_rates, belief.since_inspected)
+        return cls(level, sure, belief.doubt_of_rates, belief.since_inspected, found)
 
     def __post_init__(self) -> None:
         if not 0.0 < self.level < 1.0:
@@ -286,28 +296,32 @@ def _drawn(
 
     `weights` ``(n, k)`` is what each plant counts in each sum, and `key` names the fields.
     """
-    n = len(grid)
+    n, chance = len(grid), believed[0]
+    known = np.zeros(n, np.bool_) if asked.found is None else asked.found
     at_once = int(np.clip(_CELLS_AT_ONCE // n, 1, _DRAWS))
     sums, numbers = np.empty((_DRAWS, weights.shape[1])), np.empty(_DRAWS)
     for first in range(0, _DRAWS, at_once):
         fields = np.empty((min(at_once, _DRAWS - first), n), bool)
         draw_fields(believed, grid.adjacent, key + np.uint64(first), fields)
+        fields[:, known] = False
         sums[first : first + len(fields)] = fields @ weights
         numbers[first : first + len(fields)] = np.count_nonzero(fields, axis=1)
     # round the loops of a lattice the drawn fields are a little off the map: put right together
-    right = believed[0] @ weights
+    unknown = np.where(known, 0.0, chance)
+    right = unknown @ weights
     sums *= right / np.maximum(sums.mean(axis=0), 1e-12)
-    if asked.doubt > 0.0:
-        sums *= doubted(asked.doubt)[:, None]
-    if asked.since is not None and asked.since.idle:
-        expected = float(believed[0].sum())
-        numbers *= expected / max(float(numbers.mean()), 1e-12)
-        numbers *= doubted(asked.doubt) if asked.doubt > 0.0 else 1.0
-        became = asked.since.numbers(np.minimum(numbers, n), n)
+    factors = doubted(asked.doubt) if asked.doubt > 0.0 else np.ones(_DRAWS)
+    if asked.since is None:
+        sums *= factors[:, None]
+    else:
+        expected = max(float(unknown.sum()), 1e-12)
+        became = asked.since.numbers(factors, expected, n - int(np.count_nonzero(known)))
         # where none is drawn, what arrived since stands where it is expected
         sums = np.where(
             numbers[:, None] > 0.0,
-            sums * (became / np.maximum(numbers, 1e-12))[:, None],
+            sums * (became * numbers.mean() / expected / np.maximum(numbers, 1.0))[:, None],
             became[:, None] * (right / expected),
         )
-    return read_only(np.minimum(sums, 1.0))
+    # of plants that were found nothing is in doubt
+    certain = np.where(known, chance, 0.0) @ weights
+    return read_only(np.minimum(sums + certain, 1.0))

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _STEPS = 60
+# standard errors on either side, for 90 %
+_Z90 = 1.645
 
 
 class MeanBand(NamedTuple):
@@ -162,11 +164,10 @@ def mean_band(
     leaves: int,
     infested: int,
     published: Iterable[PublishedLaw] = PUBLISHED_LAWS,
-    z: float = 1.645,
 ) -> MeanBand:
     """Return the animals a leaf by Wilson & Room, with all that is not known about it.
 
-    From the least to the most that any of the laws says, z standard errors off, of any share that
+    From the least to the most that any of the laws says, 90 % sure of each, of any share that
     the leaves allow (Wilson's interval, J. Am. Stat. Assoc. 22 (1927) 209).
 
     Parameters
@@ -175,8 +176,6 @@ def mean_band(
         Leaves looked at, and those with an animal or more on them.
     published
         Laws; the first is what is held likely.
-    z
-        Standard errors on either side: 1.645 for 90 %.
 
     Raises
     ------
@@ -188,7 +187,7 @@ def mean_band(
     >>> mean_band(50, 20)
     <MeanBand 0.977 (0.572 to 12.8)>
     """
-    share = _share(leaves, infested)
+    share, z = _share(leaves, infested), _Z90
     middle = (share + z**2 / (2 * leaves)) / (1 + z**2 / leaves)
     off = z * np.sqrt(share * (1 - share) / leaves + (z / (2 * leaves)) ** 2) / (1 + z**2 / leaves)
     laws = tuple(published)

@@ -12,6 +12,7 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
 from fieldmon.io.packaged import packaged_table
 from fieldmon.io.parse.own_table import own_table
+from fieldmon.io.parse.values import told_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 #: what a threshold counts; a share lies between 0 and 1, a mean is animals a leaf
 MEASURES = ("share of plants", "share of leaves", "mean per leaf")
 _OWN = "your own"
-_PREDATORS = {"yes": True, "no": False, "": None}
 _COLUMNS = ("name", "measure", "level", "source")
 
 
@@ -41,8 +41,6 @@ class Threshold:
         Who says so.
     crop, pest, when
         Where it holds, in words; empty: not said.
-    predators
-        Whether it holds where predators of the pest live; None: the source draws no such line.
 
     Raises
     ------
@@ -57,7 +55,6 @@ class Threshold:
     crop: str = ""
     pest: str = ""
     when: str = ""
-    predators: bool | None = None
 
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
@@ -181,8 +178,8 @@ def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Thresho
         return options[said]
     if said.endswith("%"):
         try:
-            share = float(said[:-1]) / 100
-        except ValueError:
+            share = _percents(said)
+        except SettingError:
             pass
         else:
             return Threshold(said, "share of plants", share)
@@ -199,15 +196,6 @@ def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Thresho
 def _read(where: str, row: Mapping[str, str]) -> Threshold:
     try:
         return _of_row(row)
-    except ValueError as error:
-        raise FileProblem(
-            worded(
-                "{where}: {name} must be a number, but it is {text!r}.",
-                where=where,
-                name="level",
-                text=row["level"],
-            )
-        ) from error
     except SettingError as error:
         raise FileProblem(
             worded("{where}: {problem}", where=where, problem=error.args[0])
@@ -216,26 +204,22 @@ def _read(where: str, row: Mapping[str, str]) -> Threshold:
 
 def _level(text: str, measure: str) -> float:
     """Return a level; that of a share also as percents."""
-    is_share = text.endswith("%") and measure.startswith("share")
-    value = float((text[:-1] if is_share else text).replace(",", "."))
-    return value / 100 if is_share else value
+    if text.endswith("%") and measure.startswith("share"):
+        return _percents(text)
+    return told_number(text, "level")
+
+
+def _percents(text: str) -> float:
+    """Return a share that is told in percents, as ``"5 %"``."""
+    return told_number(text[:-1], "level", most=100.0) / 100
 
 
 def _of_row(row: Mapping[str, str]) -> Threshold:
     words = {name: row.get(name) or "" for name in ("crop", "pest", "when")}
-    predators = row.get("predators", "").casefold()
-    if predators not in _PREDATORS:
-        raise SettingError(
-            worded(
-                "predators must be yes, no or nothing, but it is {predators!r}.",
-                predators=predators,
-            )
-        )
     return Threshold(
         row["name"],
         row["measure"],
         _level(row["level"], row["measure"]),
         row["source"] or _OWN,
-        predators=_PREDATORS[predators],
         **words,
     )

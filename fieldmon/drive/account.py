@@ -38,7 +38,7 @@ def stop_table(driven: DrivenDay) -> bytes:
     for k, one in enumerate(driven.stops, 1):
         stop, visit = one.stop, one.visit
         found = "" if visit.found is None else int(visit.found)
-        done_s = stop.arrive_s + stop.inspect_s if visit.done_s is None else visit.done_s
+        done_s = visit.done_at_s(stop)
         touched = " ".join(str(plant) for plant in sorted(visit.touched))
         lines.append(
             f"{k},{stop.plant},{stop.row},{stop.number},{found},{done_s:.1f},{one.charged_s:.1f},"

@@ -64,6 +64,10 @@ class Visit(NamedTuple):
     stuck: str = ""
     there: bool = True
 
+    def done_at_s(self, stop: PlantToInspect) -> float:
+        """Return when a plant was done: as told, or as charged where nobody told it."""
+        return stop.done_s if self.done_s is None else self.done_s
+
 
 class DrivingRobot(Protocol):
     """Whoever drives a day; see `fieldmon.drive.day.drive_day`."""

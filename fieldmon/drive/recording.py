@@ -62,7 +62,7 @@ class Recording:
         """Note a stop that was told."""
         planned = [errand.line_m, *(line[1:] for _, line in errand.ahead)]
         asked, visit = stop.stop, stop.visit
-        done_s = asked.arrive_s + asked.inspect_s if visit.done_s is None else visit.done_s
+        done_s = visit.done_at_s(asked)
         noted = Noted(done_s, asked.plant, visit.found, np.concatenate(planned))
         if self.track.last_s < done_s - asked.inspect_s - 1.0:
             self.take(noted, done_s - asked.inspect_s, errand.line_m)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.day_ahead import DayAhead, inside, through
-from fieldmon.monitoring.history import Besides, made_by
-from fieldmon.monitoring.monitor import PlantToInspect
+from fieldmon.monitoring.history import Besides
+from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person
 from fieldmon.planning.wishes import Wishes
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
 
 #: a robot that is so much later or earlier than planned is planned for anew
-LATE_S = 30.0
+REPLAN_AFTER_S = 30.0
 
 
-class SeasonDay:
+class SeasonDay(AskedDay):
     """A day of a season that is asked for the next plant and told what was seen there.
 
     All that is told of a day is one batch, and every plan is kept. Who begins again after a crash
@@ -44,6 +44,8 @@ class SeasonDay:
         What people want of the day besides.
     """
 
+    late_s = REPLAN_AFTER_S
+
     def __init__(
         self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None
     ) -> None:
@@ -59,16 +61,16 @@ class SeasonDay:
         self.batch = begun_batch(season, self._source)
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
-        self._asked: PlantToInspect | None = None
         begun, beside = self.batch is not None, self._who or ""
         with self._entering():
             left = left_of_plan(season, on, beside, self.left_out) if begun else None
         #: whether it goes on with what is left of the plan given out last
         self.goes_on = left is not None and len(left.route) > 0
         if left is not None and self.goes_on:
-            self._take(left)
+            self._go_by(left)
         else:
             self._plan()
+        super().__init__(self._gone_s)
 
     def __repr__(self) -> str:
         """Say which day of which season."""
@@ -100,22 +102,18 @@ class SeasonDay:
 
         `at_s` is when it was done, seconds since the day began; None: as charged.
         """
-        stop = self._asked
-        if stop is None:
-            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
-        done_s = stop.arrive_s + stop.inspect_s
-        now_s = done_s if at_s is None else at_s
-        self._record(stop.plant, found, now_s)
-        self._asked, self._at, self._gone_s = None, stop.plant, now_s
-        self._late_s = now_s - done_s
-        self._next += 1
-        if found or found is None or abs(self._late_s) > LATE_S:
-            self._plan()
+        self._tell(found, at_s)
 
-    def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
-        one = as_inspection(plant, found, (self._on, self.begun_s + now_s))
+    def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
+        one = as_inspection(stop.plant, found, (self._on, self.begun_s + now_s))
         done = self._season.record(one, self._source, into=self.batch)
         self.batch = self.batch or done.batch
+
+    def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
+        self._at, self._gone_s = stop.plant, self._clock_s
+        self._next += 1
+        if found or found is None or is_late:
+            self._plan()
 
     def _without(self, wishes: Wishes | None) -> Wishes | None:
         """Return what people want but for the plants that are left to somebody."""
@@ -126,17 +124,17 @@ class SeasonDay:
 
     def _plan(self) -> None:
         with self._entering():
-            self._take(self._season.plan(self._on, wishes=self._wishes, who=self._who))
+            self._go_by(self._season.plan(self._on, wishes=self._wishes, who=self._who))
 
     def _entering(self) -> AbstractContextManager[None]:
         """Let a robot enter where people may not be yet."""
         on_foot = self._season.planned_by(self._on).robot.on_foot
         return nullcontext() if on_foot else self._season.entering_treated()
 
-    def _take(self, today: DayPlan) -> None:
+    def _go_by(self, today: DayPlan) -> None:
         season, on, who = self._season, self._on, self._who
         self._today: DayPlan = today
-        self._next, self._late_s = 0, 0.0
+        self._next = 0
         self._at = today.scene.at
         # a first result that came late or early shows that the day began otherwise
         since_s = season.begun_s(on, who or "") - self.begun_s
@@ -145,18 +143,10 @@ class SeasonDay:
         self.replanned += 1
 
     def _stop(self, k: int) -> PlantToInspect:
-        route, label = self._today.route, self._season.label
-        plant = int(route.plant[k])
-        lon, lat = self._season.plot.grid.lonlat(route.plant[k : k + 1])[0]
-        return PlantToInspect(
-            plant=plant,
-            row=int(label.line[plant]),
-            number=int(label.number[plant]),
-            lonlat=(float(lon), float(lat)),
-            arrive_s=self._since_s + float(route.arrive_s[k]),
-            inspect_s=float(route.leave_s[k] - route.arrive_s[k]),
-            detects=float(route.detects[k]),
-        )
+        route, plant = self._today.route, int(self._today.route.plant[k])
+        arrive_s = self._since_s + float(route.arrive_s[k])
+        long = float(route.leave_s[k] - route.arrive_s[k]), float(route.detects[k])
+        return plant_to_inspect(self._season.plot.grid, plant, arrive_s, *long)
 
 
 def begun_batch(season: Season, source: str) -> int | None:
@@ -187,7 +177,7 @@ def left_of_plan(
     name = person(who) if isinstance(who, str) else ""
     if (kept := ahead.last.get(name)) is None:
         return None
-    done = made_by(season.history.on(scene.day), who or None)
+    done = season.worked(on, who)
     before = np.flatnonzero(done.plant == kept.at)
     since = done.result[before[-1] + 1 if len(before) else 0 :]
     plants = ahead.plants[name]
@@ -195,7 +185,7 @@ def left_of_plan(
     for rows in left_out:
         is_left &= ~inside(season.label, rows)[plants]
     left = through(scene, plants[is_left])
-    fits = left.route.end_s <= scene.seconds_left + LATE_S
+    fits = left.route.end_s <= scene.seconds_left + REPLAN_AFTER_S
     return left if fits and (since == CLEAN).all() else None
 
 
@@ -207,13 +197,14 @@ def as_inspection(
 ) -> Inspections:
     """Return what was seen at a plant, on a day at a second since its midnight, as a season has it.
 
-    None: it could not be inspected. Files hold whole seconds.
+    None: it could not be inspected. Files hold whole seconds; past midnight it is the next date.
     """
     result = SKIPPED if found is None else FOUND if found else CLEAN
+    days, second = divmod(np.round(when[1]), DAY_S)
     return Inspections.of(
         np.array([plant]),
         np.array([result]),
-        np.datetime64(when[0]),
-        second=np.array([np.round(when[1])]),
+        np.datetime64(when[0]) + np.timedelta64(int(days), "D"),
+        second=np.array([second]),
         who=np.array([who], object),
     )

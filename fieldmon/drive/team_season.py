@@ -9,9 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.drive.aisle_keeper import AisleKeeper
-from fieldmon.drive.season_day import LATE_S, as_inspection, begun_batch, left_of_plan
-from fieldmon.errors import ObservationError, SettingError
-from fieldmon.monitoring.monitor import PlantToInspect
+from fieldmon.drive.season_day import (
+    REPLAN_AFTER_S,
+    as_inspection,
+    begun_batch,
+    left_of_plan,
+)
+from fieldmon.errors import SettingError
+from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.plot.travel import GATE, travel_s
 
 if TYPE_CHECKING:
@@ -111,15 +116,17 @@ class TeamSeason:
         return len(self.days) == len(left) and any(len(one.route) for one in self.days.values())
 
 
-class MemberDay:
+class MemberDay(AskedDay):
     """The day of one of a team, asked for the next plant and told what was seen there."""
+
+    late_s = REPLAN_AFTER_S
 
     def __init__(self, team: TeamSeason, member: TeamMember) -> None:
         self._team, self._member = team, member
-        self._asked: PlantToInspect | None = None
         scene = team.days[member.name].scene
         self.aisles: Aisles = scene.aisles
         self._stands = _Stands(scene.at, member.robot.day_s - scene.seconds_left)
+        super().__init__(self._stands.gone_s)
         #: the second of the day at which its work began, from which seconds count here
         self.begun_s = team.season.begun_s(team.on, member.name)
 
@@ -158,18 +165,22 @@ class MemberDay:
 
     def tell(self, found: bool | None, at_s: float | None = None) -> None:  # noqa: FBT001 - a result
         """Record what was seen at the plant that was asked for, and when; see `SeasonDay.tell`."""
-        stop, team = self._asked, self._team
-        if stop is None:
-            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
-        done_s = stop.arrive_s + stop.inspect_s
-        now_s = done_s if at_s is None else at_s
-        with team.lock:
-            self._record(stop.plant, found, now_s)
-            self._asked, self._stands = None, _Stands(stop.plant, now_s)
-            team.errands.pop(self._member.name, None)
-            team.done.add(stop.plant)
-            if found or found is None or abs(now_s - done_s) > LATE_S:
-                team.plan()
+        with self._team.lock:
+            self._tell(found, at_s)
+
+    def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
+        team = self._team
+        one = as_inspection(stop.plant, found, (team.on, self.begun_s + now_s), self._member.name)
+        done = team.season.record(one, team.source, into=team.batch)
+        team.batch = team.batch or done.batch
+
+    def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
+        team = self._team
+        self._stands = _Stands(stop.plant, self._clock_s)
+        team.errands.pop(self._member.name, None)
+        team.done.add(stop.plant)
+        if found or found is None or is_late:
+            team.plan()
 
     def leave(self) -> None:
         """Go to no plant any more: what it set out for is free for others."""
@@ -207,21 +218,8 @@ class MemberDay:
         return self.gone_s + float(travel_s(self.aisles.travel, clock, self.at, plant))
 
     def _stop(self, plant: int) -> PlantToInspect:
-        season, route = self._team.season, self._today.route
+        route = self._today.route
         k = int(np.flatnonzero(route.plant == plant)[0])
-        lon, lat = season.plot.grid.lonlat(np.array([plant]))[0]
-        return PlantToInspect(
-            plant=plant,
-            row=int(season.label.line[plant]),
-            number=int(season.label.number[plant]),
-            lonlat=(float(lon), float(lat)),
-            arrive_s=self._arrive_s(plant),
-            inspect_s=float(route.leave_s[k] - route.arrive_s[k]),
-            detects=float(route.detects[k]),
-        )
-
-    def _record(self, plant: int, found: bool | None, now_s: float) -> None:  # noqa: FBT001
-        team = self._team
-        one = as_inspection(plant, found, (team.on, self.begun_s + now_s), self._member.name)
-        done = team.season.record(one, team.source, into=team.batch)
-        team.batch = team.batch or done.batch
+        long = float(route.leave_s[k] - route.arrive_s[k]), float(route.detects[k])
+        grid = self._team.season.plot.grid
+        return plant_to_inspect(grid, plant, self._arrive_s(plant), *long)

@@ -83,7 +83,7 @@ class Belief(Protocol):
 
     @property
     def since_inspected(self) -> Since | None:
-        """What the number may have become since somebody inspected; None: no idea."""
+        """What the number became on days without inspections; None: somebody inspected."""
         ...
 
     @property

@@ -81,7 +81,8 @@ def level_range(
     share = float(np.mean(chance))
     if doubt <= 0.0 or not 0.0 < share < MOST_CHANCE:
         return LevelRange()
-    factors = doubted_level(doubt, named=named) * (1.0 if since is None else since.times)
+    factors = doubted_level(doubt, named=named)
+    factors = factors if since is None else factors * since.times
     by = np.quantile(factors, [0.5 - sure / 2, 0.5 + sure / 2])
     ends = share * by / (1.0 + share * (by - 1.0))
     certain = float(np.mean(chance >= 1.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from datetime import date, datetime, timedelta
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -136,7 +136,9 @@ class PestInWeather:
     @property
     def content(self) -> tuple[object, ...]:
         """Return what tells a pest in its weather from any other, for a digest."""
-        weather = () if self.weather is None else tuple(vars(self.weather).values())
+        of = self.weather
+        # `vars` would have what is cached too, and change with whoever looks
+        weather = () if of is None else (getattr(of, one.name) for one in fields(of))
         return (self.pest, str(self.begins), *weather)
 
     def day(self, number: int) -> DayWeather:

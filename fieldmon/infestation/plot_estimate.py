@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
+from fieldmon.infestation.unwatched import of_odds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,6 +59,11 @@ class PlotEstimate:
     high: int
     chance_clean: float
 
+    def beside(self, found: int) -> PlotEstimate:
+        """Return the same with so many more plants, which were found infested and left."""
+        low, high = self.low + found, self.high + found
+        return PlotEstimate(self.expected + found, low, high, 0.0 if found else self.chance_clean)
+
     def sentence(self) -> str:
         """Return the estimate in words."""
         return (
@@ -91,21 +98,19 @@ def estimate_plot(
         Whether somebody named the pest (`Belief.pest`), see `doubted_level`.
     """
     must_be_sure(sure)
-    if pair_chance is None:
-        pair_chance = pair_chances(chance, grid)
-    counts, none = _counts(grid, chance, pair_chance)
-    expected = float(chance.sum())
-    if doubt <= 0.0:
-        low, high = np.quantile(counts, _ends(sure))
-        return PlotEstimate(expected, int(np.floor(low)), int(np.ceil(high)), float(np.exp(none)))
-    factors = doubted_level(doubt, named=named)
-    low, high = np.quantile(_of_odds(counts, factors, len(chance)), _ends(sure))
-    clean = float(np.exp(none * factors).mean())
-    # to the nearest: outwards, an interval of a few plants would hold far more than is asked
-    return PlotEstimate(expected, round(float(low)), round(float(high)), clean)
+    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
+    every = np.ones(len(chance), np.bool_)
+    drawn = drawn_numbers(grid, (chance, pairs), every)
+    numbers, clean = _doubted_numbers(drawn, doubt, len(chance), named=named)
+    return _estimate(float(chance.sum()), numbers, (clean, sure), exact=doubt <= 0.0)
 
 
-def estimate_of(grid: PlantGrid, belief: Belief, sure: float = 0.9) -> PlotEstimate:
+def estimate_of(
+    grid: PlantGrid,
+    belief: Belief,
+    sure: float = 0.9,
+    found: NDArray[np.bool_] | None = None,
+) -> PlotEstimate:
     """Return what a belief says of the whole plot, with the doubt that it tells of itself.
 
     Parameters
@@ -116,6 +121,9 @@ def estimate_of(grid: PlantGrid, belief: Belief, sure: float = 0.9) -> PlotEstim
         What is believed.
     sure
         Chance that the interval holds the number.
+    found
+        ``(n,)`` plants that were found infested and left, which do not count: of them nothing is
+        in doubt (see `PlotEstimate.beside`). None: there are none.
 
     Examples
     --------
@@ -129,39 +137,59 @@ def estimate_of(grid: PlantGrid, belief: Belief, sure: float = 0.9) -> PlotEstim
     >>> estimate_of(grid, in_two_days).high > estimate_of(grid, tonight).high
     True
     """
-    since, named = belief.since_inspected, belief.pest is not None
-    if since is None or belief.pair_chance is None or belief.doubt <= 0.0:
-        return estimate_plot(
-            grid, belief.chance, belief.pair_chance, sure, belief.doubt, named=named
-        )
     must_be_sure(sure)
-    n = len(belief.chance)
-    counts, none = _counts(grid, belief.chance, belief.pair_chance)
-    factors = doubted_level(belief.doubt, named=named)
-    counts = since.numbers(_of_odds(counts, factors, n), n)
-    low, high = np.quantile(counts, _ends(sure))
-    clean = float(np.exp(none * factors * since.unhealed).mean())
-    # to the nearest: outwards, an interval of a few plants would hold far more than is asked
-    return PlotEstimate(float(belief.chance.sum()), round(float(low)), round(float(high)), clean)
+    chance, doubt, named = belief.chance, belief.doubt, belief.pest is not None
+    asked = np.ones(len(chance), np.bool_) if found is None else ~found
+    expected, n = float(chance[asked].sum()), int(np.count_nonzero(asked))
+    if (since := belief.since_inspected) is not None:
+        factors = doubted_level(doubt, named=named)
+        numbers = since.numbers(factors, expected, n)
+        clean = since.chance_of_none(factors, expected)
+    else:
+        pairs = pair_chances(chance, grid) if belief.pair_chance is None else belief.pair_chance
+        drawn = drawn_numbers(grid, (chance, pairs), asked)
+        numbers, clean = _doubted_numbers(drawn, doubt, n, named=named)
+    return _estimate(expected, numbers, (clean, sure), exact=doubt <= 0.0)
 
 
-def _counts(grid: PlantGrid, chance: Floats, pair_chance: Floats) -> tuple[Floats, float]:
-    """Return how many are infested in drawn fields, and the logarithm of the chance of none."""
+def _doubted_numbers(
+    drawn: tuple[Floats, float], doubt: float, n: int, *, named: bool
+) -> tuple[Floats, float]:
+    """Return how many of n plants there may be, ``(400,)``, and the chance that there is none."""
+    numbers, none = drawn
+    if doubt <= 0.0:
+        return numbers, float(np.exp(none))
+    factors = doubted_level(doubt, named=named)
+    return of_odds(numbers, factors, n), float(np.exp(none * factors).mean())
+
+
+def _estimate(
+    expected: float, numbers: Floats, clean_sure: tuple[float, float], *, exact: bool
+) -> PlotEstimate:
+    clean, sure = clean_sure
+    below, above = _ends(sure)
+    low, high = map(float, np.quantile(numbers, [below, above]))
+    # doubted, to the nearest: outwards, an interval of a few plants would hold far more than asked
+    ends = (math.floor(low), math.ceil(high)) if exact else (round(low), round(high))
+    return PlotEstimate(expected, 0 if clean > below else ends[0], ends[1], clean)
+
+
+def drawn_numbers(
+    grid: PlantGrid, believed: tuple[Floats, Floats], asked: NDArray[np.bool_]
+) -> tuple[Floats, float]:
+    """Return how many of the plants asked about are infested in drawn fields, ``(400,)``.
+
+    And the logarithm of the chance that none is. `believed` is ``chance (n,)`` and
+    ``pair_chance (e,)``.
+    """
+    chance, pair_chance = believed
     table = _table(chance, pair_chance, grid.adjacent)
-    drawn = _drawn(table, _KEY, len(chance))
+    drawn = _drawn(table, _KEY, asked)
     # round the loops of a lattice the drawn fields are a little off the map: put right together
-    right = float(chance.sum()) / max(float(drawn.mean()), 1e-9)
+    right = float(chance[asked].sum()) / max(float(drawn.mean()), 1e-9)
     # the chain of plants draws no infested one
-    return (drawn * right).clip(0.0, len(chance)), float(np.log1p(-table[-1]).sum())
-
-
-def _of_odds(counts: Floats, factors: Floats, n: int) -> Floats:
-    """Return numbers whose odds are so many times as high, as finds change a level."""
-    # never more than there are plants; where all are infested, odds have no bound, and the least
-    # factor may be 0
-    share = np.minimum(counts / n, 1.0 - 1e-12)
-    changed: Floats = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), n)
-    return changed
+    none = float(np.log1p(-table[-1][asked]).sum())
+    return (drawn * right).clip(0.0, np.count_nonzero(asked)), none
 
 
 def must_be_sure(sure: float) -> None:
@@ -202,14 +230,18 @@ def _doubted_widely(doubt: float) -> Floats:
     return factors
 
 
-def _drawn(table: _Table, key: np.uint64, n: int) -> NDArray[np.int64]:
-    """Return how many of n plants are infested in each drawn field; all processors draw."""
-    counts = np.empty(_DRAWS, np.int64)
+def _drawn(table: _Table, key: np.uint64, asked: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return how many plants asked about are infested in each drawn field; all processors draw."""
+    counts, n = np.empty(_DRAWS, np.int64), len(asked)
     first = np.linspace(0, _DRAWS, (os.cpu_count() or 1) + 1).astype(np.int64)
     with ThreadPoolExecutor(len(first) - 1) as pool:
         parts = [
             pool.submit(
-                _draw, table, key, (int(a), np.zeros((n, _SIDE_BY_SIDE), np.bool_)), counts[a:b]
+                _draw,
+                table,
+                key,
+                (int(a), asked, np.zeros((n, _SIDE_BY_SIDE), np.bool_)),
+                counts[a:b],
             )
             for a, b in pairwise(first)
         ]
@@ -222,14 +254,15 @@ def _drawn(table: _Table, key: np.uint64, n: int) -> NDArray[np.int64]:
 def _draw(
     table: _Table,
     key: np.uint64,
-    fields: tuple[int, NDArray[np.bool_]],
+    fields: tuple[int, NDArray[np.bool_], NDArray[np.bool_]],
     counts: NDArray[np.int64],
 ) -> None:
     """Count the infested of fields drawn plant after plant, given neighbours drawn before.
 
-    `fields` are the number of the first one, which its draws hang on, and room for some ``(n, f)``.
+    `fields` are the number of the first one, which its draws hang on, the plants asked about, and
+    room for some ``(n, f)``.
     """
-    first, drawn = fields
+    first, asked, drawn = fields
     n, most = drawn.shape
     for k in range(0, counts.size, most):
         some = min(most, counts.size - k)
@@ -237,7 +270,7 @@ def _draw(
         for i in range(n):
             for f in range(some):
                 drawn[i, f] = coin(key, (first + k + f) * n + i) < _given(table, drawn, i, f)
-                counts[k + f] += drawn[i, f]
+                counts[k + f] += drawn[i, f] and asked[i]
 
 
 @routine

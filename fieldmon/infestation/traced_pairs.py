@@ -45,10 +45,11 @@ from fieldmon.infestation.pair_changes import pairs_after_arrivals, pairs_scaled
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
+from fieldmon.infestation.plot_estimate import drawn_numbers
 from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.traced_day import KNOWN, KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
-from fieldmon.infestation.unwatched import Since, Unwatched
+from fieldmon.infestation.unwatched import Counted, Since, Unwatched
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -226,7 +227,7 @@ class TracedPairs:
 
         As `doubt_of_rates` has it, but offspring is as doubtful as what it came from: of twice as
         many that were there at the start, there is twice as much. And as far as finds proved what
-        was told of the start too low. Once a night has told who infested whom, it is less.
+        was told of the start too low. Once the ancestry of finds has its say, it is less.
         """
         brought = self._brought_so_far
         expected, beside = float(brought.sum()), float(brought[BY_ADJACENT])
@@ -237,7 +238,7 @@ class TracedPairs:
         more = max(float(np.log(start / self.at_start.sum())), 0.0)
         doubt = float(np.hypot(self._doubt_of(came, expected), _STILL_TOO_FEW * more))
         ancestry = self.ancestry
-        told = ancestry is not None and ancestry.knows and len(ancestry.sends) > 0
+        told = ancestry is not None and ancestry.knows and not ancestry.waits
         return float(np.hypot(_LESS_DOUBT * doubt if told else doubt, self._left_in_doubt))
 
     @property
@@ -251,8 +252,8 @@ class TracedPairs:
         return float(np.hypot(doubt, self._left_in_doubt))
 
     @property
-    def since_inspected(self) -> Since:
-        """What the number may have become since somebody inspected."""
+    def since_inspected(self) -> Since | None:
+        """What the number may have become on days without inspections, see `Belief`."""
         return self.unwatched.draws(named=self.pest is not None, arrivals_found=self.arrivals_found)
 
     @property
@@ -390,12 +391,21 @@ class TracedPairs:
         """Return what is believed the next morning."""
         morning = self._overnight(spread, tells_apart=True)
         morning = self._with_ancestry(morning, self._sends(spread), spread)
+        return self._unwatched(morning, spread)
+
+    def _unwatched(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
+        """Return the next morning with what is in doubt of it if nobody inspected today."""
         # of those that were not found yet
         unknown = self.chance <= KNOWN
         before, after = (max(float(b.chance[unknown].sum()), LEAST_CHANCE) for b in (self, morning))
         anywhere, by_edge = self._from_outside(self.reach, spread)
         new = float(((1.0 - self.chance) * (anywhere + by_edge))[unknown].sum())
-        return replace(morning, unwatched=self.unwatched.overnight(before, after, new))
+        counted = None
+        if self.unwatched.begins:
+            drawn, none = drawn_numbers(self.grid, (self.chance, self.pair_chance), unknown)
+            counted = Counted(drawn / before, none, before)
+        unwatched = self.unwatched.overnight(before, after, new, counted)
+        return replace(morning, unwatched=unwatched)
 
     def in_hindsight(self, spread: Spread) -> TracedPairs:
         """Return the same as the ancestry of finds has it by now, before the night of a `spread`.
@@ -425,7 +435,7 @@ class TracedPairs:
 
         No find can be traced by it, but it is worked out in half the time.
         """
-        return replace(self._overnight(spread, tells_apart=False), ancestry=None)
+        return self._unwatched(self._overnight(spread, tells_apart=False), spread)
 
     @property
     def _degree(self) -> float:
@@ -520,21 +530,6 @@ class TracedPairs:
     def arrivals_found(self) -> float:
         """How many finds came from outside of the plot, as the season's inspections have it."""
         return float(self.counts.found[[ANYWHERE, BY_EDGE]].sum())
-
-    @property
-    def without_arrivals(self) -> TracedPairs:
-        """The same of what did not come from outside, and nothing will."""
-        expected, found = self.counts.expected.copy(), self.counts.found.copy()
-        expected[[ANYWHERE, BY_EDGE]], found[[ANYWHERE, BY_EDGE]] = 1e12, 0.0
-        shares = self.shares.astype(np.float64)
-        outside = shares[:, [ANYWHERE, BY_EDGE]].sum(axis=1)
-        brought = np.einsum("i,ik->k", self.chance, shares)
-        # what came from the plant beside it came from where that one did
-        arrived = brought[[ANYWHERE, BY_EDGE]].sum() / max(
-            brought.sum() - brought[BY_ADJACENT], 1e-12
-        )
-        inside = 1.0 - outside - shares[:, BY_ADJACENT] * min(arrived, 1.0)
-        return replace(self.times(inside), counts=OriginCounts(found, expected))
 
     def treated(self, left: Floats) -> TracedPairs:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.special import gammaincinv, ndtri, pdtrik
+from scipy.special import gammaincinv, nbdtrik, ndtri, pdtrik
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,14 +25,17 @@ RATE_DOUBT = 0.5
 # what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
 # found are not told from others. So it may well be that nothing arrives, or many times as much
 _ARRIVALS_KNOWN, _NOT_TOLD = 0.35, 3.0
-# a single number tells of no more doubt than this
+# an inspection is worth no more than of a number that is as doubtful as this
 _MOST_VARIANCE = 1.0
-# draws that are spread evenly: steps by the roots of 3, 7 and 11, as others are by those of 2 and 5
-_DRAWS, _STEPS = 400, (0.7320508075688772, 0.6457513110645907, 0.3166247903553998)
-# the roots of 13 and 17; and of more than this whole numbers tell nothing
-_WHOLE_STEPS, _FEW = (0.605551275463989, 0.123105625617661), 1e3
-#: more growth than this, as a logarithm, would be no number
-MOST_GROWN = 100.0
+# draws that are spread evenly: steps by the roots of 3, 7, 11, 13 and 17, as others are by those of
+# 2 and 5
+_STEPS = 0.7320508075688772, 0.6457513110645907, 0.3166247903553998
+_WHOLE_STEPS = 0.605551275463989, 0.123105625617661
+# of more than this whole numbers tell nothing
+_FEW = 1e3
+# more growth than this, as a logarithm, would be no number
+_MOST_GROWN = 100.0
+_LEAST = 1e-9
 
 
 def arrivals_known(found: float) -> float:
@@ -40,49 +43,91 @@ def arrivals_known(found: float) -> float:
     return _ARRIVALS_KNOWN + max(found - _NOT_TOLD, 0.0)
 
 
-class Since(NamedTuple):
-    """What a number may have become since somebody inspected, as multiples of what is expected.
+class Counted(NamedTuple):
+    """How many were infested on the first morning without inspections, as the chance map had it.
 
     Parameters
     ----------
-    before
-        How many there were then: nothing heals, however slowly they multiplied.
-    inside, came
-        ``(400,)`` even draws of what these have become, and of what arrived.
-    idle
-        Whether there were days without inspections; else the chance map says all of it.
+    drawn
+        ``(k,)`` in drawn fields, over what was expected.
+    none
+        Logarithm of the chance that there were none.
+    expected
+        How many were expected.
     """
 
-    before: float
-    inside: Floats
+    drawn: Floats
+    none: float
+    expected: float
+
+
+class Since(NamedTuple):
+    """What a number may have become on days without inspections.
+
+    Parameters
+    ----------
+    counted
+        How many there were on the first morning of them.
+    grew
+        ``(k,)`` draws of how many times as many these are now: nothing heals.
+    came
+        ``(k,)`` draws of what arrived, over all that is expected now.
+    now
+        How many are expected now, had nothing been treated since.
+    """
+
+    counted: Counted
+    grew: Floats
     came: Floats
-    idle: bool
+    now: float
 
     @property
     def times(self) -> Floats:
-        """What the number may have become of all together, as a multiple, ``(400,)``."""
-        return self.inside + self.came
+        """By what the number now may have to be multiplied, of all plants together, ``(k,)``."""
+        return self.grew * (self.counted.expected / self.now) + self.came
 
-    @property
-    def unhealed(self) -> Floats:
-        """How many of all are no offspring since: these were there, or arrived, ``(400,)``."""
-        unhealed = self.before + self.came
-        return unhealed if self.idle else np.minimum(unhealed, 1.0)
+    def numbers(self, factors: Floats, expected: float, n: int) -> Floats:
+        """Return how many there may be of n plants, ``(k,)``, where so many are expected.
 
-    def numbers(self, counts: Floats, n: int) -> Floats:
-        """Return how many there may be of n plants, ``(400,)``, where so many are believed."""
-        if not self.idle:
-            return counts
-        one, other = ((np.arange(_DRAWS) + 1) * step % 1.0 for step in _WHOLE_STEPS)
-        then = _whole(counts * self.before, one) / self.before
-        came = _whole(counts * self.came, other)
-        numbers: Floats = np.minimum(then * self.inside + came, n)
+        Parameters
+        ----------
+        factors
+            ``(k,)`` by what the odds of being infested may have to be multiplied.
+        expected
+            How many are expected now.
+        n
+            How many plants may be infested.
+        """
+        one, other = ((np.arange(len(factors)) + 1) * step % 1.0 for step in _WHOLE_STEPS)
+        left = self.counted.expected * expected / self.now
+        then = of_odds(self.counted.drawn * left, factors, max(n, 1))
+        # each multiplies by itself, as in a birth process (Yule 1925)
+        more = np.maximum(self.grew, 1.0 + _LEAST)
+        few = np.maximum(then, _LEAST)
+        born = np.where(few < _FEW, np.ceil(nbdtrik(one, few, 1.0 / more)), few * (more - 1.0))
+        grown = then + np.maximum(np.nan_to_num(born), 0.0)
+        here = np.where(self.grew > 1.0, grown, then * self.grew)
+        numbers: Floats = np.minimum(here + _whole(expected * self.came, other), n)
         return numbers
+
+    def chance_of_none(self, factors: Floats, expected: float) -> float:
+        """Return the chance that there is none now: none was there, and none arrived."""
+        none = self.counted.none * factors * (expected / self.now) - expected * self.came
+        return float(np.exp(none).mean())
+
+
+def of_odds(counts: Floats, factors: Floats, n: int) -> Floats:
+    """Return numbers of n plants whose odds are so many times as high, as finds change a level."""
+    # never more than there are plants; where all are infested, odds have no bound, and the least
+    # factor may be 0
+    share = np.minimum(counts / n, 1.0 - 1e-12)
+    changed: Floats = np.minimum(counts * factors / (1.0 + share * (factors - 1.0)), n)
+    return changed
 
 
 def _whole(mean: Floats, places: NDArray[np.floating[Any]]) -> Floats:
     """Return whole numbers with such means, as by a Poisson law, at places spread evenly."""
-    few = np.nan_to_num(pdtrik(places, np.clip(mean, 1e-9, _FEW)))
+    few = np.nan_to_num(pdtrik(places, np.clip(mean, _LEAST, _FEW)))
     return np.where(mean < _FEW, np.maximum(np.ceil(few), 0.0), mean)
 
 
@@ -94,13 +139,15 @@ class Unwatched(NamedTuple):
     days
         How many days without inspections there were since the last.
     grown
-        The logarithm of how many times as many infested plants are expected as on that evening.
+        The logarithm of how many times as many are expected as on the first morning of them.
     left
         The variance that is left of days without inspections before it.
     arrived
         The share of them that arrived from outside since, and of their offspring.
     looked
         Whether somebody inspected today.
+    counted
+        How many there were on that morning; None: there was no day without inspections.
     """
 
     days: int = 0
@@ -108,19 +155,12 @@ class Unwatched(NamedTuple):
     left: float = 0.0
     arrived: float = 0.0
     looked: bool = False
+    counted: Counted | None = None
 
     def variance(self, *, named: bool, arrivals_found: float = 0.0) -> float:
         """Return by how much the number varies, as a share of it, squared.
 
         `named` tells of a named pest, and `arrivals_found` of finds that came from outside.
-
-        Examples
-        --------
-        >>> morning = Unwatched(looked=True).overnight(10.0, 12.0)
-        >>> morning.variance(named=False)
-        0.0
-        >>> round(morning.overnight(12.0, 15.0).variance(named=False), 2)
-        0.13
         """
         if self.days == 0:
             return self.left
@@ -129,20 +169,21 @@ class Unwatched(NamedTuple):
         since = level**2 + (RATE_DOUBT * self.grown) ** 2 + by_arrivals
         return self.left + min(since, _MOST_VARIANCE)
 
-    def draws(self, *, named: bool, arrivals_found: float = 0.0) -> Since:
-        """Return what the number may have become since somebody inspected."""
-        before = min(float(np.exp(-self.grown)), 1.0)
-        if self.days == 0:
-            ones = np.ones(_DRAWS)
-            return Since(before, ones * (1.0 - self.arrived), ones * self.arrived, idle=False)
-        one, other, third = ((np.arange(_DRAWS) + 1) * step % 1.0 for step in _STEPS)
+    def draws(self, *, named: bool, arrivals_found: float = 0.0) -> Since | None:
+        """Return what the number may have become; None: there was no day without inspections."""
+        if self.counted is None:
+            return None
+        draws = len(self.counted.drawn)
+        one, other, third = ((np.arange(draws) + 1) * step % 1.0 for step in _STEPS)
         level = OF_A_PEST if named else LEVEL_DOUBT
         levels = gammaincinv(level**-2.0, one) * level**2.0
         faster = np.exp(RATE_DOUBT * ndtri(other))
         known = arrivals_known(arrivals_found)
-        came = self.arrived * gammaincinv(known, third) / known
-        grew = np.exp(np.minimum(self.grown * (faster - 1.0), MOST_GROWN))
-        return Since(before, levels * grew * (1.0 - self.arrived), levels * came, idle=True)
+        came = self.arrived * levels * gammaincinv(known, third) / known
+        times = levels * np.exp(np.minimum(self.grown * faster, _MOST_GROWN))
+        grew = np.maximum(times * (1.0 - self.arrived), min(float(np.exp(self.grown)), 1.0))
+        now = self.counted.expected * float(np.exp(min(self.grown, _MOST_GROWN)))
+        return Since(self.counted, grew, came, now)
 
     def inspected(self, found: float, variance: float) -> Unwatched:
         """Return the same after inspections that were expected to find so many.
@@ -151,21 +192,36 @@ class Unwatched(NamedTuple):
         """
         return Unwatched(left=variance / (1.0 + variance * found), looked=True)
 
-    def overnight(self, before: float, after: float, new: float = 0.0) -> Unwatched:
-        """Return the same after a night in which so many become so many, some from outside."""
-        grown, share = float(np.log(after / before)), min(new / after, 1.0)
+    @property
+    def begins(self) -> bool:
+        """Whether this is the first morning without inspections, if nobody comes today."""
+        return self.counted is None and not self.looked
+
+    def overnight(
+        self, before: float, after: float, new: float = 0.0, counted: Counted | None = None
+    ) -> Unwatched:
+        """Return the same after a night in which so many become so many, some from outside.
+
+        `counted` tells of this morning, where it `begins` days without inspections.
+        """
         if self.looked:
-            return Unwatched(0, grown, self.left, share)
+            return Unwatched(left=self.left)
+        share = min(new / after, 1.0)
         arrived = share + self.arrived * (1.0 - share)
-        return Unwatched(self.days + 1, self.grown + grown, self.left, arrived)
+        grown = self.grown + float(np.log(after / before))
+        counted = self.counted if counted is None else counted
+        return Unwatched(self.days + 1, grown, self.left, arrived, counted=counted)
 
     @property
-    def array(self) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-        """What to keep of it on a morning, ``(4,)``."""
-        return np.array(self[:4], np.float64)
+    def array(self) -> Floats:
+        """What to keep of it on a morning, ``(4,)`` or, with what was counted, ``(6 + k,)``."""
+        counted = () if self.counted is None else self.counted
+        return np.concatenate([self[:4], *(np.atleast_1d(part) for part in counted[::-1])])
 
     @classmethod
-    def of_array(cls, kept: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Unwatched:
+    def of_array(cls, kept: Floats) -> Unwatched:
         """Return what such an array has kept."""
-        days, grown, left, arrived = map(float, kept)
-        return cls(int(days), grown, left, arrived)
+        days, grown, left, arrived = map(float, kept[:4])
+        expected, none, drawn = kept[4:5], kept[5:6], kept[6:]
+        counted = Counted(drawn, float(none[0]), float(expected[0])) if len(kept) > 4 else None
+        return cls(int(days), grown, left, arrived, counted=counted)

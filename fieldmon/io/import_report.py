@@ -183,11 +183,9 @@ def seen(sentence: str, feature: str | None = None, remedy: Remedy | None = None
     return ImportMessage(Severity.SEEN, sentence, feature, remedy)
 
 
-def repaired(
-    sentence: str, feature: str | None = None, remedy: Remedy | None = None, many: str = ""
-) -> ImportMessage:
+def repaired(sentence: str, feature: str | None = None, many: str = "") -> ImportMessage:
     """Return a message about something put right."""
-    return ImportMessage(Severity.REPAIRED, sentence, feature, remedy, many)
+    return ImportMessage(Severity.REPAIRED, sentence, feature, many=many)
 
 
 def guessed(

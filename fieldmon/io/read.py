@@ -66,9 +66,9 @@ def read_crews(
     return read
 
 
-def read_treated(source: Source, options: PlotOptions | None = None) -> Imported[MultiPolygon]:
+def read_treated(source: Source) -> Imported[MultiPolygon]:
     """Return the area that a file says was treated, as the zones of a decision, degrees WGS84."""
-    area: Imported[MultiPolygon] = _read("treated", source, options or PlotOptions())
+    area: Imported[MultiPolygon] = _read("treated", source, PlotOptions())
     return area
 
 

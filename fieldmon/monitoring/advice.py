@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_rate
+from fieldmon.compute.arguments import USUAL_RATE_L_HA, must_be_rate
+from fieldmon.compute.ranges import USUAL_SURE
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import (
     counted,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from datetime import date
 
+    from numpy.typing import NDArray
     from shapely import MultiPolygon
 
     from fieldmon.compute.wording import Worded
@@ -72,10 +74,10 @@ class AdviceSettings:
     """
 
     level: float = 0.05
-    sure: float = 0.9
+    sure: float = USUAL_SURE
     sprayer: Sprayer = field(default_factory=Sprayer)
     costs: TreatmentCosts = field(default_factory=TreatmentCosts)
-    rate_l_ha: float = 300.0
+    rate_l_ha: float = USUAL_RATE_L_HA
     learnt_of: str = ""
 
     def __post_init__(self) -> None:
@@ -390,7 +392,7 @@ class Advice:
 
 def advice(
     grid: PlantGrid, evening: Belief, asked: AdviceSettings, scene: Scene | None = None,
-    done: tuple[Treatment, ...] = (),
+    done: tuple[Treatment, ...] = (), found: NDArray[np.bool_] | None = None,
 ) -> Advice:  # fmt: skip
     """Return what is advised on what is believed after a day's work.
 
@@ -406,8 +408,10 @@ def advice(
         The day, for the looks to a verdict; None: they are not asked for.
     done
         What was treated that day.
+    found
+        ``(n,)`` plants that were found infested and left, of which nothing is in doubt.
     """
-    question = AskedVerdict.on(evening, asked.level, asked.sure)
+    question = AskedVerdict.on(evening, asked.level, asked.sure, found)
     plot = map_verdict(grid, evening.chance, question, evening.pair_chance)
     spared = np.logical_or.reduce([one.plants for one in done]) if done else None
     zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs, spared)
@@ -416,25 +420,29 @@ def advice(
     )
     more = None
     if scene is not None and plot.verdict == LOOK_ON:
-        more = inspections_to_verdict(evening, scene, asked)
+        more = inspections_to_verdict(evening, scene, asked, found)
     return Advice(grid, asked, plot, zones, said, more, done)
 
 
-def inspections_to_verdict(evening: Belief, scene: Scene, asked: AdviceSettings) -> MoreInspections:
+def inspections_to_verdict(
+    evening: Belief, scene: Scene, asked: AdviceSettings, found: NDArray[np.bool_] | None = None
+) -> MoreInspections:
     """Return after how many looks, driven as Decide drives, a verdict can come at the earliest."""
     n = len(scene.chance)
+    known = np.zeros(n, np.bool_) if found is None else found
     day = replace(scene, seconds_left=min(_LONG_DAY_S, 1e4 * n))
     order = Decide().walk(day, np.zeros(n, np.bool_)).plant[:_MOST_LOOKS]
     learning = Learning(scene.robot.detects, treated=False)
 
-    def verdict(looks: int, *, found: bool) -> Verdict:
-        after = evening.learn(order[:looks], np.full(looks, found), learning)
-        question = AskedVerdict.on(after, asked.level, asked.sure)
+    def verdict(looks: int, *, all_found: bool) -> Verdict:
+        after = evening.learn(order[:looks], np.full(looks, all_found), learning)
+        now = known | (np.isin(np.arange(n), order[:looks]) if all_found else False)
+        question = AskedVerdict.on(after, asked.level, asked.sure, now)
         return map_verdict(scene.grid, after.chance, question, after.pair_chance).verdict
 
     return MoreInspections(
-        _first(lambda looks: verdict(looks, found=False) == LEAVE, len(order)),
-        _first(lambda looks: verdict(looks, found=True) == TREAT, len(order)),
+        _first(lambda looks: verdict(looks, all_found=False) == LEAVE, len(order)),
+        _first(lambda looks: verdict(looks, all_found=True) == TREAT, len(order)),
     )
 
 

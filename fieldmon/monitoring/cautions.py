@@ -102,7 +102,7 @@ def label_of(one: KeptTreatment, labels: Iterable[ProductLabel]) -> ProductLabel
 
 def waits(one: KeptTreatment, label: ProductLabel | None) -> WaitingPeriod:
     """Return what has to be waited for: as entered, or longer where the label says so."""
-    period = one.waits
+    period = one.entered_waits
     if label is None:
         return period
     return replace(

@@ -47,7 +47,8 @@ def take(
     FileProblem
         If a changed row is not in the season, or makes no sense: which one.
     """
-    changes = [one for one in waiting(theirs) if not _is_taken(db, theirs, one)]
+    found = (_as_here(db, one) for one in waiting(theirs))
+    changes = [one for one in found if not _is_taken(db, theirs, one)]
     if not changes:
         return ()
     name, who = said
@@ -63,6 +64,16 @@ def take(
     batches.end(db, batch, len(changes))
     touch(db, INSPECTIONS.name)
     return tuple(outside_changes.in_words(db, one) for one in taken)
+
+
+def _as_here(db: sqlite3.Connection, one: OutsideChange) -> OutsideChange:
+    """Return a deletion of the row that it has here: a season that was merged has other numbers."""
+    mark = replaced.as_it_was(one.before)["digest"]
+    if one.what != "delete" or mark is None:
+        return one
+    same = "SELECT fid FROM inspections WHERE digest = ? ORDER BY undone <> 0, fid LIMIT 1"
+    (row,) = db.execute(same, (mark,)).fetchone() or (-1,)
+    return replace(one, row=row)
 
 
 def _is_taken(db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideChange) -> bool:

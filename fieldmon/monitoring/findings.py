@@ -243,7 +243,10 @@ def _take(
     """Keep what somebody tells, each finding once."""
     findings = letter.findings
     known = _known(change.db, [one.id for one in findings])
-    news = {one.id: one for one in findings if one.id not in known}
+    news: dict[str, Finding] = {}
+    for one in findings:
+        if one.id not in known:
+            news.setdefault(one.id, one)  # of two with one id the first is kept
     _limit(change.db, scout, letter.clocks[0], len(news))
     for one in news.values():
         known[one.id] = one.content(), ""
@@ -262,7 +265,9 @@ def _take(
         season_log.append(change.db, "undone", scout.name, states=states, **said)
     return tuple(
         Taken(
-            one.id, one.id in news, problems.get(one.id, known[one.id][1]) or _differs(one, known)
+            one.id,
+            news.get(one.id) is one,
+            problems.get(one.id, known[one.id][1]) or _differs(one, known),
         )
         for one in findings
     )

@@ -26,7 +26,9 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_day import KNOWN
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import driven_s, robot_clock
@@ -50,7 +52,7 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 #: who begins later than this after the day's start, or sooner before it, has hours of their own
-LATE_S = 300.0
+BEGINS_OTHERWISE_S = 300.0
 
 
 class Besides(NamedTuple):
@@ -300,9 +302,12 @@ class History:
             known = sum(pest.known(number) for number in ahead)
             measured = sum(pest.measured(number) for number in ahead)
         evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
-        # what is flagged and not treated is still out there tomorrow, but not left to be found
-        now = self.estimate(morning, day) if self.belief.treated else None
-        made = forecast(evening, self.grid, spreads, known, now)
+        # what is flagged and not treated is still out there
+        found = self.found_and_left(evening, day)
+        now = self.estimate(morning, day)
+        if found is not None:
+            now = estimate_of(self.grid, self.in_hindsight(morning, day), found=found)
+        made = forecast(evening, self.grid, spreads, known, now, found)
         return replace(made, measured=measured)
 
     def evening(self, morning: Belief, day: int) -> Belief:
@@ -329,8 +334,13 @@ class History:
     def _last_evening(self) -> _Last[Belief]:
         return _Last()
 
-    def _evening(self, morning: Belief, day: int) -> Belief:
-        done, detection = self.on(day), self.detections[self._rows_of(day)]
+    def _evening(
+        self, morning: Belief, day: int, later: NDArray[np.signedinteger] | None = None
+    ) -> Belief:
+        """Return what is believed after a day, and after inspections `later` in its work."""
+        rows = self._rows_of(day)
+        which = rows if later is None else np.append(np.arange(rows.start, rows.stop), later)
+        done, detection = self.inspections.take(which), self.detections[which]
         inspected = done.result != SKIPPED
         done, detection = done.take(inspected), detection[inspected]
         believed = self.belief.evening(morning, done.plant, done.result == FOUND, detection)
@@ -377,7 +387,20 @@ class History:
         return _Last()
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
-        return estimate_of(self.grid, self._still_out(morning, day))
+        evening = self.in_hindsight(morning, day)
+        # what was found is known: it is not out there any more
+        found = None if self.belief.treated else self.states(day) == PRESENT
+        return estimate_of(self.grid, evening, found=found)
+
+    def found_and_left(self, evening: Belief, day: int) -> NDArray[np.bool_] | None:
+        """Return the plants of which it is certain that they are infested; None: all are treated.
+
+        A treatment leaves some of them in doubt, as all other plants.
+        """
+        if self.belief.treated:
+            return None
+        found: NDArray[np.bool_] = (self.states(day) == PRESENT) & (evening.chance > KNOWN)
+        return found
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""
@@ -458,7 +481,14 @@ class History:
             one who works.
         """
         aisles, robot = shift.aisles, shift.robot
-        today, believed = self.on(day), in_sight(self.evening(morning, day))
+        later = self._past_midnight(shift, day, who)
+        today = self.worked(shift, day, who)
+        # what the day's finds say of other plants counts for the rest of it, too
+        believed = in_sight(
+            in_hindsight(self._evening(morning, day, later), self.night(day))
+            if len(later)
+            else self.in_hindsight(morning, day)
+        )
         last = self.last_inspected(day)
         last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
         trail = self._trail(day, who)
@@ -482,18 +512,38 @@ class History:
     def begun_s(self, shift: Shift, day: int, who: str | Besides | None = None) -> float:
         """Return the second of a day at which somebody's work began; `who` is that of `scene`.
 
-        It is the shift's, unless the first inspection shows that it was more than `LATE_S` off:
-        then it began with the way to that one.
+        It is the shift's, unless the first inspection shows that it was more than
+        `BEGINS_OTHERWISE_S` off: then it began with the way to that one.
         """
         resting = resting_place(shift.robot, self._trail(day, who))
-        return _begun_s(shift, made_by(self.on(day), who), resting)
+        return _begun_s(shift, made_by(self.worked(shift, day, who), who), resting)
 
     def gone_s(
         self, shift: Shift, day: int, now_s: float | None = None, who: str | Besides | None = None
     ) -> float:
         """Return how many seconds of somebody's working day are gone; all is as in `scene`."""
         resting = resting_place(shift.robot, self._trail(day, who))
-        return _gone_s(shift, made_by(self.on(day), who), resting, now_s)
+        return _gone_s(shift, made_by(self.worked(shift, day, who), who), resting, now_s)
+
+    def worked(self, shift: Shift, day: int, who: str | Besides | None = None) -> Inspections:
+        """Return what anybody inspected on a day, and until somebody's work ends past its midnight.
+
+        Inspections after midnight are dated the next day; here their seconds go on from 86 400.
+        """
+        later = self.inspections.take(self._past_midnight(shift, day, who))
+        return self.on(day).and_those(replace(later, second=later.second + DAY_S))
+
+    def _past_midnight(
+        self, shift: Shift, day: int, who: str | Besides | None
+    ) -> NDArray[np.signedinteger]:
+        """Return which inspections of the next day were made in the hours of a day's work."""
+        rows = np.arange(*np.searchsorted(self.days, [day + 1, day + 2]))
+        if not len(rows):
+            return rows
+        resting = resting_place(shift.robot, self._trail(day, who))
+        begun_s = _begun_s(shift, made_by(self.on(day), who), resting)
+        ends_s = begun_s + shift.robot.day_s + BEGINS_OTHERWISE_S
+        return rows[self.inspections.second[rows] < ends_s - DAY_S]
 
     def _trail(self, day: int, who: str | Besides | None) -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
@@ -550,7 +600,7 @@ def _begun_s(shift: Shift, today: Inspections, resting: int) -> float:
     if not len(today) or not np.isfinite(today.second[0]):
         return shift.starts_s
     begun_s = max(0.0, float(today.second[0]) - _charged_s(shift, today.plant[:1], resting))
-    return begun_s if abs(begun_s - shift.starts_s) > LATE_S else shift.starts_s
+    return begun_s if abs(begun_s - shift.starts_s) > BEGINS_OTHERWISE_S else shift.starts_s
 
 
 def _gone_s(shift: Shift, today: Inspections, resting: int, now_s: float | None) -> float:

@@ -3,8 +3,9 @@
 A row is known again by what it says and by the batch it came with, never by its number. What was
 taken back in one copy is taken back. What both recorded for themselves counts once; the later one
 stands back for the first until that one is taken back. Everything is put in the order in which it
-was recorded, so that it does not matter which copy takes in the other. Inspections that both copies
-begin with, and that come out where they are, are left there: of a long season these are nearly all.
+was recorded, so that it does not matter which copy takes in the other; what a copy recorded later
+stays so, whatever its clock said. Inspections that both copies begin with, and that come out where
+they are, are left there: of a long season these are nearly all.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import phone_tables, replaced, schema, season_log, settings_log
+from fieldmon.monitoring.batches import close_if_empty
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.planning.members import person
@@ -46,8 +48,6 @@ _TOGETHER = (
     "group_concat(undone), group_concat(who), group_concat(notes) "
     "FROM inspections WHERE batch = ?"
 )
-#: what stays ours and is told of the other's, see `fieldmon.monitoring.season_log`
-LOGGED = (schema.LOG,)
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,8 @@ class Merged:
     new
         Inspections that count now and did not before.
     contradictions
-        A sentence for each result that the copies tell differently, and for each setting.
+        A sentence for each result that the copies tell differently, for each setting, and for the
+        table of labels.
     taken_back
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
@@ -87,15 +88,15 @@ class MergedCopy(NamedTuple):
     ----------
     new, taken_back
         As `Merged` has them.
-    settings
-        A sentence for each setting that differs.
+    differing
+        A sentence for each setting, and the table of labels, that both chose differently.
     treatments, codes
         As `Merged` has them.
     """
 
     new: int
     taken_back: int
-    settings: tuple[str, ...]
+    differing: tuple[str, ...]
     treatments: int = 0
     codes: int = 0
 
@@ -106,7 +107,6 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     Raise `FileProblem` if it is no copy of the same season.
     """
     refuse_strangers(db, other)
-    before = _counting(db)
     less = [table for table in TAKEN if table is not schema.INSPECTIONS]
     copies = [{table.name: _rows(one, table) for table in less} for one in (db, other)]
     phones = [phone_tables.brought(one) for one in (db, other)]
@@ -115,29 +115,44 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         {row["fid"]: batches[_key(row, _BATCH)]["fid"] for row in copied["batches"]}
         for copied in copies
     ]
+    stay = _n_staying((db, other), numbers)
+    before = _counting(db, stay)
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])
-    new, taken_back = _merge_inspections((db, other), numbers, gone)
+    _merge_inspections((db, other), numbers, gone, stay)
     treated = [copied["treatments"] for copied in copies]
     _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set(), set()))
     _count(db, batches)
     _write(db, schema.BATCHES, list(batches.values()))
     _write_routes(db, copies, _given_out(db, other))
-    said = _differing(copies)
-    _write(db, schema.SETTINGS, _once(copies, "settings", ("changed", "name", "value")))
-    _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, ("at",)))
-    _write(db, schema.LABELS, _once(copies, "labels", schema.LABELS.names, ("product",)))
-    phone_tables.bring_together(db, phones)
-    treatments, codes = (len(now - was) for now, was in zip(_counting(db), before, strict=True))
+    chosen = _once(copies, "settings", _CHOICE, "changed")
+    _write(db, schema.SETTINGS, chosen)
+    _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, "at"))
+    tables_kept = [season_log.labels_kept(one) for one in (db, other)]
+    labels, replaced_twice = _kept_last(copies, tables_kept)
+    _write(db, schema.LABELS, labels)
+    for batch, _ in phone_tables.bring_together(db, phones):
+        close_if_empty(db, batch)
+    now = _counting(db, stay)
+    new, treatments, codes = (len(one - was) for one, was in zip(now, before, strict=True))
+    taken_back = len(before[0] - now[0])
+    said = *_differing(copies, chosen), *replaced_twice
     return MergedCopy(new, taken_back, said, treatments, codes)
 
 
-def _counting(db: sqlite3.Connection) -> tuple[set[str], set[str]]:
-    """Return the treatments that count, and the keys of scouts that hold, by their digests."""
-    treated = db.execute("SELECT digest FROM treatments WHERE undone = 0")
-    keys = db.execute("SELECT key_digest FROM scouts WHERE ended IS NULL")
-    return {mark for (mark,) in treated}, {mark for (mark,) in keys}
+def _counting(db: sqlite3.Connection, stay: int) -> list[set[str]]:
+    """Return inspections and treatments that count, and keys that hold, by their digests.
+
+    Inspections that `stay` are left out.
+    """
+    counts = "SELECT digest FROM inspections WHERE undone = 0 AND digest NOTNULL AND fid > ?"
+    wanted = (
+        "SELECT digest FROM treatments WHERE undone = 0",
+        "SELECT key_digest FROM scouts WHERE ended IS NULL",
+    )
+    rows = (db.execute(counts, (stay,)), *map(db.execute, wanted))
+    return [{mark for (mark,) in found} for found in rows]
 
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
@@ -190,8 +205,9 @@ def _write(db: sqlite3.Connection, table: GeoPackageTable, rows: list[Row], afte
     touch(db, table.name)
 
 
-#: what a batch is known by in every copy
+#: what a batch, and a choice among the settings, is known by in every copy
 _BATCH = ("at", "source", "who", "kind")
+_CHOICE = ("changed", "name", "value")
 
 
 def _merged_batches(copies: list[dict[str, list[Row]]]) -> dict[Hashable, Row]:
@@ -201,13 +217,14 @@ def _merged_batches(copies: list[dict[str, list[Row]]]) -> dict[Hashable, Row]:
     counted (`_count`).
     """
     found: dict[Hashable, Row] = {}
+    place = _as_recorded(copies, "batches", _BATCH, "at")
     for copied in copies:
         for row in copied["batches"]:
             known = found.setdefault(_key(row, _BATCH), {**row, "rows": 0, "undone": 0})
             if row["kind"] == "corrections":
                 known["rows"] = max(known["rows"], row["rows"])
                 known["undone"] = max(known["undone"], row["undone"])
-    ordered = sorted(found.items(), key=lambda item: repr(item[0]))
+    ordered = sorted(found.items(), key=lambda item: place[item[0]])
     return {key: {**row, "fid": number} for number, (key, row) in enumerate(ordered, 1)}
 
 
@@ -217,7 +234,7 @@ def _merged_changes(copies: list[dict[str, list[Row]]], batches: dict[Hashable, 
         for row in copied["outside_changes"]:
             row["batch"] = _number(batches, copied, row["batch"])
     known_by = tuple(name for name in schema.OUTSIDE_CHANGES.names if name != "undone")
-    merged = _once(copies, "outside_changes", known_by, ("at",))
+    merged = _once(copies, "outside_changes", known_by, "at")
     undone = {_key(row, known_by) for one in copies for row in one["outside_changes"]
               if row["undone"]}  # fmt: skip
     return [{**row, "undone": int(_key(row, known_by) in undone)} for row in merged]
@@ -232,23 +249,21 @@ def _number(
 
 
 def _merge_inspections(
-    both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers], gone: set[str]
-) -> tuple[int, int]:
-    """Let the first of both have the inspections of both; return how many are new, and gone.
+    both: tuple[sqlite3.Connection, sqlite3.Connection],
+    numbers: list[Numbers],
+    gone: set[str],
+    stay: int,
+) -> None:
+    """Let the first of both have the inspections of both, of which so many `stay`.
 
     `numbers` says how the batches of each are numbered now, `gone` what was corrected.
     """
-    db, stay = both[0], _n_staying(both, numbers)
+    db = both[0]
     copies = [_rows(one, schema.INSPECTIONS, stay) for one in both]
     counts = "SELECT digest FROM inspections WHERE digest = ? AND undone = 0 AND fid <= ?"
     digests = {row["digest"] for rows in copies for row in rows}
     counting = {held for one in digests for (held,) in db.execute(counts, (one, stay))}
-    rows = _merged_findings(copies, numbers, counting, gone)
-    _write(db, schema.INSPECTIONS, rows, stay)
-    before, now = (
-        {row["digest"] for row in some if row["undone"] == 0} - {None} for some in (copies[0], rows)
-    )
-    return len(now - before), len(before - now)
+    _write(db, schema.INSPECTIONS, _merged_findings(copies, numbers, counting, gone), stay)
 
 
 def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]) -> int:
@@ -313,12 +328,14 @@ def _merged_findings(
     """
     found: dict[Hashable, Row] = {}
     for own_rows, batch_of in zip(copies, numbers, strict=True):
+        again: Counter[Hashable] = Counter()  # taken back, and recorded again with the same batch
         for own in own_rows:
             row = {**own, "batch": batch_of.get(own["batch"])}
             if row["digest"] is None:  # a draft of another program
                 key: Hashable = _key(row, tuple(k for k in row if k != "fid"))
             else:
-                key = row["digest"], row["batch"]
+                again[row["digest"], row["batch"]] += 1
+                key = row["digest"], row["batch"], again[row["digest"], row["batch"]]
             known = found.setdefault(key, row)
             known["undone"] = _worse(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])
@@ -417,11 +434,28 @@ def _alike_at_first(
     return dict.fromkeys(ours[: (*alike, False).index(False)])
 
 
+def _as_recorded(
+    copies: list[dict[str, list[Row]]], name: str, known_by: tuple[str, ...], at: str
+) -> dict[Hashable, tuple[str, int, str]]:
+    """Return the place of each row among those of both copies: when it was recorded.
+
+    A clock may be set back: what stands below is later, whatever it says.
+    """
+    places: dict[Hashable, tuple[str, int, str]] = {}
+    for copied in copies:
+        latest, n, before = "", 0, None
+        for row in copied[name]:
+            moment = str(row[at] or "")
+            n = 0 if moment > latest else n + (moment != before)
+            latest, before = max(latest, moment), moment
+            key = _key(row, known_by)
+            place = latest, n, repr((moment, key))
+            places[key] = max(places.get(key, place), place)
+    return places
+
+
 def _once(
-    copies: list[dict[str, list[Row]]],
-    name: str,
-    known_by: tuple[str, ...],
-    order: tuple[str, ...] = (),
+    copies: list[dict[str, list[Row]]], name: str, known_by: tuple[str, ...], at: str
 ) -> list[Row]:
     """Return the rows of both copies, once each, in an order that both would give.
 
@@ -429,14 +463,37 @@ def _once(
     """
     found = {_key(row, known_by): row for copied in copies for row in copied[name]}
     begin = _alike_at_first(copies, name, known_by)
+    place = _as_recorded(copies, name, known_by, at)
+    rest = sorted((key for key in found if key not in begin), key=place.__getitem__)
+    return [found[key] for key in (*begin, *rest)]
 
-    def place(row: Row) -> str:
-        return repr((_key(row, order), _key(row, known_by)))
 
-    return [
-        *(found[key] for key in begin),
-        *sorted((row for key, row in found.items() if key not in begin), key=place),
+def _kept_last(
+    copies: list[dict[str, list[Row]]], kept: list[dict[str, str]]
+) -> tuple[list[Row], tuple[str, ...]]:
+    """Return the table of labels that was kept last, as a whole; say so where both kept one.
+
+    `kept` says when, of all that the log of each copy knows. A copy whose tables the other one
+    knows has nothing to add to it.
+    """
+    tables = [copied["labels"] for copied in copies]
+    lines = [[_key(row, schema.LABELS.names) for row in table] for table in tables]
+    if lines[0] == lines[1]:
+        return tables[0], ()
+    own = [
+        sorted(at for mark, at in one.items() if mark not in other)
+        for one, other in zip(kept, reversed(kept), strict=True)
     ]
+    # a clock may be set back: a copy's table is no older than those that it replaced
+    last = [(max(kept[k].values(), default=""), own[k][-1:], repr(lines[k])) for k in (0, 1)]
+    if bool(own[0]) != bool(own[1]):
+        return tables[int(bool(own[1]))], ()
+    names = sorted({line[0] for line in {*lines[0]} ^ {*lines[1]}})
+    said = (
+        f"The table of labels differs ({first_few(names, 3)}): each copy replaced it. What was "
+        f"kept last counts, as a whole: the one {'here' if last[0] > last[1] else 'there'}."
+    )
+    return tables[int(last[1] > last[0])], (said,)
 
 
 def _members(team: str) -> str:
@@ -446,22 +503,25 @@ def _members(team: str) -> str:
     return ", ".join(each) or "none"
 
 
-def _differing(copies: list[dict[str, list[Row]]]) -> tuple[str, ...]:
-    """Return a sentence for each setting that was last chosen differently in the two copies."""
-    ours, theirs = (
-        {row["name"]: row for row in sorted(copied["settings"], key=lambda r: str(r["changed"]))}
-        for copied in copies
+def _differing(copies: list[dict[str, list[Row]]], merged: list[Row]) -> tuple[str, ...]:
+    """Return a sentence for each setting that both chose, unknown to each other, differently."""
+    known = [{_key(row, _CHOICE) for row in copied["settings"]} for copied in copies]
+    chosen = [
+        {row["name"] for row in copied["settings"] if _key(row, _CHOICE) not in others}
+        for copied, others in zip(copies, reversed(known), strict=True)
+    ]
+    ours, theirs, now = (
+        {row["name"]: str(row["value"]) for row in rows}
+        for rows in (*(copied["settings"] for copied in copies), merged)
     )
     said = []
-    for name in sorted(set(ours) & set(theirs)):
-        one, other = ours[name], theirs[name]
-        if one["value"] != other["value"]:
-            values = str(one["value"]), str(other["value"])
+    for name in sorted(chosen[0] & chosen[1]):
+        values = ours[name], theirs[name]
+        if values[0] != values[1]:
             here, there = map(_members, values) if name == "team" else _apart(*values)
-            last = here if str(one["changed"]) >= str(other["changed"]) else there
             said.append(
                 f"The setting {name} differs: {here} here, {there} there. What was chosen last "
-                f"counts: {last}."
+                f"counts: {here if now[name] == values[0] else there}."
             )
     return tuple(said)
 

@@ -5,9 +5,10 @@ Nothing is kept on disk; see `fieldmon.monitoring.season_file` for a season that
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import replace
 from numbers import Real
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler, Stops, WouldFind
 
@@ -84,6 +86,68 @@ class PlantToInspect(NamedTuple):
     arrive_s: float
     inspect_s: float
     detects: float
+
+    @property
+    def done_s(self) -> float:
+        """Seconds since the day began when it is done, as charged."""
+        return self.arrive_s + self.inspect_s
+
+
+def plant_to_inspect(
+    grid: PlantGrid, plant: int, arrive_s: float, inspect_s: float, detects: float
+) -> PlantToInspect:
+    """Return a plant of a grid as it is asked for, with its names and its position."""
+    one = np.array([plant])
+    label, (lon, lat) = row_label(grid, one), grid.lonlat(one)[0].tolist()
+    row, number = int(label.line[0]), int(label.number[0])
+    return PlantToInspect(plant, row, number, (lon, lat), arrive_s, inspect_s, detects)
+
+
+class AskedDay(ABC):
+    """A day that is told what was seen at the plant that was asked for; it checks what it is told.
+
+    Parameters
+    ----------
+    gone_s
+        Seconds of the day that are gone when it begins.
+    """
+
+    #: told so many seconds later or earlier than charged, the rest of the day is planned anew
+    late_s: ClassVar[float]
+
+    def __init__(self, gone_s: float) -> None:
+        self._asked: PlantToInspect | None = None
+        self._clock_s = gone_s
+
+    def _tell(self, found: bool | None, at_s: float | None) -> None:  # noqa: FBT001 - a result
+        """Check what is told, and take it in; see `MonitorDay.tell`."""
+        stop = self._asked
+        if stop is None:
+            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
+        if found is not None and not isinstance(found, bool | np.bool_):
+            raise ObservationError(
+                "What was seen must be True, False, or None where nobody could look, but it is "
+                f"{shown(found)}."
+            )
+        if at_s is not None:
+            must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.", (bool,))
+            if not self._clock_s <= at_s < _NO_DAY_S:
+                raise ObservationError(
+                    f"The day's clock must go on, but it was {self._clock_s:.0f} s and is "
+                    f"{shown(at_s)} s."
+                )
+        now_s = stop.done_s if at_s is None else at_s
+        self._take(stop, found, now_s)
+        self._asked, self._clock_s = None, now_s
+        self._go_on(stop, found, is_late=abs(now_s - stop.done_s) > self.late_s)
+
+    @abstractmethod
+    def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
+        """Keep what was seen, and when."""
+
+    @abstractmethod
+    def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
+        """Stand at the plant that was told of, and plan what is left anew where that is needed."""
 
 
 class Monitor:
@@ -242,7 +306,7 @@ class Monitor:
         return self.belief_settings.evening(self._belief, day.plants, day.found, detects)
 
 
-class MonitorDay:
+class MonitorDay(AskedDay):
     """A day that is asked for the next plant and told what was seen there; see `Monitor`.
 
     Examples
@@ -256,15 +320,16 @@ class MonitorDay:
     (True, [True])
     """
 
+    late_s = _SAME_S
+
     @checked
     def __init__(self, monitor: Monitor, scene: Scene, sampler: Sampler) -> None:
+        super().__init__(0.0)
         self.ended, sampler = False, sampler_or_name(sampler)
         self._monitor, self._sampler = monitor, sampler
         self._times = sampler.inspection_times(scene.robot)
         self._told: list[tuple[PlantToInspect, bool | None]] = []
-        self._asked: PlantToInspect | None = None
         self._stops: Stops | None = None
-        self._gone_s = 0.0
         self._would_find: WouldFind
         self._begin(scene, 0.0)
 
@@ -310,7 +375,7 @@ class MonitorDay:
     @property
     def gone_s(self) -> float:
         """Seconds of the day that are gone, as charged or as told."""
-        return self._gone_s
+        return self._clock_s
 
     @checked
     def ahead(self, n: int) -> list[int]:
@@ -357,28 +422,14 @@ class MonitorDay:
                 "A plant must be told of before its day ends, for the day is learnt then. Tell "
                 "within its with statement."
             )
-        stop = self._asked
-        if stop is None:
-            raise ObservationError("A plant must be asked for before it is told of. Call ask().")
-        if found is not None and not isinstance(found, bool | np.bool_):
-            raise ObservationError(
-                "What was seen must be True, False, or None where nobody could look, but it is "
-                f"{shown(found)}."
-            )
-        done_s = stop.arrive_s + stop.inspect_s
-        if at_s is not None:
-            must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.", (bool,))
-            if not self._gone_s <= at_s < _NO_DAY_S:
-                raise ObservationError(
-                    f"The day's clock must go on, but it was {self._gone_s:.0f} s and is "
-                    f"{shown(at_s)} s."
-                )
+        self._tell(found, at_s)
+
+    def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: ARG002, FBT001
         self._told.append((stop, found))
-        self._asked = None
-        self._gone_s = done_s if at_s is None else at_s
-        late = at_s is not None and abs(at_s - done_s) > _SAME_S
-        if found is None or late:
-            self._plan_on(stop.plant, done_s if at_s is None else at_s)
+
+    def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
+        if found is None or is_late:
+            self._plan_on(stop.plant, self._clock_s)
             return
         if found:
             self._would_find[stop.plant] = self._level(self._next) + 1
@@ -415,19 +466,10 @@ class MonitorDay:
         return int(self._stops.time[k])
 
     def _stop(self, stops: Stops, k: int) -> PlantToInspect:
-        plant, level = int(stops.plant[k]), self._level(k)
-        grid = self._scene.grid
-        label = row_label(grid, stops.plant[k : k + 1])
-        lon, lat = grid.lonlat(stops.plant[k : k + 1])[0]
-        return PlantToInspect(
-            plant=plant,
-            row=int(label.line[0]),
-            number=int(label.number[0]),
-            lonlat=(float(lon), float(lat)),
-            arrive_s=self._since_s + float(stops.arrive_s[k]),
-            inspect_s=float(self._times.stop_s[level]),
-            detects=float(self._times.detects[level]),
-        )
+        level, times = self._level(k), self._times
+        arrive_s = self._since_s + float(stops.arrive_s[k])
+        long = float(times.stop_s[level]), float(times.detects[level])
+        return plant_to_inspect(self._scene.grid, int(stops.plant[k]), arrive_s, *long)
 
 
 def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.float64]:

@@ -243,6 +243,10 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     if wanted is None:
         return None
     _taken_out(wanted, _ANCESTRY)
+    # a day without inspections has more of it
+    unwatched = arrays.pop(_UNWATCHED, None)
+    if (unwatched is None) != (wanted.pop(_UNWATCHED, None) is None):
+        return None
     if wanted.keys() != arrays.keys():
         return None
     if any(wanted[name].shape != values.shape for name, values in arrays.items()):
@@ -251,7 +255,6 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     own: dict[str, object] = {}
     if counts is not None:
         own["counts"] = OriginCounts(*counts)
-    unwatched = arrays.pop(_UNWATCHED, None)
     if unwatched is not None:
         own["unwatched"] = Unwatched.of_array(unwatched)
     latency = _taken_out(arrays, _LATENCY)

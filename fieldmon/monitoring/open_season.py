@@ -30,7 +30,7 @@ from fieldmon.monitoring import (
     treatments,
 )
 from fieldmon.monitoring.closures import closed_on, entry_waits, open_to_people
-from fieldmon.monitoring.history import Besides, History, Shift
+from fieldmon.monitoring.history import Besides, History, Shift, made_by
 from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
 from fieldmon.monitoring.mornings import take as take_mornings
@@ -386,6 +386,16 @@ class OpenSeason:
     def _begun_s(self, contents: SeasonContents, on: date, who: str | Besides) -> float:
         shift, name = self._shift(self._planned_by(contents, on), who)
         return contents.history.begun_s(shift, contents.settings.day(on), name)
+
+    def worked(self, on: date, who: str | Besides = "") -> Inspections:
+        """Return what somebody inspected in the work of the day `on`; `who` as in `plan`.
+
+        Also past midnight, where inspections are dated the next day: seconds go on from 86 400.
+        """
+        with self._lock:
+            contents = self._now()
+            shift, name = self._shift(self._planned_by(contents, on), who)
+            return made_by(contents.history.worked(shift, contents.settings.day(on), name), name)
 
     def _scene(
         self, contents: SeasonContents, on: date, now: time | None = None,

@@ -57,10 +57,6 @@ class OutsideChange:
     was: str
     before: str = ""
 
-    def at_row(self, row: int) -> OutsideChange:
-        """Return the same change of another row, as of another copy."""
-        return replace(self, row=row)
-
     def __str__(self) -> str:
         """Return what was done to which row."""
         return self.sentence()

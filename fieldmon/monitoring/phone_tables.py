@@ -185,27 +185,61 @@ def brought(db: sqlite3.Connection) -> dict[str, Rows]:
     return found
 
 
-def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> None:
-    """Write what phones brought to either copy, once each; what either took back is so."""
+def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> list[tuple[int, int]]:
+    """Write what phones brought to either copy, once each; what either took back is so.
+
+    Return the batch and the day of each inspection that is taken back.
+    """
     ends: dict[str, list[str]] = {}
     for copied in copies:
         for row in (*copied["scouts"], *copied["photos_asked"]):
             known = row["key_digest"] if "key_digest" in row else row["id"]
             ends.setdefault(known, []).extend([row["ended"]] if row["ended"] else [])
-    wanted = f"SELECT i.fid {_OF_FINDING}digest = ? AND b.at = ? AND b.source = ? AND b.who = ?"
+    told: dict[str, set[tuple[str, ...]]] = {}
+    for row in (row for copied in copies for row in copied["tellings"] if row["inspection"]):
+        told.setdefault(row["id"], set()).add(row["inspection"])
     for table, known_by in zip(TABLES, ("key_digest", "id", "photo", "id"), strict=True):
-        rows = {row[known_by]: row for copied in reversed(copies) for row in copied[table.name]}
+        rows: dict[str, dict[str, Any]] = {}
+        for row in sorted((row for copied in copies for row in copied[table.name]), key=_came):
+            rows.setdefault(row[known_by], row)
         made = []
         for key, row in sorted(rows.items()):
             if table in {SCOUTS, PHOTOS_ASKED}:
                 row["ended"] = min(ends[key], default=None)
-            elif table is FINDINGS and row["inspection"] is not None:
-                (row["inspection"],) = db.execute(wanted, row["inspection"]).fetchone() or (None,)
+            elif table is FINDINGS:
+                row["inspection"] = _inspection_of(db, told.get(key, set()))
             made.append(tuple(row[name] for name in table.names))
         db.execute(f"DELETE FROM {table.name}")  # noqa: S608 - names of ours
         insert(db, table, made)
         touch(db, table.name)
-    take_back(db)
+    back = take_back(db)
+    pointed = [(_inspection_of(db, made), one) for one, made in told.items() if len(made) > 1]
+    db.executemany("UPDATE tellings SET inspection = ? WHERE id = ?", pointed)
+    return back
+
+
+def _came(row: dict[str, Any]) -> tuple[str, ...]:
+    """Return by what the first of two rows about the same is known: it came first."""
+    return tuple(str(row.get(name)) for name in ("received", "content", "digest"))
+
+
+def _inspection_of(db: sqlite3.Connection, told: set[tuple[str, ...]]) -> int | None:
+    """Return which inspection a finding made, given what it is known by in each copy.
+
+    Of several it is the one that counts; if none does but one stands back, the one it stands back
+    for.
+    """
+    wanted = (
+        f"SELECT i.undone, i.fid, i.digest {_OF_FINDING}digest = ? AND b.at = ? AND b.source = ? "
+        "AND b.who = ?"
+    )
+    found = sorted(row for one in told for row in db.execute(wanted, one))
+    if not found or found[0][0] == replaced.COUNTS:
+        return int(found[0][1]) if found else None
+    marks = [mark for undone, _, mark in found if undone == replaced.STANDS_BACK]
+    counts = "SELECT fid FROM inspections WHERE digest = ? AND undone = 0"
+    others = (fid for mark in marks for (fid,) in db.execute(counts, (mark,)))
+    return int(next(others, found[0][1]))
 
 
 def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import LimitError, ObservationError
+from fieldmon.io.formats.signatures import picture_type
 from fieldmon.monitoring import phone_tables, scouts
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.plot.local_clock import utc_now, utc_text
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 MOST_BYTES = 4 * 2**20
 #: of one person
 MOST_A_DAY = 500
-_BEGINS = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG\r\n\x1a\n": "image/png", b"RIFF": "image/webp"}
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,8 @@ def _kind(data: bytes) -> str:
         raise LimitError(
             worded("A photo must have {n} MB at most. Scale it down.", n=MOST_BYTES // 2**20)
         )
-    for begin, kind in _BEGINS.items():
-        if data.startswith(begin) and (begin != b"RIFF" or data[8:12] == b"WEBP"):
-            return kind
-    raise ObservationError(worded("A photo must be a JPEG, PNG or WebP picture, but it is none."))
+    if (kind := picture_type(data)) is None:
+        raise ObservationError(
+            worded("A photo must be a JPEG, PNG or WebP picture, but it is none.")
+        )
+    return kind

@@ -33,7 +33,28 @@ def count_again(db: sqlite3.Connection, table: str = "inspections") -> list[int]
         f"UPDATE {table} SET undone = 0 WHERE fid = ?",  # noqa: S608 - ours
         [(fid,) for fid, _ in first.values()],
     )
+    if table == "inspections":
+        _point_findings(db, found, {mark: fid for mark, (fid, _) in first.items()})
     return sorted({batch for _, batch in first.values()})
+
+
+def _point_findings(
+    db: sqlite3.Connection, found: list[tuple[str, int, int]], again: dict[str, int]
+) -> None:
+    """Let what phones told be of inspections that count again, where its people recorded those.
+
+    Given digest, number and batch of those that stood back, and by digests which count again.
+    """
+    names = dict(db.execute("SELECT fid, who FROM batches").fetchall())
+    recorded = {(mark, names.get(batch)) for mark, _, batch in found if mark in again}
+    told = db.execute(
+        "SELECT t.fid, i.digest, t.scout FROM tellings t JOIN inspections i "
+        "ON i.fid = t.inspection WHERE i.undone <> 0"
+    ).fetchall()
+    db.executemany(
+        "UPDATE tellings SET inspection = ? WHERE fid = ?",
+        [(again[mark], fid) for fid, mark, who in told if (mark, who) in recorded],
+    )
 
 
 def corrected(corrections: Sequence[dict[str, Any]]) -> set[str]:

@@ -67,17 +67,12 @@ class SeasonEstimates(OpenSeason):
             return in_sight(morning).chance.copy()
 
     def evening(self, on: date) -> Floats:
-        """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far."""
-        with self._asked(on) as (contents, morning, day):
-            return contents.history.in_hindsight(morning, day).chance.copy()
+        """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far.
 
-    def evening_planned_by(self, on: date) -> Floats:
-        """Return the chances ``(n,)`` by which what is left of `on` is planned, hidden or not.
-
-        Routes go by what can be seen of it. What finds say of others only `evening` has.
+        What is left of the day is planned by it, as far as it can be seen.
         """
         with self._asked(on) as (contents, morning, day):
-            return contents.history.evening(morning, day).chance.copy()
+            return contents.history.in_hindsight(morning, day).chance.copy()
 
     def level_range(self, on: date) -> LevelRange:
         """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
@@ -104,7 +99,8 @@ class SeasonEstimates(OpenSeason):
         """
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.in_hindsight(morning, day)
-        asked = AskedVerdict.on(evening, level, sure)
+        found = contents.history.found_and_left(evening, day)
+        asked = AskedVerdict.on(evening, level, sure, found)
         return map_verdict(
             contents.history.grid, evening.chance, asked, evening.pair_chance, plants=plants
         )
@@ -127,7 +123,8 @@ class SeasonEstimates(OpenSeason):
             evening = contents.history.in_hindsight(morning, day)
         history, asked = contents.history, asked or AdviceSettings()
         done = tuple(one for one in history.treatments if one.day == day)
-        made = advice(history.grid, evening, asked, scene, done)
+        found = history.found_and_left(evening, day)
+        made = advice(history.grid, evening, asked, scene, done, found)
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile

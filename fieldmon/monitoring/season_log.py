@@ -473,6 +473,15 @@ def given_out(db: sqlite3.Connection) -> Iterator[GivenOut]:
             yield GivenOut(said["at"], said["who"], what["date"], what["digest"])
 
 
+def labels_kept(db: sqlite3.Connection) -> dict[str, str]:
+    """Return when (UTC) each table of labels was kept, here or in a copy, by its entry's digest."""
+    kept = {}
+    for mark, content in _with_those_taken_in(db):
+        if '"kind":"labels"' in content and (said := json.loads(content))["kind"] == "labels":
+            kept[mark] = said["at"]
+    return kept
+
+
 def _with_those_taken_in(db: sqlite3.Connection) -> Iterator[tuple[str, str]]:
     for content, mark in db.execute("SELECT entry, digest FROM log ORDER BY fid"):
         for inner in json.loads(content)["what"].get("theirs", ()):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import (
     batches,
     copy_corrections,
@@ -40,7 +42,6 @@ if TYPE_CHECKING:
     from datetime import date
     from pathlib import Path
 
-    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
@@ -110,6 +111,7 @@ class SeasonRecords(OpenSeason):
         *,
         confirmed: bool = False,
         into: int | None = None,
+        copies: Sequence[Path | None] = (),
     ) -> tuple[Recorded, ...]:
         """Add inspections of several sources, a batch each: all of them, or none.
 
@@ -123,6 +125,9 @@ class SeasonRecords(OpenSeason):
             Whether results count that contradict what is recorded, or one another.
         into
             Batch to add all of them to; None: new ones.
+        copies
+            Of each source, the copy of this season whose corrections, by `who`, are taken before
+            anything is added or held to what is recorded; None: it is none.
 
         Raises
         ------
@@ -131,21 +136,30 @@ class SeasonRecords(OpenSeason):
         ObservationError
             If a plant is not on this plot, or a result has no date or an impossible one.
         SettingError
-            If a date is not of this season.
+            If a date is not of this season, or nobody is named who corrected.
+        FileProblem
+            If a corrected row makes no sense or is not here.
         """
         done = []
         with self._writing() as db:
+            taken = [
+                0 if copy is None else self._take_corrections(db, copy, source, who)
+                for copy, (_, source) in zip(copies or [None] * len(brought), brought, strict=True)
+            ]
             before = self._read(db)
+            if any(taken):
+                self._last = None  # the transaction may yet fail
             held, first = before.history.inspections, []
             known = names_written(db)
             who = as_written(known, who)
-            for told, source in brought:
+            if not confirmed and brought:
+                every = reduce(Inspections.and_those, [told for told, _ in brought])
+                contradictions(every, held).refuse(self.label)
+            for (told, source), n in zip(brought, taken, strict=True):
                 inspections = _by_those_known(known, told)
-                if not confirmed:
-                    contradictions(inspections, held).refuse(self.label)
                 batch, news = self._add(db, inspections, held, (source, who, into))
                 new = len(news)
-                done.append(Recorded(batch if new else None, new, len(inspections) - new))
+                done.append(Recorded(batch if new else None, new, len(inspections) - new, n))
                 if new:
                     held = held.and_those(news)
                     first.append(settings_of(db).day(inspections.date.min().item()))
@@ -317,6 +331,10 @@ class SeasonRecords(OpenSeason):
         Raise `FileProblem` if a changed row makes no sense or is not here, and `SettingError` if
         nobody is named.
         """
+        with self._writing() as db:
+            return self._take_corrections(db, copy, name, who)
+
+    def _take_corrections(self, db: sqlite3.Connection, copy: Path, name: str, who: str) -> int:
         if not who.strip():
             raise SettingError(
                 worded(
@@ -325,10 +343,10 @@ class SeasonRecords(OpenSeason):
                     name=name,
                 )
             )
-        with self._lock, self.store.writing() as db, Store(copy).reading() as theirs:
+        with Store(copy).reading() as theirs:
             plot, who = (self.plot.grid, self.label), written_in(db, who)
             taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who))
-            self._corrected(db, taken, who)
+        self._corrected(db, taken, who)
         return len(taken)
 
     def _corrected(self, db: sqlite3.Connection, taken: tuple[str, ...], who: str) -> None:
@@ -363,7 +381,7 @@ class SeasonRecords(OpenSeason):
                     moved=moved,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
-        said = *contradict.sentences(self.label), *taken.settings
+        said = *contradict.sentences(self.label), *taken.differing
         return Merged(
             taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
         )

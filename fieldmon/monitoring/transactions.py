@@ -43,7 +43,8 @@ _PATIENCE_S = 30.0
 _GLANCE_S = 0.5
 # whoever waits for a file asks again so often, and is told so once it takes longer than a moment
 _ASK_AGAIN_S, _MOMENT_S = 0.25, 1.0
-_MAGIC = b"SQLite format 3\x00"
+#: how a file of SQLite begins
+MAGIC = b"SQLite format 3\x00"
 # the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
 _KEPT = threading.local()
 # how long is waited for others at most within `waiting_at_most`, in its threads, too
@@ -69,7 +70,7 @@ def is_season(path: str | Path) -> bool:
         return False
     with suppress(OSError), Path(path).open("rb") as file:
         head = file.read(1 << 16)
-        return head.startswith(_MAGIC) and b"fieldmon" in head
+        return head.startswith(MAGIC) and b"fieldmon" in head
     return False
 
 

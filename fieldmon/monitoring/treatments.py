@@ -91,8 +91,8 @@ class KeptTreatment:
     clock: LocalClock
 
     @property
-    def waits(self) -> WaitingPeriod:
-        """Return what has to be waited for after it, as it was entered."""
+    def entered_waits(self) -> WaitingPeriod:
+        """Return what has to be waited for after it, as entered; `waits` minds the label."""
         said = self.application
         return WaitingPeriod(self.ended, said.waiting_days, said.reentry_hours, self.clock)
 

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.pests.degree_days import DegreeDayMethod
     from fieldmon.pests.pest import Pest, Stage
     from fieldmon.pests.weather import Weather
 
@@ -114,19 +113,13 @@ class Development:
         )
 
 
-def daily_warmth(
-    weather: Weather,
-    thresholds: Thresholds,
-    since: date,
-    until: date,
-    method: DegreeDayMethod = "single sine",
-) -> DailyWarmth:
+def daily_warmth(weather: Weather, thresholds: Thresholds, since: date, until: date) -> DailyWarmth:
     """Return the degree-days of each day from `since` to `until`, gaps filled and marked.
 
-    Hours count as they are. Days count by `method`; those of which only a mean is known by it.
-    Without any day that is known, nothing is gathered.
+    Hours count as they are. Days count by the single sine; those of which only a mean is known by
+    it. Without any day that is known, nothing is gathered.
     """
-    measured, warmth = _measured(weather, thresholds, method)
+    measured, warmth = _measured(weather, thresholds)
     days = np.arange(np.datetime64(since, "D"), np.datetime64(until, "D") + 1)
     known = ~np.isnan(warmth)
     if not known.any():
@@ -136,15 +129,13 @@ def daily_warmth(
     return DailyWarmth(days, made, ~np.isin(days, usual.known))
 
 
-def _measured(
-    weather: Weather, thresholds: Thresholds, method: DegreeDayMethod
-) -> tuple[Days, Floats]:
+def _measured(weather: Weather, thresholds: Thresholds) -> tuple[Days, Floats]:
     """Return the local days of a weather and the degree-days of each, NaN where not known."""
     days = weather.local_days()
     if not weather.hourly:
         low = np.where(np.isnan(weather.low_c), weather.temperature_c, weather.low_c)
         high = np.where(np.isnan(weather.high_c), weather.temperature_c, weather.high_c)
-        return days, degree_days(low, np.maximum(low, high), thresholds, method)
+        return days, degree_days(low, np.maximum(low, high), thresholds)
     each = degree_days_of_hours(weather.temperature_c, thresholds)
     known = ~np.isnan(each)
     distinct, of_day = np.unique(days, return_inverse=True)

@@ -55,7 +55,7 @@ class Weather:
     wind_speed_m_s, wind_from_deg
         ``(n,)`` the mean wind, and where it comes from: 0 north, 90 east.
     rain_mm, humidity_pct
-        ``(n,)`` the sum of rain, the mean relative humidity.
+        ``(n,)`` the sum of rain, the mean relative humidity. The humidity is kept, but not used.
     forecast
         ``(n,)`` whether it was forecast rather than measured.
     zone

@@ -246,12 +246,10 @@ def first_day(
     return plan_from(plot, chance, plans)
 
 
-def plan_from(
-    plot: Plot, chance: NDArray[np.float64], plans: PlanSettings, wishes: Wishes | None = None
-) -> DayPlan:  # fmt: skip
-    """Plan a first day from a chance map ``(n,)``, and from what people wish for besides."""
+def plan_from(plot: Plot, chance: NDArray[np.float64], plans: PlanSettings) -> DayPlan:
+    """Plan a first day from a chance map ``(n,)``."""
     # as a season believes: it goes the same way on its first day
-    return plan_believed(plot, (chance, TracedPairs.of(plot.grid, chance)), plans, wishes)
+    return plan_believed(plot, (chance, TracedPairs.of(plot.grid, chance)), plans)
 
 
 def plan_believed(

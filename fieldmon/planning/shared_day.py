@@ -4,7 +4,7 @@ The rule is simple, so that anybody can follow it. Plots come in the order of wh
 infested on them. Each goes to whoever then has the most time for what is expected on his plots, and
 stays his own for the day. Everybody shares his hours among his plots by what is expected there. No
 plot gets more time than inspecting all of it takes, and none less than a quarter of an hour: such a
-plot waits for another day.
+plot waits for another day. Nobody goes to a plot where there is nothing to inspect.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def share_day(
     wanted = np.array([max(need.expected, 1e-9) for need in needs])
     most_s = np.array([need.most_s for need in needs])
     day_s = np.array([member.robot.day_s for member in members])
-    own = _given_out(wanted, day_s, move_s)
+    own = _given_out(np.where(most_s > 0, wanted, 0.0), day_s, move_s)
     turns = []
     for who, plots in enumerate(own):
         kept, seconds = _worth_it(plots, (wanted, most_s), float(day_s[who]), move_s)
@@ -125,10 +125,11 @@ def share_day(
 
 
 def _given_out(wanted: Float, day_s: Float, move_s: float) -> list[list[int]]:
-    """Return each member's plots, the most urgent first."""
+    """Return each member's plots, the most urgent first; nobody's where nothing is wanted."""
     own: list[list[int]] = [[] for _ in day_s]
     held, left_s = np.zeros(len(day_s)), day_s.copy()
-    for plot in np.argsort(-wanted, kind="stable").tolist() if len(day_s) else ():
+    order = [plot for plot in np.argsort(-wanted, kind="stable").tolist() if wanted[plot]]
+    for plot in order if len(day_s) else ():
         time_s = np.where(held > 0, left_s - move_s, left_s) / (held + wanted[plot])
         who = int(np.argmax(time_s))
         left_s[who] -= move_s if own[who] else 0.0

@@ -98,7 +98,6 @@ def plan_team(
     plot: Plot,
     chance: Float,
     members: Sequence[TeamMember],
-    done: NDArray[np.bool_] | None = None,
     progress: Callable[[int, int], None] | None = None,
     passing_m: float = 0.0,
 ) -> TeamPlan:
@@ -114,8 +113,6 @@ def plan_team(
         ``(n,)`` believed chance of infestation.
     members
         Who works.
-    done
-        ``(n,)`` plants that are not visited again today; None: none.
     progress
         Told how many routes were looked for and prices of plants tried for the bound, and of how
         many.
@@ -147,12 +144,11 @@ def plan_team(
                 passing_m=passing_m,
             )
         )
-    left = np.ones(len(chance)) if done is None else np.where(done, 0.0, 1.0)
     tasks = [
         MemberTask(
             plot.aisles if one.gate is None else plot.with_gate(one.gate).aisles,
             one.robot,
-            chance * one.robot.detects * left,
+            chance * one.robot.detects,
             one.starts_s,
         )
         for one in members
@@ -173,7 +169,7 @@ def plan_team(
                 "but none are. Give more hours."
             )
         )
-    days = tuple(replace(day, scene=_seen(day.scene, chance, done)) for day in timed.days)
+    days = tuple(replace(day, scene=replace(day.scene, chance=chance)) for day in timed.days)
     days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)
     held = _expected(days)
     most = max(team_bound(tasks, held, search.proving), held)
@@ -351,14 +347,6 @@ def _day(task: MemberTask, stops: Int) -> DayPlan:
         end_s,
     )
     return DayPlan(scene, work, route_of(scene, work))
-
-
-def _seen(scene: Scene, chance: Float, done: NDArray[np.bool_] | None) -> Scene:
-    """Return a scene with what is believed, and what was inspected today."""
-    last = scene.last_inspected
-    if done is not None:
-        last = np.where(done, scene.day, last).astype(np.int32)
-    return replace(scene, chance=chance, last_inspected=last)
 
 
 class _DaysInTurn(NamedTuple):

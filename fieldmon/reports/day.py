@@ -149,7 +149,7 @@ class DayFacts:
                 team=who_came(season, on, names) if worked else (),
                 missed=was_missed(season, on, today),
                 treatments=treated_on(season, on), labels=season.labels(),
-                infested=float(season.evening_planned_by(on)[shown.plant].sum()),
+                infested=float(season.evening(on)[shown.plant].sum()),
                 closed=() if worked else season.closed(
                     on, "".join(names[:1]), plan.scene.seconds_left
                 ),

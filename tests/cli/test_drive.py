@@ -3,6 +3,8 @@
 import pytest
 
 from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.season_day import SeasonDay
+from fieldmon.errors import ObservationError
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.scouts import let_in
 from tests.cli.estate import BEGINS, ZIP, table
@@ -73,6 +75,32 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
     monkeypatch.setattr(ChargedRobot, "visit", visit)
     _, out, _, _ = run("drive", season, "--date", BEGINS, "--made-up")
     assert "follows what is left of the plan given out last" in out
+
+
+def test_a_day_past_midnight_says_so_and_writes_its_tables(run, season, tmp_path):
+    run("change", season, "--start", "23:50", "--hours", "0.3")
+    code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
+    assert code == 0, err
+    assert "past midnight, to 00:08: what is found after that counts for 2026-11-03" in err
+    held = Season(season).history.inspections
+    assert set(held.date.astype(str)) == {BEGINS, "2026-11-03"}
+    assert len(table(tmp_path / "day.stops.csv")) == len(held)
+
+
+def test_a_day_that_breaks_off_writes_what_was_driven(run, season, tmp_path, monkeypatch):
+    tell, left = SeasonDay.tell, iter([True] * 3)
+
+    def refused(day, found, at_s=None):
+        if not next(left, False):
+            raise ObservationError("The file is full.")
+        tell(day, found, at_s)
+
+    monkeypatch.setattr(SeasonDay, "tell", refused)
+    code, out, err, _ = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
+    assert code == 2
+    assert "The file is full." in err
+    assert "3 results" in out
+    assert len(table(tmp_path / "day.stops.csv")) == 3
 
 
 def test_where_no_broker_answers_it_is_a_sentence(run):

@@ -1,6 +1,7 @@
 """What imports say and ask, at a terminal."""
 
-from datetime import datetime
+from dataclasses import replace
+from datetime import date, time
 
 import numpy as np
 import pytest
@@ -11,10 +12,13 @@ from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.import_report import Remedy, guessed
 from fieldmon.io.prepared import Laid, SourceMessage
+from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.planning.members import team_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 
 MONTH = guessed("Read day first.", "date", Remedy("date_order", "mdy", "Read month first"))
@@ -110,6 +114,14 @@ def test_records_that_say_nothing_about_a_day_are_named(capsys):
     ("start", "hours", "said"), [(20, 4.0, False), (20, 4.5, True), (6, 12.0, False), (23, 2, True)]
 )
 def test_work_past_midnight_is_doubted(capsys, start, hours, said):
-    tell_past_midnight(datetime(2026, 12, 31, start), hours)
+    on, starts = date(2026, 12, 31), time(start)
+    tell_past_midnight(on, MonitoringSettings(on, robot=Robot(hours=hours), starts=starts))
     err = capsys.readouterr().err
     assert ("counts for 2027-01-01" in err) == said == bool(err)
+
+
+def test_work_of_who_starts_late_in_a_team_goes_past_midnight(capsys):
+    on, team = date(2026, 12, 31), team_of(2, Robot(hours=4.0))
+    late = replace(team[1], starts_s=3600.0)
+    tell_past_midnight(on, MonitoringSettings(on, team=(team[0], late), starts=time(20)))
+    assert "past midnight, to 01:00" in capsys.readouterr().err

@@ -2,19 +2,15 @@
 
 import json
 import shutil
-import sys
 import uuid
 
 import numpy as np
 import pyogrio
 import shapely
 
-import fieldmon.cli.record  # noqa: F401 - its module, which has the name of the command
-from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, filled_in
-
-command = sys.modules["fieldmon.cli.record"]
+from tests.monitoring.test_outside_changes import outside
 
 
 def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
@@ -86,27 +82,37 @@ def test_two_files_that_contradict_each_other_are_refused_before_either_is_recor
     assert not len(Season(season).history.inspections)
 
 
-def test_what_somebody_else_recorded_meanwhile_is_not_contradicted_unasked(
-    run, season, tmp_path, monkeypatch
+def test_a_day_told_for_files_without_one_is_none_of_records_beside_dated_ones(
+    run, season, tmp_path
 ):
-    """Between the look at the season and the writing another command may record."""
-    run("plan", season, "--date", BEGINS, "-o", "a.csv")
-    shutil.copy(tmp_path / "a.csv", tmp_path / "b.csv")
-    filled_in(tmp_path / "a.csv", finds={0}, n=3)
-    filled_in(tmp_path / "b.csv", finds=set(), n=3)
-    other, theirs = Season(season), read_inspections(tmp_path / "a.csv", Season(season).plot.grid)
-    looked = command._refuse_contradictions
+    (tmp_path / "day.csv").write_text(f"row,plant,date,result\n1,1,{BEGINS},clean\n1,2,,found\n")
+    code, _, err, _ = run("record", season, "day.csv", "--date", BEGINS)
+    assert code == 0, err
+    assert "1 record has no date, as others have: left out" in err
+    assert "--finding-option day=" in err
+    assert len(Season(season).history.inspections) == 1
+    run("record", season, "day.csv", "--finding-option", f"day={BEGINS}")
+    assert len(Season(season).history.inspections) == 2
 
-    def look(kept, read):
-        looked(kept, read)
-        other.record(theirs.value, "a.csv", "Ben")
 
-    monkeypatch.setattr(command, "_refuse_contradictions", look)
-    code, _, err, _ = run("record", season, "b.csv", "--date", BEGINS)
+def test_corrections_of_a_copy_are_taken_with_its_findings_or_not_at_all(run, season, tmp_path):
+    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    filled_in(tmp_path / "r.csv", finds={0}, n=5)
+    run("record", season, "r.csv", "--date", BEGINS)
+    copy = shutil.copy(season, tmp_path / "copy.gpkg")
+    outside(copy, "UPDATE inspections SET result = 'found' WHERE fid = 2")
+    filled_in(tmp_path / "r.csv", finds={0}, n=2)  # of the second plant it says clean again
+    code, _, err, _ = run("record", season, copy, "r.csv", "--date", BEGINS)
     assert code == 2
-    assert "1 of them contradict it" in err
+    assert "must have an author" in err
+    code, _, err, _ = run("record", season, copy, "r.csv", "--date", BEGINS, "--who", "Ann")
+    assert code == 2
+    assert "recorded as found, now clean" in err
     assert "Confirm with: --contradicting" in err
-    assert len(Season(season).history.inspections) == 3
+    assert [one.kind for one in Season(season).batches()] == ["findings"]
+    code, out, err, _ = run("record", season, copy, "--who", "Ann")
+    assert code == 0, err
+    assert "1 correction taken, by Ann" in out
 
 
 def test_what_a_phone_saved_as_not_sent_is_recorded_and_changes_nothing_twice(

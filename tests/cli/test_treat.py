@@ -68,6 +68,16 @@ def test_what_was_applied_is_kept_and_what_to_beware_of_is_said(run, season, tmp
     assert "warning                Harvest on 2026-11-05 is too soon" in out
 
 
+def test_a_label_that_asks_for_longer_than_was_entered_counts(run, season, tmp_path):
+    (tmp_path / "labels.csv").write_text("product,waiting days,re-entry hours\nAcarol,21,48\n")
+    run("labels", season, "labels.csv")
+    words = ["--efficacy", "0.8", "--product", "Acarol", "--ended", "09:30", "--date", BEGINS]
+    code, out, err, _ = run("treat", season, *words, "--reentry-hours", "12", "--waiting-days", "3")
+    assert code == 0, err
+    assert "Enter there from 2026-11-04 09:30 on" in out
+    assert "Harvest there from 2026-11-24 on." in out
+
+
 def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, season):
     code, _, err, _ = run("decide", season, "--threshold", "5%", "--per-ha", "200", "-o", "z.gpkg")
     assert code == 0, err
@@ -86,6 +96,8 @@ def test_zones_of_a_decision_are_the_area_without_the_rest_of_the_plot(run, seas
     ("words", "said"),
     [
         (["--dose", "much"], "--dose must be a number with its unit"),
+        (["--dose", "1,500 ml/ha"], "--dose is 1,500: is that 1500 or 1.5?"),
+        (["--dose", "1,5,5 ml/ha"], "--dose must be a number, but it is '1,5,5'"),
         (["--dose", "2 buckets"], "The unit of a dose must be"),
         (["--rows", "three"], "Rows must be such as 3-5,8"),
         (["--rows", "999"], "but row 999 is named"),

@@ -10,7 +10,7 @@ NAMES = "name,measure,level,source"
 
 def test_the_published_ones_are_those_of_their_sources():
     almond = threshold_of("almond")
-    assert (almond.level, almond.predators) == (0.22, False)
+    assert almond.level == 0.22
     assert "Zalom" in almond.source
     assert threshold_of("almond with predators").level == 0.436
     assert threshold_of("peppermint").level == 5
@@ -38,6 +38,8 @@ def test_the_level_of_a_share_may_be_percents(tmp_path):
     path = tmp_path / "own.csv"
     path.write_text("name;measure;level;source\nours;share of plants;3,6 %;me\n", encoding="utf-8")
     assert read_thresholds(path)[0].level == pytest.approx(0.036)
+    path.write_text("name;measure;level;source\nours;share of plants;3.625%;me\n", encoding="utf-8")
+    assert read_thresholds(path)[0].level == pytest.approx(0.03625)
     path.write_text("name;measure;level;source\nours;mean per leaf;3,6 %;me\n", encoding="utf-8")
     with pytest.raises(FileProblem, match="level must be a number"):
         read_thresholds(path)
@@ -46,12 +48,12 @@ def test_the_level_of_a_share_may_be_percents(tmp_path):
 def test_ones_own_are_read_from_a_file(tmp_path):
     path = tmp_path / "own.csv"
     path.write_text(
-        "# ours\nname;measure;level;predators;source\ntomato;share of plants;0,04;Yes;ours\n",
+        "# ours\nname;measure;level;source\ntomato;share of plants;0,04;ours\n",
         encoding="utf-8-sig",
     )
     (own,) = read_thresholds(path)
     assert threshold_of("tomato", [own]) is own
-    assert own == Threshold("tomato", "share of plants", 0.04, "ours", predators=True)
+    assert own == Threshold("tomato", "share of plants", 0.04, "ours")
 
 
 @pytest.mark.parametrize(
@@ -60,10 +62,10 @@ def test_ones_own_are_read_from_a_file(tmp_path):
         ("name,level\na,1\n", "no measure and no source"),
         (f"{NAMES}\na,share of plants,much,b\n", "line 2: level must be"),
         (f"{NAMES}\na,share of plants\n", "line 2: level must be a number, but it is ''"),
-        (f"{NAMES}\na,share of plants,nan\n", "line 2: .*must be above 0"),
+        (f"{NAMES}\na,share of plants,nan\n", "line 2: level must be a number"),
+        (f"{NAMES}\na,mean per leaf,1.250,b\n", "line 2: level is 1.250: is that 1250 or 1.25"),
         (f"{NAMES}\na,mites,1,b\n", "line 2: .*must count one of"),
         (f"{NAMES}\na,share of plants,4,b\n", "must be above 0 and below 1"),
-        (f"{NAMES},predators\na,share of plants,0.1,b,some\n", "line 2: predators must be yes"),
         (f"{NAMES}\na,share of plants,0.1,\na,share of plants,0.2,\n", "two thresholds are called"),
         (f"{NAMES}\n", "must hold a threshold or more"),
     ],

@@ -12,7 +12,9 @@ def test_an_errand_says_itself_as_people_count():
 
 
 def test_a_visit_that_only_says_what_was_found_is_as_charged():
-    visit = Visit(found=True)
+    stop, visit = PlantToInspect(7, 2, 3, (0.0, 0.0), 10.0, 40.0, 0.84), Visit(found=True)
+    assert visit.done_at_s(stop) == stop.done_s == 50.0
+    assert visit._replace(done_s=0.0).done_at_s(stop) == 0.0
     assert visit.done_s is None
     assert not visit.touched
     assert visit.stuck == ""

@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
-from datetime import date, time
+from datetime import date, time, timedelta
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ import pytest
 from fieldmon.drive.charged import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.season_day import SeasonDay, as_inspection
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.applications import Application
@@ -136,6 +136,34 @@ def test_a_day_is_planned_anew_where_the_last_plan_did_not_hear_of_a_find(season
     assert [day.ask().plant, *day.ahead(500)] == season.kept_route(ON).tolist()
 
 
+@pytest.mark.parametrize("ends", [[10**6], [3, 8, 9, 10**6]])
+def test_a_day_goes_on_past_midnight_as_it_would_by_day(plot, tmp_path, ends):
+    """Also where it is begun again: what was found after midnight is known, dated the next day."""
+    asked = {}
+    for starts in (time(6), time(23, 50)):
+        settings = replace(SETTINGS, starts=starts)
+        season = Season.create(tmp_path / f"{starts.hour}.gpkg", plot, None, settings)
+        for n in ends:
+            with suppress(KeyboardInterrupt):
+                done, day = driven(Season(season.path), CrashesAfter(n))
+        held = season.history.inspections
+        asked[starts] = held.plant.tolist()
+        assert len(season.batches()) == 1
+        assert day.goes_on == (len(ends) > 1)
+    assert asked[time(6)] == asked[time(23, 50)]
+    assert set(held.date.astype(str)) == {str(ON), str(ON + timedelta(days=1))}
+    moments = held.date + np.round(held.second).astype("timedelta64[s]")
+    assert (np.diff(moments) > np.timedelta64(0)).all()
+    assert moments[-1] - moments[0] < np.timedelta64(18, "m")
+    assert day.gone_s <= season.settings.robot.day_s
+    assert done.stops
+
+
+def test_the_last_second_of_a_day_is_rounded_into_the_next():
+    one = as_inspection(0, False, (ON, 86_399.7))
+    assert (str(one.date[0]), one.second[0]) == ("2026-04-07", 0.0)
+
+
 def noted(plants, second, who=""):
     n = len(plants)
     return Inspections.of(
@@ -189,3 +217,27 @@ def test_a_late_robot_is_planned_for_anew(season):
 def test_nothing_is_told_of_a_plant_that_nobody_asked_for(season):
     with pytest.raises(ObservationError, match="asked for"):
         SeasonDay(season, ON).tell(found=False)
+
+
+def test_what_is_no_result_or_a_clock_that_goes_back_is_refused_and_not_recorded(season):
+    day = SeasonDay(season, ON)
+    must_check_what_it_is_told(day)
+    assert len(season.history.inspections) == 1
+
+
+def must_check_what_it_is_told(day):
+    """Tell a day of one plant, and then what makes no sense of the next."""
+    first = day.ask()
+    day.tell(found=False, at_s=first.done_s + 5.0)
+    asked = day.ask()
+    for found, at_s, said in (
+        ("clean", None, "must be True, False"),
+        (1, None, "must be True"),
+        (True, first.done_s, "must go on"),
+        (True, np.nan, "must go on"),
+    ):
+        with pytest.raises(ObservationError, match=said):
+            day.tell(found, at_s)
+    with pytest.raises(SettingError, match="must be in seconds"):
+        day.tell(found=True, at_s="90")
+    assert day.ask() == asked

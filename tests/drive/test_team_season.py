@@ -3,6 +3,7 @@
 from dataclasses import replace
 from datetime import time
 
+import numpy as np
 import pytest
 
 from fieldmon.drive.team_season import TeamSeason
@@ -14,7 +15,7 @@ from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
 from fieldmon.plot.robot import Robot, scout
-from tests.drive.test_season_day import ON, noted
+from tests.drive.test_season_day import ON, must_check_what_it_is_told, noted
 
 
 def season_of(plot, path, members):
@@ -121,6 +122,31 @@ def test_an_earlier_day_is_driven_by_the_team_of_then(team):
     assert again.member("robot-1").at == day.at
 
 
+def test_past_midnight_each_goes_on_at_its_own_place_and_no_plant_is_given_twice(plot, tmp_path):
+    season = season_of(plot, tmp_path / "night.gpkg", 2)
+    season.change(replace(season.settings, starts=time(23, 58)), season.settings)
+    names, told = ("robot-1", "robot-2"), []
+    for n in (8, 200):  # the second begins again
+        team = TeamSeason(Season(season.path), ON)
+        days = {name: team.member(name) for name in names}
+        for name, at in ((name, one.plant) for one, name in told[-2:]):
+            assert days[name].at == at
+        for k in range(n):
+            if (stop := days[names[k % 2]].ask()) is not None:
+                told.append((stop, names[k % 2]))
+                days[names[k % 2]].tell(found=k % 5 == 4)
+    plants = [stop.plant for stop, _ in told]
+    assert len(plants) == len(set(plants)) > 20
+    held = season.history.inspections
+    assert set(held.date.astype(str)) == {"2026-04-06", "2026-04-07"}
+    assert sorted(held.plant.tolist()) == sorted(plants)
+    for name in names:
+        own = made_by(held, name)
+        moments = own.date + own.second.astype("timedelta64[s]")
+        assert (np.diff(moments) > np.timedelta64(0)).all()
+        assert moments[-1] - moments[0] < np.timedelta64(18, "m")
+
+
 def test_nobody_is_given_another_plant_once_it_is_stopped(team):
     team.stopped = True
     assert team.member("robot-1").ask() is None
@@ -146,3 +172,8 @@ def test_a_season_without_a_team_is_refused(plot, tmp_path):
 def test_nothing_is_told_of_a_plant_that_nobody_asked_for(team):
     with pytest.raises(ObservationError, match="asked for"):
         team.member("robot-1").tell(found=False)
+
+
+def test_what_is_no_result_or_a_clock_that_goes_back_is_refused_and_not_recorded(team):
+    must_check_what_it_is_told(team.member("robot-2"))
+    assert len(team.season.history.inspections) == 1

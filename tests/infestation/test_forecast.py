@@ -8,19 +8,11 @@ import pytest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.colonies import Colonies
-from fieldmon.infestation.forecast import (
-    Forecast,
-    _deviation,
-    _grown,
-    _interval,
-    _tonight,
-    forecast,
-)
+from fieldmon.infestation.forecast import Forecast, forecast
 from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.plot_estimate import PlotEstimate, draw_fields
+from fieldmon.infestation.plot_estimate import PlotEstimate, draw_fields, estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.unwatched import Unwatched
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
 
@@ -140,72 +132,27 @@ def test_it_says_what_weather_it_is_made_from(weather, measured, basis):
     assert "(2,000 to 8,000 with a chance of 90 %), now 1,000;" in many
 
 
-@pytest.mark.parametrize("inside", [5.0, 40.0])
-@pytest.mark.parametrize("arrived", [0.0, 10.0])
-@pytest.mark.parametrize("doubt", [0.5, 1.2])
-def test_what_is_on_the_plot_is_doubted_by_its_part_of_the_number(inside, arrived, doubt):
-    """The variance of whole numbers drawn of it, by the law of total variance."""
-    drawn = _tonight(inside, arrived, doubt, np.random.default_rng(1))
-    number = inside + arrived
-    wanted = (doubt * number) ** 2 * inside / number
-    assert drawn.mean() == pytest.approx(inside, rel=0.1)
-    assert drawn.var() + drawn.mean() == pytest.approx(wanted, rel=0.25)
+def test_it_is_what_a_season_says_on_each_of_these_mornings_if_nobody_comes():
+    belief = TracedPairs.of(GRID, np.full(784, 0.02))
+    plants = np.arange(0, 784, 5, dtype=np.int32)
+    belief = belief.learn(plants, np.isin(plants, [30, 400]), Learning())
+    nights = [Spread(0.1)] * 9
+    ahead = forecast(belief, GRID, nights)
+    for night, spread in enumerate(nights, 1):
+        belief = belief.overnight(spread)
+        now = estimate_of(GRID, belief)
+        assert ahead.expected[night] == pytest.approx(now.expected, rel=1e-3)
+        assert ahead.low[night] == pytest.approx(now.low, abs=1)
+        assert ahead.high[night] == pytest.approx(now.high, rel=0.03, abs=1)
 
 
-def test_where_whole_numbers_vary_more_than_is_doubted_nothing_more_is_drawn():
-    assert set(_tonight(4.0, 0.0, 0.4, np.random.default_rng(1)).tolist()) == {4.0}
-
-
-@pytest.mark.parametrize("times", [0.2, 0.8, 1.0, 1.7, 6.0])
-@pytest.mark.parametrize("number", [1, 30])
-def test_each_of_a_number_grows_by_itself_as_in_a_birth_process(times, number):
-    """Mean and variance as Yule's, or of those that live on; of none come none."""
-    drawn = _grown(np.full(40_000, number), np.full(40_000, times), np.random.default_rng(3))
-    alone = times * (times - 1.0) if times > 1.0 else times * (1.0 - times)
-    off = 5.0 * np.sqrt(max(number * alone, 1e-12) / 40_000)
-    assert drawn.mean() == pytest.approx(number * times, abs=off + 1e-6)
-    assert drawn.var() == pytest.approx(number * alone, rel=0.06, abs=1e-3)
-    assert drawn.min() >= (number if times >= 1.0 else 0)
-    none = _grown(np.zeros(9, np.int64), np.full(9, times), np.random.default_rng(3))
-    assert not none.any()
-
-
-@pytest.mark.parametrize("expected", [0.0, 0.5, 40.0])
-@pytest.mark.parametrize(("low", "high"), [(0, 0), (10, 43), (12, 12)])
-def test_tonight_s_doubt_is_that_of_an_interval_of_nine_in_ten(low, high, expected):
-    doubt = _deviation(PlotEstimate(expected, low, high, 0.1))
-    # nine in ten of a normal number lie within 1.645 deviations on either side
-    wanted = (high - low) / (2 * 1.645) / max(expected, 1e-9)
-    assert doubt == pytest.approx(max(wanted, 0.01), rel=1e-3)
-
-
-# somebody inspected today, and there are so many plants
-NOW = Unwatched(), 10_000
-
-
-def test_nights_ahead_are_drawn_from_what_is_here_and_what_arrives_and_widen_with_each_doubt():
-    inside, arrived = np.array([40.0, 50.0, 60.0]), np.array([0.0, 2.0, 5.0])
-    plain = _interval((inside, arrived), (0.1, 0.05), 30.0, NOW)
-    low, high = plain
-    assert (low < inside + arrived).all()
-    assert (inside + arrived < high).all()
-    for doubts, found, night in (((0.6, 0.05), 30.0, 0), ((0.1, 0.6), 30.0, 0)):
-        wide = _interval((inside, arrived), doubts, found, NOW)
-        assert np.diff(wide[:, night], axis=0)[0] > 1.3 * (high - low)[night]
-    # what arrives is known the better the more finds tell of it
-    many = np.array([40.0, 40.0, 40.0]), np.array([0.0, 40.0, 80.0])
-    knows, guesses = (_interval(many, (0.1, 0.05), found, NOW)[:, -1] for found in (300.0, 0.0))
-    assert np.diff(guesses)[0] > 1.5 * np.diff(knows)[0]
-    assert knows.mean() == pytest.approx(120.0, rel=0.1)
-    # where all is known to be nothing, nothing comes
-    assert not _interval((np.zeros(3), np.zeros(3)), (0.5, 0.5), 0.0, NOW).any()
-
-
-def test_after_months_without_inspections_there_are_no_more_than_all_plants():
-    low, high = _interval(
-        (np.full(3, 400.0), np.zeros(3)), (0.1, 0.3), 0.0, (Unwatched(50, 40.0), 400)
-    )
-    assert np.isfinite(high).all()
-    assert high[0] < 500
-    # it may have grown more slowly than was thought
-    assert low[0] == 0.0
+def test_of_plants_that_were_found_and_left_nothing_is_in_doubt():
+    belief = TracedPairs.of(GRID, np.full(784, 0.02))
+    plants = np.arange(784, dtype=np.int32)
+    found = plants % 10 == 0
+    flagged = belief.learn(plants, found, Learning(0.99, treated=False))
+    ahead = forecast(flagged, GRID, [Spread(0.1)] * 14, found=found)
+    assert ahead.low[0] >= found.sum()
+    assert ahead.high[0] < found.sum() + 30
+    assert (ahead.low >= found.sum()).all()
+    assert (ahead.high <= 784).all()

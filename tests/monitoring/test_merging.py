@@ -4,56 +4,164 @@ import os
 import random
 import shutil
 import sqlite3
+from collections import Counter
 from contextlib import closing
 from dataclasses import replace
-from datetime import timedelta
+from datetime import UTC, datetime, time, timedelta
+from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 import pytest
 
+from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from fieldmon.monitoring import Season, batches, inspection_table, merging, phone_tables, schema
+from fieldmon.monitoring import (
+    Season,
+    batches,
+    findings,
+    inspection_table,
+    label_table,
+    merging,
+    phone_tables,
+    photos,
+    schema,
+    season_log,
+    settings_log,
+)
 from fieldmon.monitoring.day_ahead import WHOLE, DayAhead
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.findings import Finding, _SentFindings
+from fieldmon.monitoring.photos import Photo
+from fieldmon.monitoring.scouts import Scout
+from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json
+from fieldmon.plot import local_clock
 from fieldmon.plot.grid import row_label
+from tests.monitoring.phone import JPEG
 from tests.monitoring.seasons import BEGINS, a_plot, a_season, state
 
 PAIRS = int(os.environ.get("FIELDMON_MERGES", "40"))
-GRID = a_plot().grid
+PLOT = a_plot()
+GRID = PLOT.grid
 LABEL = row_label(GRID)
 SETTINGS = MonitoringSettings(BEGINS)
+SEASON = SimpleNamespace(plot=PLOT, label=LABEL)
+WHO = "Ann", "Ben"
 
 
-def record(db, rng, who, clock):
+class Clock(datetime):
+    """A computer's clock, which somebody may set back; it never shows a moment twice."""
+
+    @classmethod
+    def begin(cls):
+        cls.shows, cls.shown = datetime(2026, 4, 10, tzinfo=UTC), set()
+
+    @classmethod
+    def now(cls, tz=None):
+        while cls.shows in cls.shown:
+            cls.shows += timedelta(microseconds=1)
+        cls.shown.add(cls.shows)
+        return cls.shows.astimezone(tz)
+
+
+def record(db, rng, who):
     """Record a few results, some of them twice, as a person does; sometimes take something back."""
     n = rng.randrange(1, 5)
-    plant = np.array([rng.randrange(12) for _ in range(n)])
+    plant = np.array([rng.randrange(4) for _ in range(n)])
     result = np.array([rng.choice((CLEAN, FOUND)) for _ in range(n)])
     on = np.datetime64(BEGINS) + rng.randrange(3)
-    batch = batches.begin(db, "findings", f"file {clock}", who)
-    db.execute("UPDATE batches SET at = ? WHERE fid = ?", (f"2026-04-06T{clock:06d}", batch))
+    batch = batches.begin(db, "findings", "taps", who)
     found = Inspections.of(plant, result, on)
     rows = inspection_table.rows(found, GRID, LABEL, SETTINGS, (batch, who))
     batches.end(db, batch, int(inspection_table.store(db, rows).sum()))
     counting = [fid for (fid,) in db.execute("SELECT fid FROM inspections WHERE undone = 0")]
     if counting and rng.random() < 0.3:
         batches.undo_one(db, rng.choice(counting))
+    elif rng.random() < 0.1 and any(not one.undone for one in batches.all_of(db)):
+        batches.undo(db, None)
+
+
+def some_findings(rng):
+    """Return what phones save: of few plants, some with no time, some with a photo."""
+    told = []
+    for k in range(2):
+        at = datetime.combine(BEGINS + timedelta(days=3), time(9), UTC)
+        plant, result = rng.randrange(4), rng.choice((CLEAN, FOUND))
+        on = BEGINS + timedelta(days=rng.randrange(3))  # of an earlier day: it has no time
+        told.append(
+            (rng.choice(WHO), Finding(f"f{k}", at, plant, result, on=on), rng.random() < 0.8)
+        )
+    return told
+
+
+def tell(db, rng, told):
+    """Record what a phone saved; the other copy may do so too. Sometimes its last is undone."""
+    who, finding, photo = rng.choice(told)
+    now, undone = Clock.now(UTC), Finding(f"u{finding.id}", finding.at, undoes=finding.id)
+    letter = _SentFindings([finding, undone][: 1 + (rng.random() < 0.2)], (now, now), now,
+                           timedelta())  # fmt: skip
+    change = SimpleNamespace(db=db, reaches=lambda _: None)
+    findings._take(SEASON, change, Scout(who, None, ""), letter)
+    if photo:
+        photos.keep_of(db, who, Photo(f"p{finding.id}", finding.id, JPEG, finding.at))
+
+
+def choose(db, rng):
+    """Change some settings."""
+    now = from_json(settings_log.now(db))
+    hours, seed = rng.choice((4.0, 5.0, 6.0)), rng.choice((1, 2, 3))
+    one = replace(now, robot=now.robot.with_hours(hours))
+    settings_log.change(db, rng.choice((one, replace(now, seed=seed), replace(one, seed=seed))))
+
+
+def keep_labels(db, rng):
+    """Replace the table of labels."""
+    days = rng.choice((7, 14, 21))
+    more = [ProductLabel("Old", waiting_days=3)] if rng.random() < 0.5 else []
+    kept = (ProductLabel("Acarol", waiting_days=days), *more)
+    if kept != label_table.read(db):
+        label_table.write(db, kept)
+        season_log.append(db, "labels", labels=len(kept), source="labels.csv")
 
 
 def apart(seed):
     """Return two copies of a season, in memory, in which different people went on."""
     rng = random.Random(seed)
+    Clock.begin()
     one, other = (sqlite3.connect(":memory:", isolation_level=None) for _ in range(2))
     schema.lay_out(one)
-    clock = iter(range(10**6))
-    for _ in range(rng.randrange(4)):
-        record(one, rng, "Ann", next(clock))
-    one.backup(other)
-    for _ in range(rng.randrange(6)):
-        db, who = rng.choice(((one, "Ann"), (other, "Ben")))
-        record(db, rng, who, next(clock))
+    told = some_findings(rng)
+
+    def work(db, who):
+        if rng.random() < 0.2:  # a clock is set back
+            Clock.shows -= timedelta(microseconds=rng.randrange(200))
+        # as a rule it goes on by more than that
+        Clock.shows += timedelta(microseconds=rng.randrange(100))
+        kinds = (
+            *(lambda: record(db, rng, who),) * 3,
+            *(lambda: tell(db, rng, told),) * 3,
+            *(lambda: choose(db, rng),) * 2,
+            lambda: keep_labels(db, rng),
+        )
+        rng.choice(kinds)()
+
+    with mock.patch.object(local_clock, "datetime", Clock):
+        settings_log.write(one, as_json(SETTINGS))
+        season_log.begin(one, "a new season")
+        for _ in range(rng.randrange(5)):
+            work(one, "Ann")
+        one.backup(other)
+        for _ in range(rng.choice((0, 4, 8, 12))):
+            work(*rng.choice(((one, "Ann"), (other, "Ben"))))
     return one, other
+
+
+def merge(db, other):
+    """Merge as a season does, which notes the other's log."""
+    told = season_log.taken_in(db, other)
+    done = merging.merge(db, other)
+    season_log.append(db, "merged", new=done.new, entries=len(told), theirs=told)
+    return done
 
 
 COLUMNS = "digest, plant, date, result, inspections.who, batches.at"
@@ -67,8 +175,10 @@ def held(db, more=""):
 
 def content(db):
     """Return all that is in a file, in its order."""
-    return {table.name: db.execute(f"SELECT * FROM {table.name} ORDER BY fid").fetchall()  # noqa: S608
-            for table in merging.TAKEN}  # fmt: skip
+    tables = {table.name: ", ".join(("fid", *table.names)) for table in merging.TAKEN}
+    tables |= {table.name: ", ".join(table.names) for table in phone_tables.TABLES}
+    return {name: db.execute(f"SELECT {names} FROM {name} ORDER BY 1").fetchall()  # noqa: S608
+            for name, names in tables.items()}  # fmt: skip
 
 
 def that_count(db):
@@ -84,23 +194,32 @@ def copied(db):
     return copy
 
 
+def undone_by_phones(*both):
+    """Return the digests of findings that were taken back from a phone."""
+    undone = {one for db in both for (one,) in db.execute("SELECT undoes FROM tellings")}
+    made = "SELECT t.id, digest FROM tellings t JOIN inspections i ON i.fid = t.inspection"
+    return {mark for db in both for one, mark in db.execute(made) if one in undone}
+
+
 @pytest.mark.parametrize("first", range(0, PAIRS, 20))
 def test_merged_is_the_union_once_each_and_the_same_either_way(first):
     """500 pairs with FIELDMON_MERGES=500."""
     for seed in range(first, min(first + 20, PAIRS)):
         one, other = apart(seed)
         ours, theirs = copied(one), copied(other)
-        new, gone, *_ = merging.merge(ours, other)
+        new, gone, *_ = merge(ours, other)
         assert new == len(that_count(ours) - that_count(one))
         assert gone == len(that_count(one) - that_count(ours))
-        merging.merge(theirs, one)
+        merge(theirs, one)
         assert content(ours) == content(theirs)
         assert sorted(held(ours)) == sorted({*held(one), *held(other)})  # nothing lost, none twice
         taken_back = {row[:-1] for db in (one, other) for row in held(db, ", inspections.undone")
                       if row[-1]}  # fmt: skip
+        by_phones = undone_by_phones(one, other)
         wanted = {row[0] for row in {*held(one), *held(other)} - taken_back}
         counting = [row[0] for row in held(ours, ", inspections.undone") if not row[-1]]
-        assert sorted(counting) == sorted(wanted)
+        assert len(counting) == len({*counting})
+        assert {*counting} - by_phones == wanted - by_phones
         numbers = dict(ours.execute("SELECT fid, rows FROM batches").fetchall())
         rows = "SELECT batch, count(*) FROM inspections GROUP BY batch"
         assert numbers == dict(ours.execute(rows).fetchall())
@@ -109,10 +228,99 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
         rows = "SELECT batch, count(*) = sum(undone = 1) FROM inspections GROUP BY batch"
         assert undone == dict(ours.execute(rows).fetchall())
         again = copied(ours)
-        merging.merge(again, other)
+        assert merge(again, other).differing == ()
         assert content(again) == content(ours)
         for db in (one, other, ours, theirs, again):
             db.close()
+
+
+IN_ORDER = {
+    "settings": "SELECT changed, name, value FROM settings ORDER BY fid",
+    "batches": "SELECT at, kind, source, who FROM batches ORDER BY fid",
+}
+
+
+def test_what_one_copy_alone_chose_holds_and_what_both_did_is_said():
+    chosen_by = set()
+    for seed in range(PAIRS):
+        one, other = apart(seed)
+        ours = copied(one)
+        differing = merge(ours, other).differing
+        for wanted in IN_ORDER.values():
+            together = ours.execute(wanted).fetchall()
+            for db in (one, other):  # each copy's own order, whatever its clock says
+                rows = db.execute(wanted).fetchall()
+                assert [row for row in together if row in rows] == rows
+        rows = [[*db.execute(IN_ORDER["settings"])] for db in (one, other)]
+        now, *values = (settings_log.now(db) for db in (ours, one, other))
+        said = []
+        for name in now:
+            own = [row for row in rows[0] if row not in rows[1] and row[1] == name]
+            others = [row for row in rows[1] if row not in rows[0] and row[1] == name]
+            chosen_by.add((name, bool(own), bool(others)))
+            if not (own and others):
+                assert now[name] == values[1 if others else 0][name]
+            elif values[0][name] != values[1][name]:
+                assert now[name] in {each[name] for each in values}
+                said.append(f"The setting {name} differs")
+        kept, *tables = (label_table.read(db) for db in (ours, one, other))
+        own, others = ({*season_log.labels_kept(db)} for db in (one, other))
+        chosen_by.add(("labels", bool(own - others), bool(others - own)))
+        if not (own - others and others - own):
+            assert kept == tables[1 if others - own else 0]
+        elif tables[0] != tables[1]:
+            assert kept in tables
+            said.append("The table of labels differs")
+        assert [sentence.startswith(start) for sentence, start in zip(
+            differing, said, strict=True)] == [True] * len(said)  # fmt: skip
+        for db in (one, other, ours):
+            db.close()
+    each = {(name, *by) for name in ("robot", "labels") for by in ((0, 1), (1, 0), (1, 1))}
+    assert each <= chosen_by
+
+
+def not_taken_back(db, brought):
+    """Return photos of findings, as copies brought them, of which something was not taken back."""
+    of_batch = "FROM inspections i JOIN batches b ON b.fid = batch"
+    left = {*db.execute(f"SELECT digest, at {of_batch} WHERE i.undone <> 1")}
+    return {photo for rows in brought for photo, *row in rows if tuple(row) in left}
+
+
+def photos_shown(db):
+    wanted = (
+        "SELECT p.photo FROM photos p JOIN tellings t ON t.id = p.telling "
+        "JOIN inspections i ON i.fid = t.inspection WHERE i.undone = 0"
+    )
+    return {photo for (photo,) in db.execute(wanted)}
+
+
+def test_a_photo_is_shown_as_long_as_its_finding_counts_in_either_copy():
+    of_both = 0
+    told = (
+        "SELECT p.photo, i.digest, b.at FROM photos p JOIN tellings t ON t.id = p.telling "
+        "JOIN inspections i ON i.fid = t.inspection JOIN batches b ON b.fid = i.batch"
+    )
+    for seed in range(PAIRS):
+        one, other = apart(seed)
+        ours, theirs = copied(one), copied(other)
+        merge(ours, other)
+        merge(theirs, one)
+        brought = [{*db.execute(told)} for db in (one, other)]
+        wanted = not_taken_back(ours, brought)
+        assert photos_shown(ours) == wanted
+        assert photos_shown(theirs) == wanted
+        each = [{row[0] for row in rows - others} for rows, others in (brought, brought[::-1])]
+        of_both += len(each[0] & each[1] & wanted)
+        # where somebody else had said the same in one copy, a finding has another digest there
+        marks = {row[:2] for rows in brought for row in rows}
+        twice = {photo for photo, n in Counter(photo for photo, _ in marks).items() if n > 1}
+        for number in [one.number for one in batches.all_of(ours) if not one.undone][::2]:
+            batches.undo(ours, number)
+            assert inspection_table.not_what_they_say(ours) == []
+            assert photos_shown(ours) >= not_taken_back(ours, brought) - twice
+        for db in (one, other, ours, theirs):
+            db.close()
+    assert of_both
 
 
 def test_what_stood_back_for_something_undone_counts_again_and_merging_keeps_it_so():
@@ -120,8 +328,8 @@ def test_what_stood_back_for_something_undone_counts_again_and_merging_keeps_it_
     for seed in range(PAIRS):
         one, other = apart(seed)
         ours, theirs = copied(one), copied(other)
-        merging.merge(ours, other)
-        merging.merge(theirs, one)
+        merge(ours, other)
+        merge(theirs, one)
         for number in [one.number for one in batches.all_of(ours) if not one.undone]:
             if number % 2 == seed % 2:
                 continue
@@ -159,7 +367,7 @@ def test_what_both_copies_hold_stays_untouched_and_nothing_comes_out_otherwise(m
         whole = copied(one)
         counted = "SELECT value FROM fieldmon WHERE key = ?"
         before = one.execute(counted, (schema.INSPECTIONS_CHANGED,)).fetchone()
-        if content(one) == content(other) and merging.merge(one, other).settings == ():
+        if content(one) == content(other) and merging.merge(one, other).differing == ():
             after = one.execute(counted, (schema.INSPECTIONS_CHANGED,)).fetchone()
             stayed += held(one) != [] and before == after
         else:
@@ -187,7 +395,7 @@ def test_rows_that_come_out_otherwise_do_not_stay(monkeypatch, change, where):
     one, other = (sqlite3.connect(":memory:", isolation_level=None) for _ in range(2))
     schema.lay_out(one)
     for clock in range(3):
-        record(one, random.Random(clock), "Ann", clock)
+        record(one, random.Random(clock), "Ann")
     if "INSERT" in change:
         one.execute("UPDATE inspections SET undone = 1 WHERE fid = 2")
     one.backup(other)
@@ -239,7 +447,9 @@ def test_a_batch_in_which_something_stands_twice_is_no_batch_that_stays():
 def test_every_table_of_a_season_is_merged_or_must_be_the_same_or_follows_from_them():
     follows = {schema.META, schema.DAYS, schema.PLANT_STATE, schema.HOT_SPOTS, schema.LEARNT}
     follows |= {schema.MORNINGS, schema.INSPECTION_LOTS}
-    merged = {*merging.SAME, *merging.TAKEN, *merging.LOGGED, *phone_tables.TABLES}
+    # what stays ours and is told of the other's
+    logged = {schema.LOG}
+    merged = {*merging.SAME, *merging.TAKEN, *logged, *phone_tables.TABLES}
     assert merged | follows == set(schema.TABLES)
 
 
@@ -308,13 +518,50 @@ def test_what_the_copies_tell_differently_is_listed_and_both_are_kept(path, othe
     season, there = Season(path), Season(other)
     season.record(result(3, FOUND), "taps")
     there.record(result(3, CLEAN), "taps")
-    there.change(MonitoringSettings(**(vars(there.settings) | {"seed": 7})), there.settings)
+    season.change(replace(season.settings, seed=5), season.settings)
+    there.change(replace(there.settings, seed=7), there.settings)
     done = season.merge(Season(other))
     assert "recorded as found, now clean" in done.contradictions[0]
     (said,) = (said for said in done.contradictions if "The setting season differs" in said)
-    assert said.endswith("seed 1 here, seed 7 there. What was chosen last counts: seed 7.")
+    assert said.endswith("seed 5 here, seed 7 there. What was chosen last counts: seed 7.")
     assert season.settings.seed == 7
     assert sorted(season.history.on(1).result.tolist()) == [CLEAN, FOUND]
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_labels_that_were_replaced_do_not_come_back(path, other, both):
+    ours, theirs = Season(path), Season(other)
+    if both:
+        ours.keep_labels([ProductLabel("Acarol", waiting_days=7), ProductLabel("Old")])
+    theirs.keep_labels([ProductLabel("Acarol", waiting_days=21)])
+    theirs.keep_labels([last := ProductLabel("Acarol", waiting_days=3)])
+    done = ours.merge(theirs)
+    assert ours.labels() == (last,)
+    said = (
+        "The table of labels differs (Acarol, Old): each copy replaced it. What was kept last "
+        "counts, as a whole: the one there."
+    )
+    assert done.contradictions == ((said,) if both else ())
+    assert theirs.merge(ours).contradictions == ()
+    assert theirs.labels() == (last,)
+    assert ours.verify() == ()
+
+
+def test_what_was_taken_back_and_recorded_again_at_once_counts_in_the_merged_season(path, other):
+    season = Season(path)
+    batch = season.record(result(30, CLEAN), "taps", "Ann").batch
+    season.record(result(31, FOUND), "taps", "Ann", into=batch)
+    with season.store.reading() as db:
+        (found,) = db.execute("SELECT fid FROM inspections WHERE plant = 31").fetchone()
+    there = Season(shutil.copy(path, other))  # knows the first of both
+    season.undo(inspection=found)
+    season.record(result(31, FOUND), "taps", "Ann", into=batch)
+    done = season.merge(there)
+    assert (done.new, done.taken_back) == (0, 0)
+    there.merge(season)
+    for one in (season, there):
+        assert 31 in one.history.inspections.plant
+        assert one.verify() == ()
 
 
 @pytest.mark.parametrize("way", ["ours", "theirs"])

@@ -60,12 +60,13 @@ def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):
     ahead = season.forecast(on(1))
     came = [season.status(on(1 + night)).estimate for night in range(15)]
     assert [one.expected for one in came] == pytest.approx(ahead.expected, rel=1e-3)
-    # and as doubtful, to a rounding of a few plants
-    now = [np.log((one.high + 3) / (one.low + 3)) for one in came]
-    assert now[2:] == pytest.approx(np.log((ahead.high + 3) / (ahead.low + 3))[2:], rel=0.35)
+    # and as doubtful, to a plant or two
+    assert [one.low for one in came] == pytest.approx(ahead.low, abs=1)
+    assert [one.high for one in came] == pytest.approx(ahead.high, rel=0.03, abs=1)
+    assert np.all(np.diff([one.low for one in came]) >= 0)
     wide = ahead.high / np.maximum(ahead.low, 1.0)
     assert np.all(np.diff(ahead.expected) > 0.0)
-    assert np.all(wide[1:] >= 0.99 * wide[0])
+    assert np.all(wide[1:] >= 0.95 * wide[0])
 
 
 def test_after_months_the_number_is_as_doubtful_as_tomorrows(season):
@@ -183,9 +184,9 @@ def test_who_changes_chances_that_were_given_changes_nothing_for_others(season, 
     assert season.evening(BEGINS).max() > 0.0
 
 
-def test_a_route_sees_no_more_infested_plants_than_its_day_is_planned_by(season):
+def test_a_day_is_planned_by_the_map_that_is_told_of_it(season):
     season.record(some_results(season, n=20, found=[3]), "x")
     route = season.plan(BEGINS, keep=False).route
-    told = season.evening_planned_by(BEGINS)[route.plant].sum()
-    assert route.expected_finds == pytest.approx(told)  # nothing hides there
-    assert season.evening(BEGINS)[route.plant].sum() < 0.9 * told  # it says more of others
+    told = season.evening(BEGINS)
+    assert route.expected_finds == pytest.approx(told[route.plant].sum())  # nothing hides there
+    assert route.expected_finds < told.sum()

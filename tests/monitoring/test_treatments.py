@@ -70,15 +70,15 @@ def test_all_that_was_said_of_an_application_comes_back(db):
     )  # fmt: skip
     # past midnight: the wait begins on the day after
     assert again.ended == datetime(2026, 4, 8, 22, 15, tzinfo=UTC)
-    assert again.waits.harvest_from == date(2026, 4, 13)
-    assert again.waits.entry_from == datetime(2026, 4, 9, 13, 15)
+    assert again.entered_waits.harvest_from == date(2026, 4, 13)
+    assert again.entered_waits.entry_from == datetime(2026, 4, 9, 13, 15)
 
 
 def test_without_a_time_it_ended_at_the_end_of_its_day(db):
     store(db, Application("soap", waiting_days=1))
     (again,) = kept(db)
     assert again.ended == datetime(2026, 4, 8, 21, tzinfo=UTC)
-    assert again.waits.harvest_from == date(2026, 4, 10)
+    assert again.entered_waits.harvest_from == date(2026, 4, 10)
 
 
 def test_plants_treated_one_by_one_are_those_whatever_stands_in_the_outline(db):

@@ -224,7 +224,7 @@ def test_wishes_reach_every_way_to_plan_a_first_day_and_change_no_belief(plot):
     wanted = np.setdiff1d(np.arange(len(plot.grid)), plain.route.plant)[:3]
     wishes = Wishes(tuple(wanted.tolist()), tuple(plain.route.plant[:2].tolist()))
     known = chance, TracedPairs.of(plot.grid, chance)
-    for day in (plan_from(plot, chance, plans, wishes), plan_believed(plot, known, plans, wishes),
+    for day in (plan_believed(plot, known, plans, wishes),
                 plan_in(plain.scene, plans.sampler, wishes)):  # fmt: skip
         assert not len(wishes.unmet(day.route))
         assert not np.isin(plain.route.plant[:2], day.route.plant).any()

@@ -11,7 +11,9 @@ from fieldmon.planning.shared_day import PlotNeed, share_day
 from fieldmon.plot.robot import Robot
 
 needs = st.lists(
-    st.builds(PlotNeed, st.floats(0, 1000), st.floats(60, 200_000)), min_size=0, max_size=12
+    st.builds(PlotNeed, st.floats(0, 1000), st.just(0.0) | st.floats(60, 200_000)),
+    min_size=0,
+    max_size=12,
 )
 hours = st.lists(st.floats(0.1, 12.0), min_size=1, max_size=4)
 
@@ -71,6 +73,12 @@ def test_time_that_a_small_plot_does_not_need_goes_to_the_others():
 def test_a_plot_that_would_get_less_than_a_quarter_of_an_hour_waits():
     plots = [PlotNeed(100, 1e6), PlotNeed(1, 1e6)]
     assert [turn.plot for turn in share_day(plots, team_of(1, Robot(hours=4)))] == [0]
+
+
+def test_nobody_goes_to_a_plot_where_there_is_nothing_to_inspect():
+    plots = [PlotNeed(100, 0), PlotNeed(5, 1e6), PlotNeed(1, 0)]
+    (turn,) = share_day(plots, team_of(1, Robot(hours=4)), move_s=900)
+    assert (turn.plot, turn.starts_s, turn.seconds) == (1, 0, 4 * 3600)
 
 
 def test_without_plots_or_members_there_is_no_turn():

@@ -134,15 +134,6 @@ def test_on_an_even_plot_a_team_comes_within_a_twentieth_of_its_bound():
     )
 
 
-def test_plants_done_today_are_left_alone():
-    plot = plot_of()
-    done = np.zeros(len(plot.grid), np.bool_)
-    done[:90] = True
-    plan = plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6)), done)
-    check(plan)
-    assert not any(done[day.route.plant].any() for day in plan.days)
-
-
 def test_the_same_team_has_the_same_plan():
     plot = plot_of()
     first, again = (plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6))) for _ in range(2))

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from fieldmon.planning.plan import PlanSettings, plan_from
+from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.planning.plan import PlanSettings, plan_believed, plan_from
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
@@ -34,11 +35,15 @@ def usual(plot, chance):
     return plan_from(plot, chance, HOUR)
 
 
+def wished(plot, chance, plans, wishes):
+    return plan_believed(plot, (chance, TracedPairs.of(plot.grid, chance)), plans, wishes)
+
+
 def test_wanted_plants_are_on_the_route_where_the_hours_reach_them(plot, chance, usual):
     elsewhere = np.setdiff1d(np.arange(len(plot.grid)), usual.route.plant)
     wanted = tuple(elsewhere[-3:].tolist())
     wishes = Wishes(wanted)
-    route = plan_from(plot, chance, HOUR, wishes).route
+    route = wished(plot, chance, HOUR, wishes).route
     assert set(wanted) <= set(route.plant.tolist())
     assert not len(wishes.unmet(route))
 
@@ -48,20 +53,20 @@ def test_unwanted_plants_are_on_no_samplers_route(plot, chance, name):
     plans = PlanSettings(Robot(hours=1), sampler(name))
     gone_to = plan_from(plot, chance, plans).route.plant
     left_out = tuple(gone_to[::2].tolist())
-    route = plan_from(plot, chance, plans, Wishes(unwanted=left_out)).route
+    route = wished(plot, chance, plans, Wishes(unwanted=left_out)).route
     assert len(route)
     assert not set(left_out) & set(route.plant.tolist())
 
 
 def test_what_is_believed_stays_as_it_is(plot, chance):
-    day = plan_from(plot, chance, HOUR, Wishes((443,), (0,)))
+    day = wished(plot, chance, HOUR, Wishes((443,), (0,)))
     assert day.chance.tolist() == chance.tolist()
     assert day.route.chance.tolist() == chance[day.route.plant].tolist()
 
 
 def test_what_cannot_be_reached_is_told(plot, chance):
     wishes = Wishes(tuple(range(len(plot.grid))))
-    route = plan_from(plot, chance, HOUR, wishes).route
+    route = wished(plot, chance, HOUR, wishes).route
     unmet = wishes.unmet(route)
     assert len(unmet) == len(plot.grid) - len(route)
     assert not set(unmet.tolist()) & set(route.plant.tolist())
@@ -80,7 +85,7 @@ def test_pairs_beside_a_wanted_plant_are_as_likely_as_the_other_plant(usual):
 
 def test_no_wishes_change_nothing(plot, chance, usual):
     assert not Wishes()
-    same = plan_from(plot, chance, HOUR, Wishes())
+    same = wished(plot, chance, HOUR, Wishes())
     assert same.route.plant.tolist() == usual.route.plant.tolist()
 
 

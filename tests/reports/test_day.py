@@ -100,7 +100,7 @@ def test_where_it_hides_a_day_tells_how_many_of_the_infested_can_be_seen(worked,
         made = day_report(replace(ahead, infested=infested), Units())
         return figures(made)["Expected finds"].note
 
-    chance = worked.evening_planned_by(last + timedelta(days=1))
+    chance = worked.evening(last + timedelta(days=1))
     assert ahead.infested == pytest.approx(chance[ahead.route.plant].sum())
     seen = estimate(ahead.route.expected_finds)
     assert note(500.0) == f"of 500 infested on the route, {seen} so that it can be seen"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.vda5050.fleet import live_robot
 from fieldmon.drive.vda5050.wire import RobotName
-from fieldmon.errors import SettingError
+from fieldmon.errors import FieldmonError
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 #: a day as it was driven, or why it was not
-TeamDays = dict[str, "DrivenDay | SettingError"]
+TeamDays = dict[str, "DrivenDay | FieldmonError"]
 
 
 def drive_team(
@@ -35,8 +35,8 @@ def drive_team(
     """Drive what is left of a team's day; return each robot's day by its name.
 
     A find by one is planned for by all. No two are in one aisle at once: who comes second waits at
-    the end of its own. A robot that never comes takes nothing from the others, and has the error
-    instead of a day. People of the team are left out.
+    the end of its own. A robot that never comes, or whose day breaks off, takes nothing from the
+    others, and has the error instead of a day. People of the team are left out.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def drive_team(
         What each one's day is noted in.
     """
 
-    def one(member: TeamMember) -> DrivenDay | SettingError:
+    def one(member: TeamMember) -> DrivenDay | FieldmonError:
         own, noted = day.member(member.name), (recordings or {}).get(member.name)
         robot = RobotName(names.manufacturer, member.name, names.version)
 
@@ -63,7 +63,7 @@ def drive_team(
         try:
             with live_robot(broker, robot, str(day.on), tell, day.keeper) as live:
                 return drive_day(own, own.aisles, (member.robot, live), watch)
-        except SettingError as error:
+        except FieldmonError as error:
             tell(str(error))
             if own.at == GATE:
                 day.keeper.keep_only(member.name, [])

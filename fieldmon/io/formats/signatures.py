@@ -9,6 +9,12 @@ from pathlib import PurePosixPath
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
+#: pictures that browsers show, by their first bytes; a RIFF says further on of what it is
+_PICTURES = {
+    b"\xff\xd8\xff": "image/jpeg",
+    b"\x89PNG\r\n\x1a\n": "image/png",
+    b"RIFF": "image/webp",
+}
 #: how much of a file `kind_of` wants to see
 HEAD_BYTES = 4096
 
@@ -159,6 +165,14 @@ def workbook_kind(head: bytes) -> FileKind:
 def is_open_workbook(head: bytes) -> bool:
     """Return whether a zip is an OpenDocument spreadsheet."""
     return _OPEN_WORKBOOK in head[:120]
+
+
+def picture_type(data: bytes) -> str | None:
+    """Return the media type of a JPEG, PNG or WebP picture; None: it is none of these."""
+    for begin, named in _PICTURES.items():
+        if data.startswith(begin) and (begin != b"RIFF" or data[8:12] == b"WEBP"):
+            return named
+    return None
 
 
 def kind_of(head: bytes, name: str) -> FileKind:

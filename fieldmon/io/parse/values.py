@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.ranges import MOST_COUNTED
+from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.result_words import meaning
@@ -84,6 +86,45 @@ def number(cell: str, decimal: str = ".") -> float:
         return float(bare.replace(decimal, "."))
     except ValueError:
         return np.nan
+
+
+def told_number(cell: str, role: str, most: float = np.inf) -> float:
+    """Return a number that a person wrote alone, with either decimal mark.
+
+    Parameters
+    ----------
+    cell
+        What was written.
+    role
+        What it is, for sentences.
+    most
+        The most that it can be: what is more as thousands is none.
+
+    Raises
+    ------
+    SettingError
+        If it is no number, or may be thousands: 1,500 is 1500 to some and 1.5 to others.
+    """
+    cell = cell.strip()
+    bare = cell.replace(",", ".")
+    if could_be_thousands(cell) and abs(thousands := float(bare.replace(".", ""))) <= most:
+        whole, _, rest = bare.partition(".")
+        raise SettingError(
+            worded(
+                "{role} is {cell}: is that {bare:g} or {other:g}? Write it without the mark, "
+                "or with other decimals.",
+                role=role,
+                cell=cell,
+                bare=thousands,
+                other=float(f"{whole}.{rest.replace('.', '')}"),
+            )
+        )
+    value = number(cell, decimal_mark([cell]) or ".")
+    if not np.isfinite(value):
+        raise SettingError(
+            worded("{role} must be a number, but it is {cell!r}.", role=role, cell=cell)
+        )
+    return value
 
 
 def plain_numbers(column: NDArray[np.object_]) -> Float | None:

@@ -118,6 +118,9 @@ _KINDS = (
     ("rain_mm", _RAIN),
     ("humidity_pct", _HUMIDITY),
 )
+# too short, or within too many words, to be told by a stem: Hi Temp, but hauteur
+_LOW_WORDS = frozenset({"lo", "bas", "basse", "basses"})
+_HIGH_WORDS = frozenset({"hi", "haut", "haute", "hautes"})
 _DIRECTION = ("dir", "richt", "rumbo", "כיוון", "اتجاه", "azimut")
 # what looks like one of them and is none
 _NOT = (
@@ -164,7 +167,9 @@ def weather_column(name: str, unit: str = "") -> WeatherColumn | None:
     WeatherColumn(name='Wind_Speed_km_h', measure='wind_speed_m_s', unit='km/h')
     """
     bare, stated = _split(name)
-    measure = _measure(plain(bare) or plain(name))
+    measure = _measure(
+        plain(bare) or plain(name), frozenset(word.casefold() for word in _words(bare))
+    )
     if measure is None:
         return None
     return WeatherColumn(name, measure, unit_named(unit) or stated)
@@ -178,8 +183,7 @@ def _split(name: str) -> tuple[str, str]:
         # Temp, °C (LGR S/N: 10)
         inner = ("", "") if unit else _split(bare)
         return inner if inner[1] else (bare, unit or bracket[1])
-    spread = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
-    parts = [part for part in re.split(r"[\s_\-,.:;]+", spread) if part]
+    parts = _words(name)
     for n in (2, 1):
         if len(parts) > n:
             for between in ("/", ""):
@@ -190,26 +194,27 @@ def _split(name: str) -> tuple[str, str]:
     return name, ""
 
 
+def _words(name: str) -> list[str]:
+    """Return the words of a name, as in ``Hi Temp``, ``hi_temp`` and ``hiTemp``."""
+    spread = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    return [part for part in re.split(r"[\s_\-,.:;]+", spread) if part]
+
+
 def unit_named(text: str) -> str:
     """Return a unit as `UNITS` has it; empty if it is none."""
     bare = text.strip().casefold().replace(" ", "").replace("_", "/")
     return next((one for one in (bare, bare.strip(".")) if one in UNITS), "")
 
 
-def _measure(name: str) -> str | None:
-    """Return what a plain name measures."""
+def _measure(name: str, words: frozenset[str]) -> str | None:
+    """Return what a plain name of some words measures."""
     if name in _EXACT:
         return _EXACT[name]
-    kinds = (
-        ("wind", _WIND),
-        ("air", _TEMPERATURE),
-        ("rain_mm", _RAIN),
-        ("humidity_pct", _HUMIDITY),
-    )
-    found = [kind for kind, stems in kinds if _has(name, stems)]
+    found = [kind for kind, stems in _KINDS if _has(name, stems)]
     if not found or _has(name, _NOT):
         return None
-    is_low, is_high = _has(name, _LOW), _has(name, _HIGH)
+    is_low = _has(name, _LOW) or not words.isdisjoint(_LOW_WORDS)
+    is_high = _has(name, _HIGH) or not words.isdisjoint(_HIGH_WORDS)
     if found[0] == "wind" and _has(name, _DIRECTION):
         return "wind_from_deg"
     if found[0] == "air":

@@ -19,6 +19,7 @@ from pmtiles.reader import MmapSource, Reader
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
+from fieldmon.io.formats.signatures import picture_type
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,11 +27,6 @@ if TYPE_CHECKING:
     #: kind of pictures, first and last zoom, bounds, pixels along a side, credit
     Described = tuple[str, tuple[int, int], tuple[float, float, float, float], int, str]
 
-_PICTURES = (
-    (b"\x89PNG\r\n\x1a\n", "image/png"),
-    (b"\xff\xd8\xff", "image/jpeg"),
-    (b"RIFF", "image/webp"),
-)
 #: the last zoom at which anybody has tiles
 _MOST_ZOOM = 30
 # one tile is never so large
@@ -67,20 +63,17 @@ def tile(path: str, zoom: int, column: int, row: int) -> bytes | None:
         found = (_pm_tile if _is_pm(path) else _mb_tile)(path, zoom, column, row)
     except _BROKEN:
         return None
-    if found is None or len(found) > _MOST_BYTES or kind_of(found) is None:
+    if found is None or len(found) > _MOST_BYTES or picture_type(found) is None:
         return None
     return found
-
-
-def kind_of(picture: bytes) -> str | None:
-    """Return what kind of picture these bytes are; None: no picture that browsers show."""
-    return next((mime for head, mime in _PICTURES if picture.startswith(head)), None)
 
 
 def side_of(picture: bytes) -> int:
     """Return the pixels along a tile's side, by the head of its picture: 256 or 512."""
     if picture.startswith(b"\x89PNG"):
         return 512 if struct.unpack(">I", picture[16:20])[0] >= 512 else 256
+    if picture.startswith(b"RIFF"):
+        return 512 if _webp_width(picture) >= 512 else 256
     at = 2
     while picture.startswith(b"\xff\xd8") and at + 9 < len(picture):
         marker, length = picture[at + 1], struct.unpack(">H", picture[at + 2 : at + 4])[0]
@@ -88,6 +81,15 @@ def side_of(picture: bytes) -> int:
             return 512 if struct.unpack(">H", picture[at + 7 : at + 9])[0] >= 512 else 256
         at += 2 + length
     return 256
+
+
+def _webp_width(picture: bytes) -> int:
+    """Return the pixels across a WebP, which says them in three ways (RFC 9649)."""
+    if picture[12:16] == b"VP8X":
+        return 1 + int.from_bytes(picture[24:27], "little")
+    if picture[12:16] == b"VP8L":
+        return 1 + (int.from_bytes(picture[21:23], "little") & 0x3FFF)
+    return int.from_bytes(picture[26:28], "little") & 0x3FFF
 
 
 def _is_pm(path: str) -> bool:
@@ -100,7 +102,7 @@ def _short(bad: Exception) -> str:
 
 
 def _pictures(picture: bytes, name: str) -> tuple[str, int]:
-    mime = kind_of(picture)
+    mime = picture_type(picture)
     if mime is None:
         raise FileProblem(
             worded(

@@ -25,7 +25,9 @@ class InspectionOptions(RecordOptions):
     Parameters
     ----------
     day
-        The day of inspections whose file names none, as numpy's ``datetime64[D]``.
+        The day of inspections that have none, as numpy's ``datetime64[D]``.
+    work_day
+        Their day where no record of the file says one; None, or beside others that do: none.
     who
         Who inspected, where the file does not say.
     accuracy_m
@@ -40,6 +42,7 @@ class InspectionOptions(RecordOptions):
     """
 
     day: np.datetime64 | None = None
+    work_day: np.datetime64 | None = None
     who: str | None = None
     accuracy_m: float | None = None
     zone: str | None = None

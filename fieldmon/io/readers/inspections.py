@@ -95,9 +95,7 @@ def dated(read: Imported[Inspections]) -> Imported[Inspections]:
     if not without.any() or without.all():
         return read
     said = worded(
-        "{n} {n:record has|records have} no date, as others have: left out. Give them one, or "
-        "the day of all "
-        "that have none.",
+        "{n} {n:record has|records have} no date, as others have: left out. Give them one.",
         n=int(without.sum()),
     )
     day = Remedy("day", "2026-04-06", worded("Say the day of those that have none"))

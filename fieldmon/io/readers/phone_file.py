@@ -135,10 +135,11 @@ def fields_of(said: Mapping[str, Any]) -> dict[str, Any]:
     Raise `ObservationError` where a time or a day is none.
     """
     lon, lat, result = said.get("lon"), said.get("lat"), said.get("result")
+    plant = said.get("plant")
     return {
         "id": said["id"],
         "at": moment(said["at"]),
-        "plant": said.get("plant"),
+        "plant": None if plant is None else int(plant),  # JSON's 3.0 is whole, too
         "result": None if result is None else _CODES[result],
         "count": said.get("count"),
         "stage": said.get("stage", ""),

@@ -6,8 +6,9 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import FileProblem
+from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.parse.own_table import own_table
+from fieldmon.io.parse.values import told_number
 from fieldmon.plot.robot import broken_rule
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ _SETTINGS = {
     "look_s": ("look_s", 1.0),
     "detection": ("detection", 1.0),
 }
+#: columns that hold no thousands
+_MOST = {"hours": 24.0, "lon": 180.0, "lat": 90.0}
 
 
 class StatedMember(NamedTuple):
@@ -140,16 +143,8 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
 
 def _number(text: str, name: str, where: str) -> float:
     try:
-        value = float(text.replace(",", "."))
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+        return told_number(text, name, _MOST.get(name, math.inf))
+    except SettingError as error:
         raise FileProblem(
-            worded(
-                "{where}: {name} must be a number, but it is {text!r}.",
-                where=where,
-                name=name,
-                text=text,
-            )
-        )
-    return value
+            worded("{where}: {problem}", where=where, problem=error.args[0])
+        ) from error

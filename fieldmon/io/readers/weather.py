@@ -20,10 +20,20 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.infestation.observations import PRESENT
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.open_layer import open_layer
-from fieldmon.io.import_report import Imported, ImportMessage, Remedy, dropped, guessed, seen
+from fieldmon.io.import_report import (
+    Imported,
+    ImportMessage,
+    Remedy,
+    doubtful,
+    dropped,
+    guessed,
+    seen,
+)
 from fieldmon.io.parse.columns import plain
+from fieldmon.io.parse.result_words import meaning
 from fieldmon.io.parse.values import numbers
 from fieldmon.io.parse.weather_columns import (
     KIND_OF,
@@ -32,13 +42,14 @@ from fieldmon.io.parse.weather_columns import (
     WeatherColumn,
     weather_columns,
 )
+from fieldmon.io.readers.running_rain import what_fell
 from fieldmon.io.readers.weather_json import is_weather_json, rows_of_json
 from fieldmon.io.readers.weather_rows import WeatherRows
 from fieldmon.io.readers.weather_services import columns_of_service, service_of
 from fieldmon.io.readers.weather_stations import must_be_one_station
 from fieldmon.io.readers.weather_times import is_time_name, time_columns, times_of
 from fieldmon.io.sandbox.unpack import members
-from fieldmon.pests.weather import MEASURED
+from fieldmon.pests.weather import HOUR_S, MEASURED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,6 +64,8 @@ if TYPE_CHECKING:
 _MOST_NONSENSE = 0.05
 # without a unit: no place is warmer than this on average, or ever
 _WARMEST_MEAN_C, _WARMEST_C, _SURELY_F, _WARMEST_F = 35.0, 50.0, 60.0, 135.0
+# nowhere are days so much warmer than their nights, month by month
+_FARTHEST_APART_F = 54.0
 # numbers that stand for what is missing: no weather is ever so
 _MARKS = (-99999.0, -9999.9, -9999.0, -999.9, -999.0, -99.9, -99.0, 999.0, 999.9, 9999.0, 9999.9,
           99999.0)  # fmt: skip
@@ -62,8 +75,13 @@ _CALM = frozenset({"calm", "---", "windstill", "רגוע", "vrb"})
 _VARIABLE = 990.0
 _POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
            "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")  # fmt: skip
-_FORECAST_COLUMN = re.compile(r"forecast|prognos|vorhersage|prevision|pronostico|תחזית|توقع")
-_FORECAST_WORDS = re.compile(r"^(1|true|yes|y|f|fc|forecast.*|prognos.*|vorhersage.*|pr[eé]v.*)$")
+# in plain names of columns, and in their cells
+_FORECAST = re.compile(r"forecast|prognos|vorhersag|previs|pronostic|verwacht|תחזית|חזוי|توقع")
+_FORECAST_IN_SHORT = frozenset({"f", "fc", "prev"})
+_MEASURED = re.compile(
+    r"measured|observ|actual|gemessen|messung|beobacht|mesure|medid|misurat|gemeten|waargenomen"
+    r"|נמדד|מדוד|مقاس|مرصود|^(m|o|obs|real|past|reel)$"
+)
 
 
 def weather_in(source: Source, options: WeatherOptions, workroom: Workroom) -> Imported[Weather]:
@@ -111,19 +129,28 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     must_be_one_station(layer, timed.at, taken)
     messages += timed.messages
     measured, step_s = {}, _step_s(timed.at)
+    if step_s > HOUR_S:
+        messages += _about_one_extreme(columns)
+    cells: dict[WeatherColumn, Floats] = {}
     for column in columns:
         if column.measure == "wind_from_deg":
             measured[column.measure] = _directions(layer, column, options)
             continue
-        values, none = _without_marks(numbers(layer.columns[column.name], options.decimal), column)
-        unit, said = _unit_of(column, values, options)
-        messages += [*none, *said]
-        if unit:
-            measured[column.measure] = UNITS[unit].ours(values, step_s)
+        values = numbers(layer.columns[column.name], options.decimal)
+        cells[column], said = _without_marks(values, column)
+        messages += said
+        if column.measure == "rain_mm" and not (service.title or _is_rate(column, options)):
+            cells[column], said = what_fell(column.name, cells[column], timed.at, options.rain_is)
+            messages += said
+    unit_of, said = _units_of(cells, options)
+    messages += said
+    for column, unit in unit_of.items():
+        measured[column.measure] = UNITS[unit].ours(cells[column], step_s)
     if service.tenths and "rain_mm" in measured:
         # -1 is less than could be measured
         measured["rain_mm"] = np.maximum(measured["rain_mm"], 0.0)
-    forecast = _forecast(layer)
+    forecast, said = _forecast(layer)
+    messages += said
     return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
 
 
@@ -147,6 +174,21 @@ def _first_table(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
         return kept, []
     said = worded("Another table begins after record {n}; it was left out.", n=len(kept))
     return kept, [dropped(said)]
+
+
+def _about_one_extreme(columns: list[WeatherColumn]) -> list[ImportMessage]:
+    """Return a doubt about lows without highs, or highs without lows: one was not recognised."""
+    name_of = {one.measure: one.name for one in columns}
+    low, high = name_of.get("low_c"), name_of.get("high_c")
+    if (mean := name_of.get("temperature_c")) is None or (low is None) == (high is None):
+        return []
+    if high is None:
+        said = worded("{name} was read as the low and {mean} as the mean, but no column as the "
+                      "high.", name=low, mean=mean)  # fmt: skip
+    else:
+        said = worded("{name} was read as the high and {mean} as the mean, but no column as the "
+                      "low.", name=high, mean=mean)  # fmt: skip
+    return [doubtful(said)]
 
 
 def _step_s(at: NDArray[np.datetime64]) -> float:
@@ -183,14 +225,45 @@ def _without_units(layer: Layer) -> tuple[Layer, dict[str, str]]:
     return layer.take(np.arange(1, len(layer))), bare
 
 
-def _unit_of(
-    column: WeatherColumn, values: Floats, options: WeatherOptions
-) -> tuple[str, list[ImportMessage]]:
+def _is_rate(column: WeatherColumn, options: WeatherOptions) -> bool:
+    """Return whether a column says how much fell in some time."""
+    unit = UNITS.get(column.unit or options.unit("rain"))
+    return unit is not None and unit.per_s > 0
+
+
+def _units_of(
+    cells: dict[WeatherColumn, Floats], options: WeatherOptions
+) -> tuple[dict[WeatherColumn, str], list[ImportMessage]]:
+    """Return the unit of each column that need not be left out, and what is to be said."""
+    units, said, bare = {}, [], {}
+    for column, values in cells.items():
+        kind = KIND_OF[column.measure]
+        told = column.unit.casefold().replace(" ", "") or options.unit(kind)
+        if kind == "temperature" and not told:
+            bare[column] = values
+            continue
+        unit, about = _unit_of(column, kind, told)
+        said += about
+        if unit:
+            units[column] = unit
+    if bare:
+        unit, about = _temperature_unit({one.name: values for one, values in bare.items()})
+        said += about
+        units |= dict.fromkeys(bare, unit)
+    return units, said
+
+
+def _unit_of(column: WeatherColumn, kind: str, told: str) -> tuple[str, list[ImportMessage]]:
     """Return the unit of a column, empty where it must be left out, and what is to be said."""
-    kind = KIND_OF[column.measure]
-    told = column.unit.casefold().replace(" ", "") or options.unit(kind)
     if told:
         if told not in UNITS or UNITS[told].kind != kind:
+            if kind == "humidity":
+                said = worded(
+                    "The unit of {name} is {told!r} and not %. It was left out; nothing needs it.",
+                    name=column.name,
+                    told=told,
+                )
+                return "", [dropped(said)]
             raise FileProblem(
                 worded(
                     "The column {name!r} must be in {known}, but its unit is {told!r}. Correct "
@@ -201,8 +274,6 @@ def _unit_of(
                 )
             )
         return told, []
-    if kind == "temperature":
-        return _temperature_unit(column, values)
     if kind == "speed":
         remedy = Remedy("wind_unit", "km/h", worded("Name the unit"), ("m/s", "mph", "kn"))
         said = worded("{name} has no unit, so the wind was left out.", name=column.name)
@@ -214,43 +285,71 @@ def _unit_of(
     return "%", []
 
 
-def _temperature_unit(column: WeatherColumn, values: Floats) -> tuple[str, list[ImportMessage]]:
-    """Return the unit that temperatures tell; ask where they could be either."""
-    known = np.sort(values[~np.isnan(values)])
-    # a few broken ones tell nothing of the others
-    known = known[: len(known) - int(_MOST_NONSENSE * len(known))]
-    most = float(known[-1]) if len(known) else 0.0
+def _temperature_unit(columns: dict[str, Floats]) -> tuple[str, list[ImportMessage]]:
+    """Return the unit that a table's temperatures tell together; ask where it could be either."""
+    knowns = {name: _known(values) for name, values in columns.items()}
+    names = ", ".join(columns)
+    name = max(columns, key=lambda one: float(knowns[one].max(initial=-np.inf)))
+    most = float(knowns[name].max(initial=-np.inf))
     if most > _WARMEST_F:
         raise ChoiceNeeded(
             worded(
                 "{name} has no unit and goes up to {most:g}, which is neither Celsius nor "
                 "Fahrenheit. Is it in tenths?",
-                name=column.name,
+                name=name,
                 most=most,
             ),
             "temperature_unit",
             ("0.1 C", "0.1 F", "K"),
         )
     if most > _SURELY_F:
+        _must_be_near(knowns)
         said = worded(
-            "{name} has no unit; read as Fahrenheit, for it goes up to {most:g}.",
-            name=column.name,
+            "{names} {n:has|have} no unit; read as Fahrenheit, for {name} goes up to {most:g}.",
+            names=names,
+            n=len(columns),
+            name=name,
             most=most,
         )
         remedy = Remedy("temperature_unit", "C", worded("Read as Celsius"), ("0.1 C",))
         return "f", [guessed(said, None, remedy)]
-    if most > _WARMEST_C or (len(known) and float(known.mean()) > _WARMEST_MEAN_C):
+    if most > _WARMEST_C or any(k.size and k.mean() > _WARMEST_MEAN_C for k in knowns.values()):
         raise ChoiceNeeded(
             worded(
-                "{name} has no unit, and its values could be Celsius or Fahrenheit. Which is it?",
-                name=column.name,
+                "{names} {n:has|have} no unit, and what {n:it holds|they hold} could be Celsius "
+                "or Fahrenheit. Which is it?",
+                names=names,
+                n=len(columns),
             ),
             "temperature_unit",
             ("F", "C"),
         )
     remedy = Remedy("temperature_unit", "F", worded("Read as Fahrenheit"))
-    said = worded("{name} has no unit; read as Celsius.", name=column.name)
+    said = worded("{names} {n:has|have} no unit; read as Celsius.", names=names, n=len(columns))
     return "c", [guessed(said, None, remedy)]
+
+
+def _known(values: Floats) -> Floats:
+    """Return what was measured, in order, without the highest: a few broken ones tell nothing."""
+    known = np.sort(values[~np.isnan(values)])
+    return known[: len(known) - int(_MOST_NONSENSE * len(known))]
+
+
+def _must_be_near(knowns: dict[str, Floats]) -> None:
+    """Refuse temperatures that are too far apart to be all in Fahrenheit."""
+    middles = {name: float(np.median(known)) for name, known in knowns.items() if known.size}
+    low, high = min(middles, key=middles.__getitem__), max(middles, key=middles.__getitem__)
+    if (apart_f := middles[high] - middles[low]) <= _FARTHEST_APART_F:
+        return
+    raise FileProblem(
+        worded(
+            "{low} and {high} must be in one unit, but as Fahrenheit {high} is mostly {apart:.0f} "
+            "degrees warmer. Write the unit of each behind its name, as {high} (F).",
+            low=low,
+            high=high,
+            apart=apart_f,
+        )
+    )
 
 
 def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) -> Floats:
@@ -271,17 +370,41 @@ def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) ->
 
 def _is_forecast(name: str) -> bool:
     """Return whether a column of this name says what was forecast."""
-    return _FORECAST_COLUMN.search(plain(name)) is not None
+    return _FORECAST.search(plain(name)) is not None
 
 
-def _forecast(layer: Layer) -> NDArray[np.bool_]:
-    """Return which rows a column calls forecast."""
+def _forecast(layer: Layer) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
+    """Return which rows a column calls forecast, and a doubt about those of which it is unclear."""
     column = next((n for n in layer.columns if _is_forecast(n)), None)
     if column is None:
-        return np.zeros(len(layer), bool)
-    return np.array(
-        [bool(_FORECAST_WORDS.match(text(v).casefold())) for v in layer.columns[column]], bool
+        return np.zeros(len(layer), bool), []
+    cells = [text(v) for v in layer.columns[column]]
+    # F is forecast, but false beside T
+    words = {cell.casefold() for cell in cells}
+    found = {cell: _is_word_for_forecast(cell, truths="t" in words) for cell in set(cells)}
+    unclear = [cell for cell in cells if cell and found[cell] is None]
+    flags = np.array([found[cell] is True for cell in cells], bool)
+    if not unclear:
+        return flags, []
+    said = worded(
+        "{name} says of {n} {n:line|lines} neither that {n:it was|they were} forecast nor that "
+        "{n:it was|they were} measured (the first says {cell!r}); taken as measured.",
+        name=column,
+        n=len(unclear),
+        cell=unclear[0],
     )
+    return flags, [doubtful(said)]
+
+
+def _is_word_for_forecast(cell: str, *, truths: bool) -> bool | None:
+    """Return whether a cell says that its line was forecast; None: it is no word for either."""
+    name = plain(cell)
+    if _MEASURED.search(name):
+        return False
+    if _FORECAST.search(name) or (name in _FORECAST_IN_SHORT and not (truths and name == "f")):
+        return True
+    result = meaning(cell)
+    return None if result is None else result == PRESENT
 
 
 def _possible(rows: WeatherRows, name: str) -> tuple[WeatherRows, list[ImportMessage]]:
@@ -291,7 +414,8 @@ def _possible(rows: WeatherRows, name: str) -> tuple[WeatherRows, list[ImportMes
         low, high = MEASURED[measure]
         wrong = ~np.isnan(values) & ((values < low) | (values > high))
         n, of = int(np.count_nonzero(wrong)), int(np.count_nonzero(~np.isnan(values)))
-        if n > max(_MOST_NONSENSE * of, 1):
+        # nothing needs the humidity
+        if n > max(_MOST_NONSENSE * of, 1) and measure != "humidity_pct":
             worst = float(values[wrong][0])
             raise FileProblem(
                 worded(

@@ -54,9 +54,10 @@ def rows_of_json(
         at = datetime.fromisoformat(told["timeStart"])
         step, numbers = _step(told["interval"]), [int(one) for one in told["weatherParameters"]]
         place = _place(told["locationWeatherData"] or [], name, options)
+        rows = place["data"] or []
         table = np.array(
-            [[np.nan if v is None else float(v) for v in row] for row in place["data"] or []], float
-        ).reshape(-1, len(numbers))
+            [[np.nan if v is None else float(v) for v in row] for row in rows], float
+        ).reshape(len(rows), len(numbers))
     except (ValueError, KeyError, TypeError, IndexError, OverflowError, RecursionError) as error:
         raise FileProblem(
             worded(

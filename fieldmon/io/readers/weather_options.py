@@ -11,6 +11,7 @@ from fieldmon.errors import SettingError
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.clock import zone_of
 from fieldmon.io.parse.weather_columns import UNITS, WRITTEN, unit_named
+from fieldmon.io.readers.running_rain import EACH, RUNNING
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
@@ -29,6 +30,9 @@ class WeatherOptions(RecordOptions):
     temperature_unit, wind_unit, rain_unit
         Units where the file does not state them: C, F, K, 0.1 C; m/s, km/h, mph, kn, 0.1 m/s; mm,
         cm, in, 0.1 mm.
+    rain_is
+        ``"each"``: every value is what fell since the one before; ``"running"``: it is counted up,
+        until it falls. None: as it looks.
     location
         Which place of a file that holds several, counted from 1.
     now
@@ -40,6 +44,7 @@ class WeatherOptions(RecordOptions):
     temperature_unit: str | None = None
     wind_unit: str | None = None
     rain_unit: str | None = None
+    rain_is: str | None = None
     location: str | None = None
     now: datetime | None = None
 
@@ -48,6 +53,10 @@ class WeatherOptions(RecordOptions):
         self._check_now()
         if self.zone is not None:
             zone_of(self.zone)
+        if self.rain_is not in (None, EACH, RUNNING):
+            raise SettingError(
+                worded("Rain must be each or running, but it is {told!r}.", told=self.rain_is)
+            )
         for kind, told in (
             ("temperature", self.temperature_unit),
             ("speed", self.wind_unit),

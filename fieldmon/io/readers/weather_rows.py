@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime, tzinfo
+from datetime import UTC, datetime, tzinfo
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,12 +92,15 @@ class WeatherRows:
                 dropped(worded("{n} {n:line|lines} without a time {n:was|were} left out.", n=n))
             )
         rows = self.chosen(np.flatnonzero(timed))
-        rows = rows.chosen(np.argsort(rows.at, kind="stable"))
+        # of one time, what was measured comes last
+        rows = rows.chosen(np.lexsort((~rows.forecast, rows.at)))
         again = np.zeros(len(rows.at), bool)
         again[:-1] = rows.at[1:] == rows.at[:-1]
         if n_again := int(np.count_nonzero(again)):
             said = worded(
-                "{n} {n:time stands|times stand} twice; the last of each was taken.", n=n_again
+                "{n} {n:time stands|times stand} twice; the last of each was taken, measured "
+                "rather than forecast.",
+                n=n_again,
             )
             messages.append(dropped(said))
             rows = rows.chosen(np.flatnonzero(~again))
@@ -172,9 +175,11 @@ class WeatherRows:
         """Return when the local day of each row begins, UTC."""
         made: dict[object, int] = {}
         seconds = []
-        for one in self.at.astype(np.int64).tolist():
-            # a day that is stated as UTC midnight east of Greenwich is that day all the same
-            day = datetime.fromtimestamp(one, self.zone).date()
+        at = self.at.astype(np.int64)
+        # a day that is stated as UTC midnight is that day all the same, west of Greenwich too
+        zone = self.zone if (at % DAY_S).any() else UTC
+        for one in at.tolist():
+            day = datetime.fromtimestamp(one, zone).date()
             if day not in made:
                 midnight = datetime(day.year, day.month, day.day, tzinfo=self.zone)
                 made[day] = int(midnight.timestamp())

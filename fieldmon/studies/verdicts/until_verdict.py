@@ -272,10 +272,12 @@ def _map_verdicts(plot: _Plot, rng: np.random.Generator) -> tuple[Verdict, int]:
     plants, found = _day(plot, Decide(), rng)
     grid, belief = plot.aisles.grid, TracedPairs.of(plot.aisles.grid, plot.morning)
     learning = Learning(detection=plot.robot.detects, treated=False)
+    left = np.zeros(len(grid), np.bool_)
     for first in range(0, len(plants), _LOOKS_A_CHECK):
         now = slice(first, first + _LOOKS_A_CHECK)
         belief = belief.learn(plants[now], found[now], learning)
-        asked = AskedVerdict.on(belief, plot.level, 1 - WRONG)
+        left[plants[now][found[now]]] = True
+        asked = AskedVerdict.on(belief, plot.level, 1 - WRONG, left)
         said = map_verdict(grid, belief.chance, asked, belief.pair_chance)
         if said.verdict != "look on":
             return said.verdict, min(first + _LOOKS_A_CHECK, len(plants))

@@ -112,6 +112,16 @@ def test_a_day_before_the_season_is_refused_with_the_row_and_the_plant(season_ap
     assert season_app.error[0].value.startswith("Row 2, plant 3: The day must be of this season")
 
 
+def test_a_record_without_a_date_beside_dated_ones_gets_none_silently(season_app, season):
+    go(season_app, "record")
+    table = b"row,number,date,found\n1,1,2026-11-16,yes\n1,2,,yes\n"
+    boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
+    season_app.button(key="record_file").click().run()
+    assert "1 recorded, 0 known" in season_app.warning[0].value
+    assert "1 record has no date, as others have: left out." in season_app.warning[0].value
+    assert len(season().history.inspections) == 1
+
+
 def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
     season_app, season, tmp_path
 ):

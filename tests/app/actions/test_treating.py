@@ -55,7 +55,7 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
     assert (one.application.waiting_days, one.application.reentry_hours) == (3, 12.0)
     page = texts_of(go(season_app, "season"))
     assert "harvest is allowed from" in page
-    assert isinstance(one.waits.harvest_from, date)
+    assert isinstance(one.entered_waits.harvest_from, date)
     warned = " ".join(one.value for one in season_app.warning)
     assert "is too soon after Acarol" in warned
     assert "where Acarol was applied" in " ".join(w.value for w in go(season_app, "today").warning)

@@ -41,6 +41,13 @@ def test_what_is_not_as_described_is_refused(wrong):
         reading.findings(sent(**wrong))
 
 
+def test_a_plant_whose_number_is_written_with_a_point_is_whole():
+    (read,), _ = reading.findings(sent(plant=3.0))
+    assert (read.plant, type(read.plant)) == (3, int)
+    plant, _ = reading.asked_photo(ID, b'{"plant": 3.0}')
+    assert type(plant) is int
+
+
 @pytest.mark.parametrize(
     "body", [b"", b"{", b"[]", b"null", b"\xff", b"[" * 100_000, sent(count=float("nan"))], ids=len
 )
@@ -63,7 +70,15 @@ def test_a_photos_address_says_what_it_is_of():
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"finding": "x"}, {"at": "x"}, {"lon": "nan"}, {"lat": "91"}, {"accuracy_m": "x"}]
+    "wrong",
+    [
+        {"finding": "x"},
+        {"at": "x"},
+        {"lon": "nan"},
+        {"lat": "91"},
+        {"accuracy_m": "x"},
+        {"accuracy_m": "-5"},
+    ],
 )
 def test_an_address_that_does_not_fit_is_refused(wrong):
     with pytest.raises(ObservationError):

@@ -5,11 +5,12 @@ import threading
 import numpy as np
 import pytest
 
-from fieldmon.drive.team_season import TeamSeason
+from fieldmon.drive.team_season import MemberDay, TeamSeason
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.drive.vda5050.team import drive_team
 from fieldmon.drive.vda5050.wire import RobotName
+from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.settings import MonitoringSettings
@@ -127,6 +128,26 @@ def test_scouts_do_not_drive_and_a_robot_that_never_comes_takes_nothing(
     assert {*season.history.inspections.who.tolist()} == {"robot-1"}
     assert not day.errands
     assert day.keeper.enter("anybody", day.aisle[[*day.done]].tolist())
+
+
+def test_a_day_that_breaks_off_takes_nothing_from_the_others(broker, season, monkeypatch):
+    tell = MemberDay.tell
+
+    def refused(day, found, at_s=None):
+        if repr(day).startswith(f"<MemberDay of {NAMES[0]}:"):
+            raise ObservationError("The file is full.")
+        tell(day, found, at_s)
+
+    monkeypatch.setattr(MemberDay, "tell", refused)
+    robots = [StandIn(broker, RobotName(ROBOT.manufacturer, name), seen, 0.7, 1e6)
+              for name in NAMES]  # fmt: skip
+    for one in robots:
+        one.start()
+    driven = drive_team(TeamSeason(season, ON), broker, ROBOT)
+    for one in robots:
+        one.stop()
+    assert str(driven[NAMES[0]]) == "The file is full."
+    assert all(len(driven[name].stops) > 3 for name in NAMES[1:])
 
 
 def test_a_robot_that_breaks_down_blocks_its_aisle_and_the_others_go_on(broker, season):

@@ -3,7 +3,7 @@
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.signatures import TABULAR, VECTOR, FileKind, kind_of
+from fieldmon.io.formats.signatures import TABULAR, VECTOR, FileKind, kind_of, picture_type
 
 
 @pytest.mark.parametrize(
@@ -39,6 +39,13 @@ from fieldmon.io.formats.signatures import TABULAR, VECTOR, FileKind, kind_of
 @pytest.mark.parametrize("name", ["a", "a.zip", "a.pdf"])
 def test_the_first_bytes_tell_the_kind_and_the_name_does_not(head, kind, name):
     assert kind_of(head, name) == kind
+
+
+def test_a_riff_is_a_picture_only_if_it_says_so():
+    assert picture_type(b"RIFF\x00\x00\x00\x00WEBPVP8 ") == "image/webp"
+    assert picture_type(b"RIFF\x00\x00\x00\x00WAVEfmt ") is None
+    assert picture_type(b"\xff\xd8\xff\xe0") == "image/jpeg"
+    assert picture_type(b"\x89PNG\r\n\x1a\n") == "image/png"
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.parse.values import (
     MISSING,
@@ -24,6 +25,7 @@ from fieldmon.io.parse.values import (
     plain_numbers,
     positions_in_cells,
     presence,
+    told_number,
 )
 
 
@@ -86,6 +88,27 @@ def test_a_column_is_read_with_the_mark_of_all_its_cells():
 def test_a_group_of_three_digits_behind_a_mark_could_be_either():
     assert could_be_thousands("1,234")
     assert not could_be_thousands("1,2345")
+
+
+@pytest.mark.parametrize(
+    ("cell", "value"),
+    [("1,5", 1.5), ("1.5", 1.5), ("0,500", 0.5), ("1.500,5", 1500.5), ("1 500", 1500), ("7", 7)],
+)
+def test_a_number_that_is_told_alone_is_read_with_either_mark(cell, value):
+    assert told_number(cell, "level") == value
+
+
+@pytest.mark.parametrize("cell", ["1,500", "1.500", "-1.500"])
+def test_a_number_that_is_told_alone_and_may_be_thousands_is_asked_about(cell):
+    with pytest.raises(SettingError, match=r"level is .*: is that -?1500 or -?1.5\?"):
+        told_number(cell, "level")
+    assert abs(told_number(cell, "level", most=180.0)) == 1.5
+
+
+@pytest.mark.parametrize("cell", ["", "much", "nan", "inf", "1,5,5", "1e999"])
+def test_what_is_told_alone_and_no_number_is_refused(cell):
+    with pytest.raises(SettingError, match="level must be a number"):
+        told_number(cell, "level")
 
 
 @pytest.mark.parametrize("word", sorted(MISSING))

@@ -14,11 +14,12 @@ HERE = (35.151, 30.3604)
 
 
 def test_the_side_of_a_tile_is_read_from_its_head():
-    for kind in ("PNG", "JPEG"):
+    # a WebP that is lossy, without loss, and with more than a picture in it
+    how = (("PNG", {}), ("JPEG", {}), ("WEBP", {}), ("WEBP", {"lossless": True}),
+           ("WEBP", {"exif": b"Exif"}))  # fmt: skip
+    for kind, options in how:
         for side in (256, 512):
-            assert tile_files.side_of(picture((9, 9, 9), side, kind)) == side
-    for kind in ("PNG", "JPEG", "WEBP"):
-        assert tile_files.kind_of(picture((1, 2, 3), 8, kind)) == f"image/{kind.lower()}"
+            assert tile_files.side_of(picture((9, 9, 9), side, kind, **options)) == side
 
 
 def test_maps_of_lines_instead_of_pictures_are_refused_and_never_handed_out(tmp_path):

@@ -11,10 +11,10 @@ from pmtiles.tile import Compression, TileType, zxy_to_tileid
 from pmtiles.writer import Writer
 
 
-def picture(colour, size=256, kind="PNG"):
+def picture(colour, size=256, kind="PNG", **options):
     """Return a tile of one colour."""
     out = io.BytesIO()
-    Image.fromarray(np.full((size, size, 3), colour, np.uint8)).save(out, kind)
+    Image.fromarray(np.full((size, size, 3), colour, np.uint8)).save(out, kind, **options)
     return out.getvalue()
 
 

@@ -23,6 +23,12 @@ def test_what_is_stated_is_said_in_the_words_of_a_robot(tmp_path):
     assert (ann.start, ann.gate) == ("07:30", (35.1, 30.3))
 
 
+def test_degrees_and_hours_are_no_thousands(tmp_path):
+    (tmp_path / "t.csv").write_text("name;hours;lon;lat\na;7,125;35,123;30.345\n")
+    (one,) = read_team(tmp_path / "t.csv")
+    assert (one.settings, one.gate) == ({"hours": 7.125}, (35.123, 30.345))
+
+
 def test_a_file_that_is_no_text_is_refused(tmp_path):
     (tmp_path / "t.csv").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(FileProblem, match="must be a readable table"):
@@ -34,6 +40,7 @@ def test_a_file_that_is_no_text_is_refused(tmp_path):
     [
         ("name,lon,lat\n\na,35.1,nan\n", "line 3: lat must be a number, but it is 'nan'"),
         ("name,speed_km_h,hours\na,3,6,8\n", "line 2 has 4 cells, but there are 3 columns"),
+        ("name,look_s\na,1.500\n", "line 2: look_s is 1.500: is that 1500 or 1.5"),
         ("name,hours,hours\na,3,4,5\n", "two columns are called hours"),
     ],
 )

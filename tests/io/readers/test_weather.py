@@ -112,6 +112,18 @@ def test_temperatures_without_a_unit_tell_it_or_are_asked_for(read):
     assert kept.value.temperature_c.tolist() == pytest.approx([10, 5])
 
 
+def test_all_temperatures_without_a_unit_tell_it_together(read):
+    """Lows of 4 to 13 °F were Celsius beside highs of 45 to 62 °F."""
+    rows = "\n".join(f"2026-01-{day},{day - 10},{day + 42}" for day in range(14, 22))
+    imported = read(f"date,Tmin,Tmax\n{rows}")
+    assert "Tmin, Tmax have no unit; read as Fahrenheit, for Tmax goes up to 63" in said(imported)
+    assert imported.value.low_c[0] == pytest.approx((4 - 32) / 1.8)
+    with pytest.raises(ChoiceNeeded, match="Tmin, Tmax have no unit, and what they hold could be"):
+        read("date,Tmin,Tmax\n2026-01-14,31,52\n2026-01-15,30,51")
+    with pytest.raises(FileProblem, match="Temp and Tmax must be in one unit, but as Fahrenheit"):
+        read("date,Temp,Tmax\n2026-07-14,20,77\n2026-07-15,21,78")
+
+
 @pytest.mark.parametrize(
     ("header", "sentence"),
     [("Temperature (mm)", "must be in C, F or K, but its unit is 'mm'"),
@@ -120,6 +132,15 @@ def test_temperatures_without_a_unit_tell_it_or_are_asked_for(read):
 def test_a_unit_of_something_else_is_refused(read, header, sentence):
     with pytest.raises(FileProblem, match=sentence):
         read(f"date,{header}\n2026-11-18,20\n2026-11-19,20")
+
+
+def test_no_file_is_refused_for_its_humidity_for_nothing_needs_it(read):
+    unit = read("date,temp (C),RH (g/m3)\n2026-11-18,20,12\n2026-11-19,20,11")
+    assert "The unit of RH (g/m3) is 'g/m3' and not %. It was left out" in said(unit)
+    values = read("date,temp (C),RH\n2026-11-18,20,612\n2026-11-19,20,611")
+    assert "2 values of humidity_pct are impossible; left out" in said(values)
+    for imported in (unit, values):
+        assert np.isnan(imported.value.humidity_pct).all()
 
 
 def test_values_of_no_weather_are_left_out_or_refuse_the_file(read):
@@ -209,6 +230,32 @@ def test_what_lies_ahead_is_forecast(read):
     assert flagged.forecast.tolist() == [False, True]
 
 
+@pytest.mark.parametrize(
+    ("column", "measured", "forecast"),
+    [("Vorhersage", "nein", "ja"), ("Pronóstico", "no", "sí"), ("Prévision", "non", "oui"),
+     ("Tipo pronóstico", "medido", "pronóstico"), ("Forecast", "obs", "F"), ("Previsão", "0", "1"),
+     ("Forecast", "F", "T"), ("תחזית", "לא", "כן"), ("توقعات", "لا", "نعم")],
+)  # fmt: skip
+def test_what_a_column_calls_forecast_is_read_in_its_language(read, column, measured, forecast):
+    imported = read(f"date,temp (C),{column}\n2026-11-18,20,{measured}\n2026-11-19,21,{forecast}")
+    assert imported.value.forecast.tolist() == [False, True]
+    assert "doubtful" not in said(imported)
+
+
+def test_words_that_say_neither_forecast_nor_measured_are_doubted(read):
+    imported = read("date,temp (C),forecast\n2026-11-18,20,\n2026-11-19,21,GFS\n2026-11-20,21,yes")
+    assert imported.value.forecast.tolist() == [False, False, True]
+    assert "forecast says of 1 line neither" in said(imported)
+    assert "'GFS'" in said(imported)
+
+
+@pytest.mark.parametrize("rows", [("20,no", "31,yes"), ("31,yes", "20,no")])
+def test_of_one_time_the_measured_line_holds(read, rows):
+    both = "\n".join(f"2026-11-18,{row}" for row in rows)
+    weather = read(f"date,temp (C),forecast\n{both}\n2026-11-19,21,yes").value
+    assert (weather.temperature_c.tolist(), weather.forecast.tolist()) == ([20, 21], [False, True])
+
+
 def test_soil_dew_and_gusts_are_not_taken_for_the_weather(read):
     table = "date,soil temp (C),dew point (C),gust (m/s),air temp (C)\n2026-11-18,1,2,3,20\n"
     weather = read(table + "2026-11-19,1,2,3,21").value
@@ -256,6 +303,16 @@ def test_rain_that_is_told_as_a_rate_is_summed_over_its_time(read, unit, cell):
     rows = "\n".join(f"2026-11-18 {h:02d}:{m:02d},20,{cell}" for h in range(3)
                      for m in range(0, 60, 10))  # fmt: skip
     assert read(f"time,temp (C),rain ({unit})\n{rows}").value.rain_mm.tolist() == [6.0] * 3
+
+
+def test_a_low_and_a_mean_without_a_high_are_doubted(read):
+    days = "\n2026-11-18,27,10\n2026-11-19,26,9"
+    assert "Tmin (C) was read as the low and Temp (C) as the mean" in said(
+        read(f"Date,Temp (C),Tmin (C){days}")
+    )
+    assert "doubtful" not in said(read(f"Date,Tmax (C),Tmin (C){days}"))
+    davis = read("Date,Hi Temp (F),Low Temp (F)\n2026-11-18,80,50\n2026-11-19,80,50")
+    assert davis.value.temperature_c[0] == pytest.approx((80 + 50 - 64) / 2 / 1.8)
 
 
 def test_temperatures_in_tenths_are_asked_for_and_read(read):

@@ -89,7 +89,9 @@ def test_failed_quality_control_is_told(read):
     "broken",
     [{"timeStart": "yesterday"}, {"interval": 0}, {"interval": -3600}, {"interval": 1e300},
      {"interval": "often"}, {"weatherParameters": [1, 2]},
-     {"locationWeatherData": None}, {"locationWeatherData": [{"data": [[1]]}]}],
+     {"locationWeatherData": None}, {"locationWeatherData": [{"data": [[1]]}]},
+     # twice as many hours of one parameter each they are not
+     {"locationWeatherData": [{"data": [[1, 2, 3, 4, 5, 6, 7, 8]]}]}],
 )  # fmt: skip
 def test_what_is_not_of_the_format_is_refused_with_a_sentence(read, broken):
     with pytest.raises(FileProblem, match=r"must (be|hold)"):

@@ -17,6 +17,8 @@ def test_units_and_zones_that_are_none_are_refused():
         WeatherOptions(zone="Mars/Olympus")
     with pytest.raises(SettingError, match=r"The time now must be .* but it is 'soon'"):
         WeatherOptions(now="soon")
+    with pytest.raises(SettingError, match="Rain must be each or running, but it is 'total'"):
+        WeatherOptions(rain_is="total")
     assert WeatherOptions(now="2026-11-18").now == datetime(2026, 11, 18)
     assert WeatherOptions().choose("rain_unit", "in").unit("rain") == "in"
 

@@ -11,7 +11,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.io.readers.weather_rows import WeatherRows, utc_times
 
-BERLIN = ZoneInfo("Europe/Berlin")
+BERLIN, NEW_YORK = ZoneInfo("Europe/Berlin"), ZoneInfo("America/New_York")
 
 
 def rows(at, zone=BERLIN, **measured):
@@ -27,6 +27,21 @@ def test_six_hours_apart_are_gathered_into_days_with_their_extremes():
     assert weather.low_c.tolist() == [0, 4]
     assert weather.high_c.tolist() == [3, 7]
     assert "every 6 h: gathered into days" in str(said[0])
+
+
+@pytest.mark.parametrize("zone", ["America/New_York", "Pacific/Auckland", "Asia/Jerusalem"])
+def test_a_day_stated_as_utc_midnight_is_that_day_wherever_the_place_is(zone):
+    days = np.arange("2026-01-01", "2026-01-04", dtype="datetime64[D]")
+    weather, _ = rows(days, ZoneInfo(zone), low_c=[1, 2, 3], high_c=[4, 5, 6]).gathered("w", None)
+    assert weather.local_days().tolist() == days.tolist()
+
+
+def test_a_day_stated_by_an_evening_of_the_place_is_that_evening_s():
+    local = np.arange("2026-01-01T20:30", "2026-01-04", 24 * 60, dtype="datetime64[m]")
+    weather, _ = rows(utc_times(local, NEW_YORK), NEW_YORK, temperature_c=[1, 2, 3]).gathered(
+        "w", None
+    )
+    assert weather.local_days().astype(str).tolist() == ["2026-01-01", "2026-01-02", "2026-01-03"]
 
 
 def test_rows_come_into_order_and_the_last_of_two_counts():

@@ -34,8 +34,9 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     """Return local times and days.
 
     A record that says no day is of the day of its planned arrival, which stands in the route files
-    given out; else of the day told by hand; else its day is left open. One that says a day that is
-    none (30 February) is left open too: nothing is put in its place.
+    given out; else of the day told by hand, or of the day of the work where no record says one;
+    else its day is left open. One that says a day that is none (30 February) is left open too:
+    nothing is put in its place.
     """
     days, clocks = _cells(layer, columns, options)
     own = dates(_object(clocks), options.date_order).day
@@ -46,8 +47,11 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     ]
     read = dates(_object(on), options.date_order)
     planned = dates(_object(arrivals_in(layer, columns).tolist())).day
-    told = np.datetime64("NaT", "D") if options.day is None else options.day
     unsaid = np.array([is_missing(cell) for cell in on], bool)
+    told = options.day
+    if told is None and unsaid.all() and np.isnat(planned).all():
+        told = options.work_day
+    told = np.datetime64("NaT", "D") if told is None else told
     otherwise = np.where(np.isnat(planned), told, planned)
     day = np.where(unsaid, otherwise, read.day).astype("datetime64[D]")
     at = [clock or said for said, clock in zip(days, clocks, strict=True)]

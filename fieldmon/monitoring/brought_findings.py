@@ -1,0 +1,118 @@
+"""A file of findings brought to a season: what it says, and what is asked about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.io.options import Upload, source_name
+from fieldmon.monitoring import findings
+from fieldmon.monitoring.batches import Recorded
+from fieldmon.monitoring.inspection_table import counting_copy
+from fieldmon.monitoring.transactions import MAGIC, copy_season, is_season
+
+if TYPE_CHECKING:
+    from fieldmon.io.import_report import ImportMessage
+    from fieldmon.io.options import Source
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.phone_file import PhoneFile
+    from fieldmon.monitoring import Season
+
+
+@dataclass(frozen=True, eq=False)
+class BroughtFile:
+    """A file of findings as it was read; nothing of it is recorded yet.
+
+    `Season.record_all` takes corrections and then findings, and refuses what contradicts the season
+    unless that is confirmed.
+
+    Parameters
+    ----------
+    name
+        The file's.
+    findings
+        What is to be recorded; what a copy of the season says anew.
+    messages
+        What the import has to say.
+    saved
+        What a phone saved, instead of findings; `record_saved` takes it.
+    copy
+        A copy of the file to read where it is a season, else None.
+    corrections
+        How many inspections another program corrected or deleted in that copy. Who did is asked.
+    """
+
+    name: str
+    findings: Inspections
+    messages: tuple[ImportMessage, ...] = ()
+    saved: PhoneFile | None = None
+    copy: Path | None = None
+    corrections: int = 0
+
+
+def read_brought(
+    season: Season, source: Source, options: InspectionOptions, folder: Path
+) -> BroughtFile:
+    """Read a file brought to a season: a table, positions, a copy of it, or what a phone saved.
+
+    Inspections without a date are left out where others have one: they get the `work_day` of the
+    options only where the whole file names none. Of a copy, what was corrected there is no new
+    finding.
+
+    Parameters
+    ----------
+    season
+        The season.
+    source
+        The file.
+    options
+        How it is read.
+    folder
+        An empty one, for copies; it is needed until the file is recorded.
+    """
+    # what reads files is half a second to import
+    from fieldmon.io.read import read_phone_file  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
+    from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
+
+    name = source_name(source)
+    if is_phone_file(source):
+        saved = read_phone_file(source)
+        return BroughtFile(name, Inspections.none(), saved.messages, saved=saved.value)
+    copy = _copied(source, folder)
+    corrected = [] if copy is None else [one.row for one in season.corrections_in(copy)]
+    if copy is not None:
+        (folder / "new").mkdir()
+        source = counting_copy(copy, folder / "new", corrected)
+    read = dated(read_inspections(source, season.plot.grid, options))
+    return BroughtFile(name, read.value, read.messages, None, copy, len(corrected))
+
+
+def _copied(source: Source, folder: Path) -> Path | None:
+    """Return a copy of a source that is a season; None: it is none."""
+    if isinstance(source, Upload):
+        if not source.data.startswith(MAGIC):
+            return None
+        copy = folder / "copy.gpkg"
+        copy.write_bytes(source.data)
+        return copy if is_season(copy) else None
+    if not isinstance(source, str | Path) or not is_season(source):
+        return None
+    copy = folder / Path(source).name
+    copy_season(Path(source), copy)
+    return copy
+
+
+def record_saved(
+    season: Season, saved: PhoneFile, who: str = ""
+) -> tuple[Recorded, tuple[str, ...]]:
+    """Record what a phone saved, as what it sends; return what that did, and what there is to say.
+
+    `who` and what is raised as in `take_saved`.
+    """
+    taken = findings.take_saved(season, saved, who)
+    good = [one.new for one in taken if not one.problem]
+    said = *findings.of_others(season, saved), *sorted({one.problem for one in taken} - {""})
+    return Recorded(None, sum(good), len(good) - sum(good)), said

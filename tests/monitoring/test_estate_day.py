@@ -1,0 +1,119 @@
+"""An estate's day: hours go to plots where people may be, and what is closed is left off."""
+
+from datetime import date, datetime, time, timedelta
+
+import numpy as np
+import pytest
+
+from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.estate_day import EstatePlot, due, share_estate
+from fieldmon.planning.members import team_of
+from fieldmon.plot.robot import Robot
+from fieldmon.samplers.base import NEVER
+from tests.monitoring.seasons import BEGINS, a_season
+
+ON = BEGINS
+SIX = time(6)
+ONE = team_of(1, Robot(hours=2))
+
+
+@pytest.fixture
+def seasons(tmp_path):
+    return [a_season(tmp_path / f"{name}.gpkg") for name in "ab"]
+
+
+def plot_of(season, on: date = ON):
+    with season.entering_treated():
+        return EstatePlot(on, season.scene(on), season.settings.decides(), season)
+
+
+def spray(season, began, hours, plants=None):
+    soap = Application("Soap", reentry_hours=hours, began=began, ended=began)
+    season.treat(ON, 0.1, plants=plants, application=soap)
+
+
+def hours_of(day):
+    return {turn.plot: round(turn.scene.robot.day_s / 3600, 2) for turn in day.turns}
+
+
+def test_due_is_what_was_not_seen_for_three_days_or_else_not_today():
+    assert due([0, 2, 3, None]) == [2, 3]
+    assert due([0, 2]) == [1]
+    assert due([0]) == []
+
+
+def test_a_plot_that_nobody_may_enter_gets_no_hours_and_no_way_to_it(seasons):
+    spray(seasons[0], time(4), 48.0)
+    closed, other = (plot_of(one) for one in seasons)
+    day = share_estate([closed, other], ONE, SIX)
+    (turn,) = day.turns
+    (alone,) = share_estate([other], ONE, SIX).turns
+    assert (turn.plot, turn.begins) == (1, datetime.combine(ON, SIX))
+    assert turn.scene.robot.day_s == alone.scene.robot.day_s
+    assert day.waiting == ()
+    assert [len(some) for some in day.closed] == [1, 0]
+
+
+def test_a_plot_that_is_closed_only_in_its_own_hours_gets_none_either(seasons):
+    plots = [plot_of(one) for one in seasons]
+    first = share_estate(plots, ONE, SIX).turns[0].plot
+    spray(seasons[first], time(0, 10), 6.0)  # until 06:10
+    day = share_estate(plots, ONE, SIX)
+    assert hours_of(day) == {1 - first: 2.0}
+    assert day.waiting == ()
+    assert day.closed[first]
+
+
+def test_a_plot_that_comes_later_since_some_of_it_is_closed_first_is_open_when_it_comes(seasons):
+    plots = [plot_of(one) for one in seasons]
+    first = share_estate(plots, ONE, SIX).turns[0].plot
+    spray(seasons[first], time(0, 10), 6.0, plants=seasons[first].plot.grid.row >= 2)
+    day = share_estate(plots, ONE, SIX)
+    assert [turn.plot for turn in day.turns] == [1 - first, first]
+    assert day.closed == ((), ())
+
+
+def test_inspecting_a_few_open_rows_takes_no_longer_than_they_do(seasons):
+    grid = seasons[0].plot.grid
+    spray(seasons[0], time(4), 48.0, plants=grid.row >= 1)
+    (turn,) = share_estate([plot_of(seasons[0])], ONE, SIX).turns
+    open_s = np.count_nonzero(grid.row < 1) * turn.scene.robot.visit_s
+    assert open_s < turn.scene.robot.day_s < 2 * open_s
+
+
+def test_only_plants_that_are_open_call_for_hours(seasons):
+    rows = seasons[0].plot.grid.row
+    plots = [plot_of(one) for one in seasons]
+    before = hours_of(share_estate(plots, ONE, SIX, 0.0))
+    spray(seasons[0], time(4), 48.0, plants=rows >= 2)
+    day = share_estate(plots, ONE, SIX, 0.0)
+    assert before[0] == before[1]
+    assert 0 < hours_of(day)[0] < before[0] / 2 < before[1] < hours_of(day)[1]
+    (part,) = [turn for turn in day.turns if turn.plot == 0]
+    assert set(rows[part.plan().route.plant]) <= {0, 1}
+    assert len(day.closed[0]) == 1
+
+
+def test_a_plot_for_which_there_is_no_time_waits_and_says_nothing_of_what_is_closed(seasons):
+    spray(seasons[0], time(4), 48.0, plants=seasons[0].plot.grid.row >= 2)
+    plots = [plot_of(one) for one in seasons]
+    day = share_estate(plots, team_of(1, Robot(hours=0.3)), SIX)
+    assert [turn.plot for turn in day.turns] == [1]
+    assert day.waiting == (0,)
+    assert day.closed == ((), ())
+    assert share_estate(plots, (), SIX).waiting == (0, 1)
+
+
+def test_a_plot_that_is_closed_all_day_does_not_wait_for_time(seasons):
+    spray(seasons[0], time(4), 48.0)
+    day = share_estate([plot_of(one) for one in seasons], team_of(1, Robot(hours=0.3)), SIX)
+    assert day.waiting == ()
+    assert day.closed[0]
+
+
+def test_a_plot_of_no_season_has_nothing_closed(seasons):
+    plot = plot_of(seasons[0])
+    (turn,) = share_estate([EstatePlot(ON, plot.scene, plot.decides)], ONE, SIX).turns
+    assert turn.closed == ()
+    assert turn.scene.last_inspected.max() == NEVER
+    assert turn.begins + timedelta(hours=2) == datetime.combine(ON, time(8))

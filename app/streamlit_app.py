@@ -96,6 +96,7 @@ def in_panel(name: str) -> None:
         with ways:
             ways_in.show()
 
+    rooms.take_from_address(name)
     part = rooms.shown_part(name)
     is_planned = part == "today"
     chosen = choose(head, foot, waiting.wait, day if is_planned else None)
@@ -146,7 +147,6 @@ def page_prior() -> None:
 
 # a click may end the first run of a page before its boxes are there
 plot_source.begin_from_address()
-rooms.begin_from_address()
 field_map.clear()
 map_place = st.container(key="map_place")
 ROOM_PAGES = {name: page_of(name) for name in rooms.ROOMS}

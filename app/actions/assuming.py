@@ -44,7 +44,7 @@ def finds_are(show: Callable[..., object], key: str, **begins: object) -> None:
 
 
 def _boxes(choices: Choices) -> None:
-    if choices.plot.field.plants is None:
+    if choices.plot.field.plants is None and not assumptions.asked(choices):
         drawing.spacings(choices.plot_key)
     usual = f"{100 * PriorSettings().background_chance:g}"
     widget_memory.show(

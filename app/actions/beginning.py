@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.errors import SettingError
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.history import BeliefSettings
 
+from ..show.assumed import of_rows
 from ..state import (
+    assumptions,
     chosen_day,
     chosen_pest,
     notices,
@@ -19,7 +24,7 @@ from ..state import (
     work_day,
 )
 from ..words import language, texts
-from . import acting, assuming
+from . import acting, assuming, drawing
 
 if TYPE_CHECKING:
     from fieldmon.infestation.earlier_season import EarlierSeason
@@ -28,6 +33,9 @@ if TYPE_CHECKING:
 
 #: the box for what happens with a find
 _FINDS = "begin_finds"
+_FROM = "season begun from"
+# of one plot in one year
+_MOST_NAMED = 100
 
 
 def show(choices: Choices) -> None:
@@ -38,7 +46,35 @@ def show(choices: Choices) -> None:
         # outside the form: it counts for the button above, too, which begins at once
         assuming.finds_are(widget_memory.show, _FINDS, default=True)
         pressed = _form(choices)
+        ask(choices, "form")
+    acting.once(pressed, begin_or_ask, choices, "form")
+
+
+def ask(choices: Choices, place: str) -> None:
+    """Ask whether the rows are right, with what they are in boxes; only where it was begun."""
+    if assumptions.asked(choices) != place:
+        return
+    key, grid = choices.plot_key, choices.plot.grid
+    with st.container(border=True, key="begin_asks"):
+        st.markdown(of_rows(assumptions.of_rows(choices.plot), choices.units))
+        with st.container(horizontal=True):
+            pressed = st.button(texts.BEGIN_RIGHT, key="begin_right", type="primary")
+            st.button(texts.BEGIN_NOT_YET, key="begin_not_yet", on_click=assumptions.ask,
+                      args=(choices, ""))  # fmt: skip
+        drawing.spacings(key, {name: getattr(grid, name) for name in assumptions.SPACINGS})
+        if grid.aisles_m is None:
+            drawing.direction(key, grid.frame.bearing_deg % 180.0)
+        if choices.plot.field.gate is None:
+            st.button(texts.BEGIN_GATE, key="begin_gate", on_click=drawing.set_gate)
     acting.once(pressed, begin, choices)
+
+
+def begin_or_ask(choices: Choices, place: str) -> None:
+    """Begin a season where people or files said how its rows run; else ask first."""
+    if assumptions.are_rows_assumed(choices):
+        assumptions.ask(choices, place)
+    else:
+        begin(choices)
 
 
 def _form(choices: Choices) -> bool:
@@ -53,8 +89,14 @@ def _form(choices: Choices) -> bool:
 
 
 def _proposed(choices: Choices) -> str:
-    """Return what a season is called unless somebody says otherwise."""
-    return f"{choices.plot.field.name} {choices.on.year}"
+    """Return what a season is called unless somebody says otherwise: a name that none has yet."""
+    name = f"{choices.plot.field.name} {choices.on.year}"
+    if choices.season is not None:
+        return name
+    names = (name, *(f"{name} ({n})" for n in range(2, _MOST_NAMED)))
+    with suppress(SettingError):  # a name that no file can have is refused when it is used
+        return next((one for one in names if not seasons_folder.path_of(one).exists()), name)
+    return name
 
 
 def _name_box(choices: Choices) -> str:
@@ -81,9 +123,26 @@ def begin(choices: Choices) -> str:
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]
     path = seasons_folder.new_path(name)
-    Season.create(path, choices.plot, choices.records, settings, messages, choices.risk)
+    # rows that were asked about are assumed no more
+    sure = assumptions.asked(choices) != ""
+    plot = replace(choices.plot, assumed=()) if sure else choices.plot
+    Season.create(path, plot, choices.records, settings, messages, choices.risk)
+    assumptions.ask(choices, "")
+    st.session_state[_FROM] = plot_source.chosen()
     plot_source.open_season(name)
     if choices.on != choices.clock.today():
         work_day.choose(name, choices.on)  # what is shown stays what it was
     left_out = map(language.in_words, chosen_day.messages_on_records(choices))
     return "\n- ".join([texts.BEGUN.format(name=texts.isolated(name), path=path), *left_out])
+
+
+def another(choices: Choices) -> None:
+    """Offer to begin another season of the plot, laid otherwise, while nothing is recorded."""
+    if choices.season.batches():
+        return
+    st.markdown(texts.ANOTHER_NOTE)
+    st.button(texts.ANOTHER, key="begin_another", on_click=_open_files)
+
+
+def _open_files() -> None:
+    plot_source.open_season(st.session_state.get(_FROM, plot_source.FILES))

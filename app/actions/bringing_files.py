@@ -45,7 +45,7 @@ def show() -> None:
     labels = {PLOT: texts.PLOT_FILE, RECORDS: texts.RECORD_FILE, PLANTS: texts.PLANT_FILE,
               ROWS: texts.ROWS_FILE, BLOCKS: texts.BLOCKS_FILE}  # fmt: skip
     for kind, label in labels.items():
-        dropped = st.file_uploader(label, key=_box(kind), accept_multiple_files=True,
+        dropped = st.file_uploader(label, key=brought_files.box(kind), accept_multiple_files=True,
                                    on_change=_take, args=(kind,))  # fmt: skip
         if not dropped:
             _kept(kind)
@@ -53,7 +53,7 @@ def show() -> None:
 
 def show_raster(label: str, kind: str) -> None:
     """Show a box for one raster."""
-    st.file_uploader(label, key=_box(kind), on_change=_take_one, args=(kind,))
+    st.file_uploader(label, key=brought_files.box(kind), on_change=_take_one, args=(kind,))
 
 
 def show_kept_raster(kind: str) -> None:
@@ -63,7 +63,7 @@ def show_kept_raster(kind: str) -> None:
 
 def show_one(label: str, kind: str, problem: FieldmonError | None) -> None:
     """Show a box for one file, which file is kept, and what is wrong with it."""
-    st.file_uploader(label, key=_box(kind), on_change=_take_one, args=(kind,))
+    st.file_uploader(label, key=brought_files.box(kind), on_change=_take_one, args=(kind,))
     _kept_or(kind, problem)
 
 
@@ -81,16 +81,12 @@ def _kept(kind: str) -> None:
                   args=(kind,))  # fmt: skip
 
 
-def _box(kind: str) -> str:
-    return f"{kind}_file"
-
-
 def _take(kind: str) -> None:
-    brought_files.keep(kind, st.session_state.get(_box(kind)) or [])
+    brought_files.keep(kind, st.session_state.get(brought_files.box(kind)) or [])
 
 
 def _take_one(kind: str) -> None:
-    part = st.session_state.get(_box(kind))
+    part = st.session_state.get(brought_files.box(kind))
     if part is not None:
         brought_files.keep(kind, [part])
 
@@ -130,6 +126,9 @@ def say(
 
 
 def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> None:
+    if asking.startswith(f"{PLOT} ") and (error.option == "where" or "plants" in error.choices):
+        st.button(texts.THESE_ARE_PLANTS, key=f"plants {asking}", type="primary", width="stretch",
+                  on_click=brought_files.take_as_plants, args=(asking,))  # fmt: skip
     if error.option in _OWN_BOXES:
         return
     offered = [str(choice) for choice in error.choices]

@@ -15,7 +15,7 @@ from fieldmon.plot.planting import Planting
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
 from ..show.maps import colours, deck, legends, marks, plant_layers
-from ..state import cached, notices, row_settings, widget_memory
+from ..state import cached, notices, rooms, row_settings, widget_memory
 from ..state.chosen_units import units
 from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
 from ..state.plot_files import draw, drawn, laid, laying
@@ -44,8 +44,7 @@ def rows(plot_key: str, *, measured: bool = False) -> None:
         if measured:
             widget_memory.show(st.toggle, texts.NO_ROWS, key=f"no_rows {plot_key}", default=False,
                                help=texts.NO_ROWS_HELP)  # fmt: skip
-        widget_memory.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
-                        help=texts.BEARING_HELP, key=f"row_bearing {plot_key}")  # fmt: skip
+        direction(plot_key)
         spacings(plot_key)
         now, usual_m = units(), Planting().headland_m
         widget_memory.show(
@@ -69,8 +68,16 @@ def within_reach(problem: FieldmonError) -> None:
         undo_last(laying())
 
 
-def spacings(plot_key: str) -> None:
-    """Show how far rows and plants are apart, to be set by hand."""
+def direction(plot_key: str, now: float | None = None) -> None:
+    """Show in which direction rows run, to be set by hand; empty, the box shows that of `now`."""
+    shown = {} if now is None else {"placeholder": f"{now:.1f}"}
+    widget_memory.show(st.number_input, texts.BEARING, 0.0, 360.0, step=0.5,
+                       help=texts.BEARING_HELP, key=f"row_bearing {plot_key}",
+                       **shown)  # fmt: skip
+
+
+def spacings(plot_key: str, laid_m: dict[str, float] | None = None) -> None:
+    """Show how far rows and plants are apart, to be set by hand; empty, boxes show what is laid."""
     now, usual = units(), Planting()
     unit = texts.UNITS[now.length]
     rows_m, plants_m = usual.row_spacing_m, usual.plant_spacing_m
@@ -79,6 +86,7 @@ def spacings(plot_key: str) -> None:
         widget_memory.show(
             st.number_input, label.format(unit=unit), *now.limits(0.1, 50.0), step=0.1,
             help=help_, key=f"{name} {plot_key}",
+            placeholder=f"{now.shown(laid_m[f'{name}_m']):g}" if laid_m else None,
         )  # fmt: skip
 
 
@@ -129,6 +137,12 @@ def tools(choices: Choices) -> None:
         for edit in made:
             st.caption(f"{texts.DRAW_KINDS[_NAMES[edit.kind]]}: {len(edit.lonlat)}")
         undo_last(choices.plot_key)
+
+
+def set_gate() -> None:
+    """Turn to the map on which the gate is set with a click (for callbacks)."""
+    st.session_state["draw_kind"] = "gate"
+    rooms.turn_to_part("plot")
 
 
 def undo_last(plot_key: str) -> None:

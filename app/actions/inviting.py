@@ -37,7 +37,8 @@ def let_in(choices: Choices, name: str, rows: tuple[int, int] | None = None) -> 
 def show_below(choices: Choices) -> None:
     """Show who is out; the codes folded, where they are not the first thing wanted."""
     _show_out(choices)
-    with st.expander(texts.INVITE):
+    # open at the code, which is shown once
+    with st.expander(texts.INVITE, expanded=_SHOWN in st.session_state):
         _show_codes(choices)
 
 

@@ -152,7 +152,8 @@ def _use_plan(choices: Choices) -> str:
 
 
 def _begin(choices: Choices, _: DayPlan, step: Step) -> None:
-    acting.once(_pressed(step, texts.STEP_BUTTONS[BEGIN]), beginning.begin, choices)
+    pressed = _pressed(step, texts.STEP_BUTTONS[BEGIN])
+    acting.once(pressed, beginning.begin_or_ask, choices, "step")
 
 
 def _note_sent(choices: Choices) -> None:

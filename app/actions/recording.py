@@ -13,6 +13,7 @@ import streamlit as st
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
@@ -34,6 +35,9 @@ if TYPE_CHECKING:
 
 # batches shown, the last ones
 _MOST = 20
+_LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
+#: what a season's file calls what was typed in here, whatever the page's language
+TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
 _ONE, _ROUTE, _FILE = "one_plant", "route", "file"
 
@@ -99,7 +103,7 @@ def _record_one(choices: Choices) -> str:
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
     )
-    return said_of(recorded(choices, results, texts.TYPED_IN, _ONE))
+    return said_of(recorded(choices, results, TYPED_IN, _ONE))
 
 
 # -- the stops of the route
@@ -147,7 +151,7 @@ def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, list[in
         raise SettingError(texts.RECORD_UNSAID)
     result = np.where(is_found, FOUND, CLEAN)[said]
     results = Inspections.of(plants[said], result, np.datetime64(choices.day))
-    return said_of(recorded(choices, results, texts.ROUTE_TABLE, _ROUTE))
+    return said_of(recorded(choices, results, _ROUTE_TABLE, _ROUTE))
 
 
 # -- a file
@@ -178,12 +182,16 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
         read = read_brought(season, Upload(name, data), options, Path(folder))
         corrected = _corrected(choices, read, boxes)
     messages = [message.sentence for message in read.messages]
+    if any(message.severity in _LEFT_OUT for message in read.messages):
+        notices.warn()
     if read.saved is None:
         # what was said of a file may be answered: it stays to be read again
         said = said_of(recorded(choices, read.findings, name, "" if messages else _FILE))
     else:
         done, more = record_saved(season, read.saved, choices.who or "")
         said, messages = said_of(done), [*messages, *more]
+        if more:
+            notices.warn()
         if not messages:
             fresh_boxes.empty(_FILE)
     listed = "".join(f"\n- {in_words(sentence)}" for sentence in messages)
@@ -242,7 +250,8 @@ def ask_about_contradictions(choices: Choices) -> None:
         return
     others = len(waiting.results) - len(said)
     asked = texts.CONTRADICTING if others else texts.CONTRADICTING_ALL
-    st.warning(asked.format(n=len(said), others=others, source=waiting.source))
+    source = recorded_batches.source(waiting.source)
+    st.warning(asked.format(n=len(said), others=others, source=source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
     if len(said) > _MOST:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
@@ -259,8 +268,8 @@ def ask_about_contradictions(choices: Choices) -> None:
 
 def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
     """Ask whether to record what waited and contradicts nothing any more."""
-    n = len(waiting.results)
-    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=waiting.source))
+    n, source = len(waiting.results), recorded_batches.source(waiting.source)
+    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=source))
     with st.container(horizontal=True):
         st.button(texts.RECORD_THESE.format(n=n), key="record_these", on_click=_record_these,
                   args=(choices,))  # fmt: skip

@@ -50,7 +50,7 @@ def show(choices: Choices) -> None:
 @notices.reporting
 def _record(choices: Choices, plant: int, result: int) -> str:
     results = Inspections.of(np.array([plant]), np.array([result]), np.datetime64(choices.day))
-    done = recording.recorded(choices, results, texts.TYPED_IN)
+    done = recording.recorded(choices, results, recording.TYPED_IN)
     if done is not None and done.batch is not None:
         st.session_state[_LAST] = choices.key, done.batch
     return recording.said_of(done)

@@ -41,7 +41,7 @@ def headline(choices: Choices, advice: Advice) -> None:
     """Answer the daily question in one sentence, and say what the answer rests on."""
     with st.container(key="lead"):
         st.markdown(f"**{in_words(advice.headline(choices.units.of_library))}**")
-    for k, sentence in enumerate(advice.reasons(choices.units.of_library)):
+    for k, sentence in enumerate(advice.reasons(choices.units.in_sentences(choices.on))):
         st.markdown(_starred(choices, in_words(sentence)) if k == 0 else in_words(sentence))
 
 

@@ -39,6 +39,11 @@ def of_who_inspects(assumed: Sequence[Assumed], units: UnitsInLanguage) -> str:
     return texts.ASSUMED_OF_ROBOT.format(what=listed(said)) if said else ""
 
 
+def of_rows(asked: Sequence[Assumed], units: UnitsInLanguage) -> str:
+    """Return the question whether rows run so."""
+    return texts.BEGIN_ASKS.format(what=listed([_words(one, units) for one in asked]))
+
+
 def mark(label: str, assumed: Sequence[Assumed], settings: Sequence[str]) -> str:
     """Return the label of a figure, with a star if it rests on one of these settings."""
     return f"{label} *" if any(one.setting in settings for one in assumed) else label
@@ -49,6 +54,8 @@ def _words(one: Assumed, units: UnitsInLanguage) -> str:
         value = in_words(in_unit(units.shown(one.value), "g", units.length))
     elif one.setting == "speed_m_s":
         value = number(3.6 * one.value, ".3g")
+    elif one.setting == "row_bearing_deg":
+        value = number(one.value, ".1f")
     elif one.setting in {"row_change_s", "stop_s"}:
         value = number(one.value, "g")
     else:

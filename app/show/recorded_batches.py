@@ -30,15 +30,20 @@ def last(choices: Choices, said: BatchContents) -> str:
     return words.format(row=said.row, plant=said.plant, result=_result(said))
 
 
+def source(name: str) -> str:
+    """Return where a batch is from: a way to record in the page's language, else a file's name."""
+    return texts.BATCH_SOURCES.get(name, name)
+
+
 def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     """Return what tells a batch from the others."""
     at = choices.clock.at(datetime.fromisoformat(batch.at))
     parts = [f"{choices.units.said_day(at.date(), choices.on)} {at:%H:%M}"]
-    source = texts.isolated(batch.source) if batch.source else ""
+    from_ = texts.isolated(source(batch.source)) if batch.source else ""
     if batch.kind == "findings" and said is not None:
-        parts += [source, _what(choices, said)]
+        parts += [from_, _what(choices, said)]
     else:
-        parts.append(texts.BATCHES_SAID[batch.kind].format(source=source, n=batch.rows))
+        parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_, n=batch.rows))
     if batch.kind == "treatment" and said is not None:
         parts.append(texts.PLANTS_COUNTED.format(n=said.n))
     if batch.kind != "corrections" and said is not None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
 from fieldmon.compute.digest import digest
-from fieldmon.io.options import Upload
+from fieldmon.io.options import ReadOptions, Upload
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 PLOT, RECORDS, PLANTS = "plot", "record", "plant"
 ROWS, BLOCKS = "rows", "blocks"
-_BROUGHT, _ASKING = "brought", "asking"
+_BROUGHT, _ASKING, _MOVED = "brought", "asking", "files moved"
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +96,23 @@ def keep_uploads(kind: str, uploads: tuple[Upload, ...]) -> None:
 def take_out(kind: str) -> None:
     """Forget a file."""
     brought().pop(kind, None)
+
+
+def take_as_plants(asked: str) -> None:
+    """Take the plot's file as measured plants, with what was answered about how to read it."""
+    file = brought()[PLOT]
+    take_out(PLOT)
+    brought()[PLANTS] = plants = replace(file, kind=PLANTS)
+    known = {option.name for option in fields(ReadOptions)}
+    said = tuple(one for one in answers(asked) if one[0] in known)
+    st.session_state[f"answers {plants.asked}"] = said
+    st.session_state[_MOVED] = st.session_state.get(_MOVED, 0) + 1
+
+
+def box(kind: str) -> str:
+    """Return the key of a box for files: an empty one, once its file was taken as another's."""
+    moved = st.session_state.get(_MOVED, 0)
+    return f"{kind}_file {moved}" if moved and kind in {PLOT, PLANTS} else f"{kind}_file"
 
 
 # -- what was answered about them

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.monitoring import scouts
+
 from . import chosen_day
 
 if TYPE_CHECKING:
@@ -41,9 +43,17 @@ def steps(choices: Choices, plan: DayPlan) -> list[Step]:
     done = _in_season(choices, plan) if choices.season is not None else _without(choices, plan)
     first = next((name for name, is_done in done.items() if not is_done), None)
     return [
-        Step(name, is_done, name == first, name == LOOK_BACK and last_visit(choices) is None)
+        Step(name, is_done, name == first, _was_nothing(choices, name))
         for name, is_done in done.items()
     ]
+
+
+def _was_nothing(choices: Choices, name: str) -> bool:
+    """Return whether a step was passed by: no visit before, or nothing taken along."""
+    if name == SEND:
+        has_codes = choices.season is not None and scouts.scouts_of(choices.season)
+        return not (has_codes or did(choices, SEND))
+    return name == LOOK_BACK and last_visit(choices) is None
 
 
 def _without(choices: Choices, plan: DayPlan) -> dict[str, bool]:

@@ -8,17 +8,18 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 
+from ..words import texts
 from ..words.language import of_error
 from . import held
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_KEY = "notice"
+_KEY, _WARNS = "notice", "notice warns"
 
 
 def keep(kind: str, sentence: str) -> None:
-    """Keep a sentence for the next run: ``"success"`` or ``"error"``."""
+    """Keep a sentence for the next run: ``"success"``, ``"warning"`` or ``"error"``."""
     st.session_state[_KEY] = (kind, sentence)
 
 
@@ -26,7 +27,16 @@ def show() -> None:
     """Show what was kept, once."""
     kind, sentence = st.session_state.pop(_KEY, (None, ""))
     if kind is not None:
-        getattr(st, kind)(sentence)
+        with st.container(key="notice", horizontal=True, vertical_alignment="top"):
+            getattr(st, kind)(sentence, width="stretch")
+            # what it covers is seen again; the next run shows it no more anyway
+            st.button(texts.NOTICE_CLOSE, key="notice_close", type="tertiary",
+                      icon=":material/close:")  # fmt: skip
+
+
+def warn() -> None:
+    """Let what the action under way returns be no success: some of it was not done."""
+    st.session_state[_WARNS] = True
 
 
 def reporting(action: Callable[..., str]) -> Callable[..., None]:
@@ -47,6 +57,8 @@ def reporting(action: Callable[..., str]) -> Callable[..., None]:
             keep("error", of_error(error))
         else:
             if sentence:
-                keep("success", sentence)
+                keep("warning" if st.session_state.get(_WARNS) else "success", sentence)
+        finally:
+            st.session_state.pop(_WARNS, None)
 
     return callback

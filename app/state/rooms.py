@@ -27,16 +27,31 @@ ROOMS = {
 }
 
 
-#: the word in the address that names a part, as the one that a phone is sent to
+#: the word in the address that names a part: a reload, and who goes back, are where they were
 KEY = "part"
-_TURN = "turn to"
+_TURN, _WRITTEN = "turn to", "part in address"
 
 
-def begin_from_address() -> None:
-    """Show the part that the address names, once."""
-    part = st.query_params.pop(KEY, None)
-    if any(part in room.parts for room in ROOMS.values()):
-        open_part(part)
+def take_from_address(name: str) -> None:
+    """Show the part of a room that the address names; what was chosen just now comes first."""
+    said, parts = st.query_params.get(KEY), ROOMS[name].parts
+    room, shown = st.session_state.get(_WRITTEN, ("", ""))
+    if room != name:
+        if said in parts:
+            open_part(said)
+    elif st.session_state.get(key(name), shown) == shown:
+        part = said if said in parts else parts[0]
+        if part != shown:
+            open_part(part)
+
+
+def keep_in_address(name: str, part: str) -> None:
+    """Let a reload lead back to the part that is shown; the first one of a room needs no word."""
+    st.session_state[_WRITTEN] = name, part
+    if part == ROOMS[name].parts[0]:
+        st.query_params.pop(KEY, None)
+    elif st.query_params.get(KEY) != part:
+        st.query_params[KEY] = part
 
 
 def turn_to(name: str) -> None:

@@ -8,6 +8,7 @@ import streamlit as st
 
 from ..actions import (
     answering,
+    beginning,
     bringing_files,
     choosing_pest,
     drawing,
@@ -70,6 +71,7 @@ def show(choices: Choices) -> None:
         rasters.show_risk()
     else:
         st.info(texts.FIXED)
+        beginning.another(choices)
     choosing_pest.show(choices)
     laying_ground.show(choices)
     with st.expander(texts.MESSAGES, expanded=True):

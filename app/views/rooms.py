@@ -26,5 +26,6 @@ def show(name: str, choices: Choices, view: Callable[[str], ModuleType]) -> None
             default=parts[0], format_func=texts.PARTS.__getitem__, required=True,
             label_visibility="collapsed", width="stretch",
         )  # fmt: skip
+    rooms.keep_in_address(name, part)
     with widget_memory.part(part):
         view(part).show(choices)

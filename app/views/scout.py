@@ -52,8 +52,8 @@ def show(choices: Choices) -> None:
     st.markdown(f"**{stop.direction}**")
     with st.container(key="scout_buttons", horizontal=True):
         for key, label, result in (
-            ("scout_clean", texts.CLEAN_BUTTON, CLEAN),
             ("scout_found", texts.FOUND_BUTTON, FOUND),
+            ("scout_clean", texts.CLEAN_BUTTON, CLEAN),
         ):
             st.button(label, key=key, width="stretch", on_click=scouting.tap,
                       args=(choices, stop.plant, result))  # fmt: skip

@@ -59,6 +59,7 @@ def _work(choices: Choices, plan: DayPlan) -> None:
     bringing_files.show_doubts_of_plot(choices)
     day.said_of_day(choices, plan)
     cautions.show_today(choices, plan)
+    beginning.ask(choices, "step")
     morning.show(choices, plan)
     bringing_files.show_doubts_of_records(choices)
     content = map_layers.day_map(choices, above=picking.layers(choices))

@@ -108,6 +108,7 @@ ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
     "row_spacing_m": "rows {value} apart",
     "plant_spacing_m": "plants {value} apart",
+    "row_bearing_deg": "the rows {value}° from north",
     "half_canopy_m": "plants reach {value} to each side",
     "background_chance": "{value} % of plants infested where nothing is known",
     "speed_m_s": "{value} km/h",
@@ -147,6 +148,7 @@ MESSAGES_NONE = "The files were read as they are."
 RECORDS_OF_BEGIN = "Of the records, as known on {day}, when the season began:"
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
+THESE_ARE_PLANTS = "These are the plants"
 CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
 CHOOSE_OTHER, AT_SEA = "Another answer", "in the sea"
 LEGEND_ZONE, LEGEND_GRID = "border of a time zone", "grid of {near} and {far}"
@@ -445,6 +447,9 @@ EARLIER_HELP = (
     "Detection, arrivals and jumps, as a season on this plot or estate learnt them, are a first "
     "guess. It counts little against the finds of this season."
 )
+BEGIN_ASKS = "**Is this right: {what}?** Not all of it was said, and a season keeps it for good."
+BEGIN_RIGHT, BEGIN_NOT_YET = "Right, begin the season", "Not yet"
+BEGIN_GATE = "Set the gate on the map"
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
 LAST_VISIT, VISIT_ON = "Last visit", "{day}: {what}"
@@ -540,6 +545,10 @@ BEFORE_NOTE = "The plot as it was before the last change is drawn in orange."
 BEFORE_DROP = "It is right now"
 FOUND_ROWS = "Leave a box empty to take what was found. Plants are laid again at once."
 FIXED = "The plants of a season are laid once and for all: its plant numbers stay valid."
+ANOTHER_NOTE = (
+    "Nothing is recorded yet: another season can be begun with other rows. This one stays as it is."
+)
+ANOTHER = "Begin another season"
 DRAW, DRAW_KIND = "Gate, paths, no-go areas, rows", "A click on the map sets"
 DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area", "row": "how rows bend",
@@ -857,6 +866,7 @@ LEAVE_OUT = Plural("Leave these out, record the other one", "Leave these out, re
 HOLDS = Plural("The new one holds", "The new ones hold")
 CONFIRM = Plural("Record this too, both hold", "Record these {n} too, both hold")
 RECORD_NONE = "Record nothing"
+NOTICE_CLOSE = "Close this message"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
 RESULT_COUNTED = "{result}, count {n}"
@@ -866,7 +876,9 @@ BATCHES_SAID = {
     "corrections": "corrections: {source}",
 }
 BATCH_OF_DAY = "inspected {days}"
-TYPED_IN, ROUTE_TABLE = "typed in", "route table"
+# as a season's file names them, in English: another language may be read later
+BATCH_SOURCES = {"typed in": "typed in", "route table": "route table", "scout mode": "scout mode",
+                 "phone": "phone"}  # fmt: skip
 TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", "Product"
 TREAT_ROWS, TREAT_ROWS_HELP = "Rows (empty: the whole plot)", "Rows as people count, such as 3-5,8."
 TREAT_SELECTED = "Only the {plants} selected on the map"

@@ -244,6 +244,13 @@ def _undone(batch: Batch, said: BatchContents | None) -> str:
         "corrections": counted(batch.rows, "correction"),
         "treatment": counted(batch.rows, "treatment"),
     }[batch.kind]
+    if batch.kind == "treatment" and batch.source:
+        return worded(
+            "Batch {batch} was undone: {what} with {product}.",
+            batch=batch.number,
+            what=what,
+            product=batch.source,
+        )
     if batch.source:
         return worded(
             "Batch {batch} was undone: {what} from {source}.",

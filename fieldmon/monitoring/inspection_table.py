@@ -11,7 +11,7 @@ import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
@@ -20,6 +20,7 @@ from fieldmon.monitoring.transactions import copy_season
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from datetime import date
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -68,7 +69,7 @@ def rows(
     """
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()
-    number = {day: settings.day(day) for day in sorted(set(dates))}
+    number = {day: _day(day, dates, plants, label, settings) for day in sorted(set(dates))}
     columns = zip(
         point_blobs(grid.lonlat(plants)),
         plants.tolist(),
@@ -89,6 +90,25 @@ def rows(
         what = (number[date], on, at, result, count, who, notes)
         made.append((place, plant, line, in_row, *what, batch[0], mark, 0))
     return made
+
+
+def _day(
+    on: date,
+    dates: list[date],
+    plants: NDArray[np.int32],
+    label: RowLabel,
+    settings: MonitoringSettings,
+) -> int:
+    """Return the number of a day; raise `SettingError` with its first plant if there is none."""
+    try:
+        return settings.day(on)
+    except SettingError as error:
+        plant = plants[dates.index(on)]
+        line, number = int(label.line[plant]), int(label.number[plant])
+        said = worded(
+            "Row {line}, plant {number}: {said}", line=line, number=number, said=error.args[0]
+        )
+        raise SettingError(said) from None
 
 
 def _check(inspections: Inspections, grid: PlantGrid) -> None:

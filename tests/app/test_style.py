@@ -27,6 +27,16 @@ def test_every_part_of_streamlit_that_a_style_names_is_there(style):
     assert not gone
 
 
+def test_found_and_clean_have_the_colours_that_they_have_on_the_phone():
+    app = Path(__file__).parents[2] / "app"
+    phone = (app / "scout_page" / "src" / "style.css").read_text().splitlines()
+    for style, said in (("every_page", phone[0]), ("dark", phone[1])):
+        here = (app / "style" / f"{style}.css").read_text()
+        for ours, theirs in (("clean", "clean"), ("found", "found"), ("on-answer", "on")):
+            (colour,) = re.findall(rf"--{theirs}: (#\w+);", said)
+            assert f"--{ours}:{colour}" in here
+
+
 def test_the_route_and_what_was_treated_are_told_apart_on_a_dark_ground_too():
     for route, treated in ((colours.ROUTE, colours.TREATED),
                            (colours.ROUTE_IN_DARK, colours.TREATED_IN_DARK)):  # fmt: skip

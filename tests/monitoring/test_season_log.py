@@ -146,7 +146,7 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     )
     assert said[2] == "monday.csv: 3 found, 9 clean, 0 could not be inspected, batch 1"
     assert said[4].startswith("2026-04-06: soap on ")
-    assert said[5] == "Batch 2 was undone: 1 treatment from soap."
+    assert said[5] == "Batch 2 was undone: 1 treatment with soap."
     assert season.held_to_log() == ()
     assert [one.number for one in log] == list(range(1, 9))
     assert list(season_log.lines(log, CLOCK))[-1].endswith(log[-1].digest)

@@ -12,7 +12,7 @@ import { Drawing } from "./draw.js";
 import { Drive, PITCH } from "./drive.js";
 import { Frames } from "./frames.js";
 import { asked, moved } from "./keys.js";
-import { Labels, withHot } from "./labels.js";
+import { Labels, rowBoxes, withHot } from "./labels.js";
 import { layersOf } from "./layers.js";
 import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
@@ -131,12 +131,19 @@ class MapPage {
       const view = this.fit();
       this.deck.setProps({ initialViewState: { ...view, maxZoom: 24, transitionDuration: this.place ? FLY_MS : 0,
         transitionInterpolator: new FlyToInterpolator({ speed: 4 }) } });
+    } else if (!drive) {
+      const before = this.whence;
+      this.fit();
+      if (this.whence !== before) this.resized(); // the legend may be larger than it was
     }
     this.place = place;
   }
 
   fit() {
-    const view = besideBox(this.data.bounds, this.size(), this.padding(), this.legendBox(), this.somePlaces());
+    const rows = this.off().includes("rows") ? NONE : this.data.labels ?? NONE;
+    const view = besideBox(this.data.bounds, this.size(), this.padding(), this.legendBox(), this.somePlaces(),
+      (port) => rowBoxes(rows, port));
+    this.whence = JSON.stringify(view);
     return this.data.drive ? { ...view, pitch: PITCH } : view;
   }
 

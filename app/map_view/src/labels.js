@@ -57,6 +57,15 @@ function rowStep(rows, viewport) {
   return free ?? several.at(-1) ?? 1;
 }
 
+// Return the boxes [left, top, right, bottom] of the numbers that rows have in a view.
+export function rowBoxes(labels, viewport) {
+  const rows = labels.filter(({ k, row }) => k === "row" && row), step = rowStep(rows, viewport);
+  return rows.filter(({ row }) => row % step === 0).map((one) => {
+    const [half, tall] = sizeOf(one.t), [x, y] = pushed(viewport, one.p, one, [half, tall]);
+    return [x - half, y - tall, x + half, y + tall];
+  });
+}
+
 // Return a middle from which a word reaches over neither edge, if it is not out of view.
 function inside(x, half, [left, right]) {
   return x < left || x > right || right - left < 2 * half ? x : Math.min(Math.max(x, left + half), right - half);

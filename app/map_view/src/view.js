@@ -31,21 +31,41 @@ export function fitted([west, south, east, north], { width, height }, padding) {
   return { longitude, latitude, zoom, bearing: 0, pitch: 0 };
 }
 
-// Return the view that also leaves the corner free in which `box` lies, if one of the places is behind it.
-export function besideBox(bounds, size, padding, box, places) {
-  const view = fitted(bounds, size, padding);
-  if (!box || !places.length || !covers(view, size, box, places)) return view;
+// How far a word may reach into what panels and tools leave free around a plot: there is room above and
+// below it, less beside it, where the panel's handle is.
+const INTO = { left: 4, right: 4, top: 20, bottom: 24 };
+
+// Return the view in which the words beside a plot are free, too: `words` are their boxes in a view.
+function withWords(bounds, size, padding, words) {
+  let view = fitted(bounds, size, padding);
+  // farther away other words may be shown
+  for (let k = 0; k < 2; k++) {
+    const port = new WebMercatorViewport({ ...size, ...view }), boxes = words(port);
+    if (!boxes.length) return view;
+    const [left, bottom] = port.project([bounds[0], bounds[1]]), [right, top] = port.project([bounds[2], bounds[3]]);
+    const most = (far) => Math.max(...boxes.map(far));
+    const beyond = { left: most((b) => left - b[0]), right: most((b) => b[2] - right), top: most((b) => top - b[1]), bottom: most((b) => b[3] - bottom) };
+    const more = Object.entries(beyond).map(([side, px]) => [side, padding[side] + Math.max(0, px - INTO[side])]);
+    view = fitted(bounds, size, Object.fromEntries(more));
+  }
+  return view;
+}
+
+// Return the view that also leaves the corner free in which `box` lies, if one of the places, or a word, is behind it.
+export function besideBox(bounds, size, padding, box, places, words = () => []) {
+  const view = withWords(bounds, size, padding, words);
+  if (!box || !covers(view, size, box, places, words)) return view;
   const side = box.left > size.width - box.right ? { right: Math.max(padding.right, size.width - box.left) }
     : { left: Math.max(padding.left, box.right) };
   const others = [side, { bottom: Math.max(padding.bottom, size.height - box.top) }];
-  const views = others.map((change) => fitted(bounds, size, { ...padding, ...change }));
+  const views = others.map((change) => withWords(bounds, size, { ...padding, ...change }, words));
   return views[0].zoom > views[1].zoom ? views[0] : views[1];
 }
 
-function covers(view, size, box, places) {
+function covers(view, size, box, places, words) {
   const port = new WebMercatorViewport({ ...size, ...view });
   return places.some((place) => {
     const [x, y] = port.project(place);
     return x > box.left && x < box.right && y > box.top && y < box.bottom;
-  });
+  }) || words(port).some((b) => b[2] > box.left && b[0] < box.right && b[3] > box.top && b[1] < box.bottom);
 }

@@ -5,6 +5,7 @@ import { test } from "node:test";
 
 import { WebMercatorViewport } from "@deck.gl/core";
 
+import { rowBoxes } from "../src/labels.js";
 import { besideBox, fitted, metresPerPixel } from "../src/view.js";
 
 const ROOMS = [
@@ -63,3 +64,33 @@ test("a plot whose corner a legend would hide is shown beside it or above it, an
   }
   assert.deepEqual(besideBox(bounds, size, padding, null, all), fitted(bounds, size, padding));
 });
+
+// every fifth row of a plot has its number beyond its end, in the west or in the east
+function numbered([west, south, east, north], side) {
+  const [end, away] = side === "west" ? [west, west - 1] : [east, east + 1];
+  return Array.from({ length: 20 }, (_, k) => {
+    const lat = south + ((north - south) * (k + 0.5)) / 20;
+    return { p: [end, lat], away: [away, lat], t: `${k + 101}`, k: "row", row: k + 1 };
+  });
+}
+
+for (const side of ["west", "east"]) {
+  test(`numbers of rows in the ${side} are clear of panels, handle, tools and legend`, () => {
+    const legend = { left: 700, right: 1012, top: 500, bottom: 700 };
+    for (const [size, padding] of ROOMS) {
+      for (const [lon, wide, tall] of PLOTS) {
+        const bounds = [lon, 30, lon + wide, 30 + tall], labels = numbered(bounds, side);
+        const box = size.width > 1000 ? legend : null;
+        const view = besideBox(bounds, size, padding, box, [], (port) => rowBoxes(labels, port));
+        const boxes = rowBoxes(labels, new WebMercatorViewport({ ...size, ...view }));
+        assert.ok(boxes.length > 1);
+        for (const [left, top, right, bottom] of boxes) {
+          assert.ok(left > padding.left - 5 && right < size.width - padding.right + 5, `${left} to ${right}`);
+          assert.ok(top > 0 && bottom < size.height - padding.bottom + 25, `${top} to ${bottom}`);
+          const hidden = box && right > box.left && left < box.right && bottom > box.top && top < box.bottom;
+          assert.ok(!hidden, `${left}, ${top} is behind the legend`);
+        }
+      }
+    }
+  });
+}

@@ -390,6 +390,8 @@ def _fields(
 
 # names of plots in a sentence
 _MOST_NAMED = 5
+# a table of more positions with a number of their row or plant lists plants
+_MOST_CORNERS_NUMBERED = 20
 _NO_AREA, _NO_LINES, _UNKNOWN_ROWS = MultiPolygon(), MultiLineString(), KnownRows()
 
 
@@ -444,6 +446,11 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
     """Return the one plot whose corners a table lists in order."""
     found = located(layer, options)
     points, messages = found.lonlat, found.messages
+    # a few corners may be numbered; many numbered positions are plants, even if the line through
+    # them, row up and row down, crosses itself nowhere
+    numbered = any(find(role, layer.columns) for role in ("row", "plant"))
+    if options.where is None and numbered and len(points) > _MOST_CORNERS_NUMBERED:
+        raise _no_outline(layer, len(points))
     if not 3 <= len(points) <= 1000:
         raise _which_are_corners(layer, len(points))
     if found.unread is not None and found.unread.written:
@@ -465,13 +472,32 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
     return Imported((Field(layer.name, kept),), (*layer.messages, *messages, said, *more))
 
 
+def _no_outline(layer: Layer, n_points: int) -> ChoiceNeeded:
+    """Return what is said of positions that no plot can lie inside: they may be plants."""
+    return ChoiceNeeded(
+        worded(
+            "A plot must be an area, but {name} lists {n} positions that are not its corners in "
+            "their order around it. Take them as plants, or choose a file with the boundary.",
+            name=layer.name,
+            n=n_points,
+        ),
+        "kind",
+        ("plants",),
+    )
+
+
 def _which_are_corners(layer: Layer, n_points: int) -> ChoiceNeeded:
     """Return the question which records of a table are corners, with the groups it holds."""
     groups = []
+    places = {find(role, layer.columns) for role in ("lon", "lat", "x", "y", "position")}
     for name, values in layer.columns.items():
+        if name in places:
+            continue
         counts = Counter(text(v) for v in values)
         if 2 <= len(counts) <= 20:
             groups += [f"{name}={value}" for value, n in counts.items() if 3 <= n <= 1000]
+    if not groups and n_points >= 3:
+        return _no_outline(layer, n_points)
     return ChoiceNeeded(
         f"The corners of a plot must be 3 to 1000 positions in their order around it, but "
         f"{layer.name} lists {n_points} that do not enclose an area. Say which are the corners"

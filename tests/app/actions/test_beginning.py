@@ -14,11 +14,16 @@ from tests.app.driving import (
     go,
     headline,
     layer,
+    map_of,
     opened,
     plants,
     plot_name,
     press,
+    row_box,
+    square,
     texts_of,
+    upload,
+    zipped,
 )
 
 
@@ -82,6 +87,82 @@ def test_a_season_begins_with_finds_that_are_only_flagged(season, button):
     press(app, button)
     assert not app.exception
     assert not season().settings.belief.treated
+
+
+@pytest.mark.parametrize("button", ["Begin the season", "Begin a season"])
+def test_rows_that_nobody_confirmed_are_asked_about_before_a_season_keeps_them(
+    app, tmp_path, seasons_folder, button
+):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square())))
+    go(app, "today")
+    press(app, button)
+    assert not app.exception
+    assert not list(seasons_folder.glob("*.gpkg"))
+    assert "**Is this right: rows 4 m apart, plants 3 m apart, the rows " in texts_of(app)
+    assert "the gate at the nearest row end?" in texts_of(app)
+    label = texts.ROW_SPACING.format(unit="m")
+    (box,) = [one for one in app.number_input if one.label == label]
+    assert box.placeholder == "4"
+    box.set_value(2.5).run()
+    assert "**Is this right: rows 2.5 m apart, plants 3 m apart, " in texts_of(app)
+    press(app, texts.BEGIN_NOT_YET)
+    assert "Is this right" not in texts_of(app)
+    press(app, button)
+    press(app, texts.BEGIN_RIGHT)
+    assert not app.exception
+    (file,) = seasons_folder.glob("*.gpkg")
+    assert Season(file).plot.grid.row_spacing_m == 2.5
+    # they were asked about: they are assumed no more
+    assert Season(file).plot.assumed == ()
+
+
+def test_while_nothing_is_recorded_another_season_is_begun_with_other_rows(
+    app, tmp_path, seasons_folder
+):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square())))
+    go(app, "today")
+    press(app, "Begin a season")
+    press(app, texts.BEGIN_RIGHT)
+    go(app, "plot")
+    press(app, texts.ANOTHER)
+    assert app.selectbox(key="season").value == "My own files"
+    row_box(app, "row_spacing").set_value(2.5).run()
+    go(app, "today")
+    assert "Is this right" not in texts_of(app)
+    press(app, "Begin a season")
+    press(app, texts.BEGIN_RIGHT)
+    assert not app.exception
+    first, second = sorted(seasons_folder.glob("*.gpkg"), key=lambda file: len(file.stem))
+    assert second.stem == f"{first.stem} (2)"
+    assert [Season(file).plot.grid.row_spacing_m for file in (first, second)] == [4.0, 2.5]
+    kept = Season(second)
+    kept.record(Inspections.of(np.array([0]), np.array([0]), np.datetime64(kept.settings.begins)))
+    assert texts.ANOTHER not in {one.label for one in go(app, "plot").button}
+
+
+def test_the_gate_is_set_on_the_map_before_a_season_begins(app, tmp_path):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square())))
+    go(app, "today")
+    press(app, "Begin a season")
+    app.button(key="begin_gate").click()
+    app.run()
+    go(app, "plot")
+    assert map_of(app)["draw"]["id"] == "gate"
+
+
+@pytest.mark.parametrize("said", ["file", "hand"])
+def test_rows_that_a_file_or_a_person_said_begin_with_one_click(app, seasons_folder, said):
+    here = square()
+    if said == "file":
+        here = here.assign(row_spacing=3.0, plant_spacing=2.0, bearing=10.0)
+    upload(app, plot=("plot.geojson", here.to_json().encode()))
+    if said == "hand":
+        for name, value in (("row_bearing", 10.0), ("row_spacing", 3.0), ("plant_spacing", 2.0)):
+            row_box(app, name).set_value(value).run()
+    go(app, "today")
+    press(app, "Begin a season")
+    assert not app.exception
+    assert len([*seasons_folder.glob("*.gpkg")]) == 1
 
 
 def test_records_left_out_are_said_before_a_season_begins_and_when_it_begins(app):

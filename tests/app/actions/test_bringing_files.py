@@ -10,7 +10,7 @@ from shapely import transform
 
 from app.actions import bringing_files
 from app.words import texts
-from tests.app.driving import go, plot_name, press, square, texts_of, upload, zipped
+from tests.app.driving import go, metric, plot_name, press, square, texts_of, upload, zipped
 
 
 def test_a_missing_crs_is_asked_for_and_answered_by_button(app, tmp_path):
@@ -55,6 +55,24 @@ def test_a_bad_file_is_a_sentence(app, name, data, says):
     assert not app.exception
     assert any(says in message.value for message in [*app.error, *app.warning])
     assert app.file_uploader(key="plot_file")
+
+
+def test_plants_dropped_in_the_box_of_the_plot_are_taken_as_plants_by_one_button(app):
+    at = [(681_500 + 3.0 * row, 3_360_000 + 1.5 * k) for row in range(6) for k in range(10)]
+    table = "x,y,row\n" + "".join(f"{x},{y},{1 + n // 10}\n" for n, (x, y) in enumerate(at))
+    upload(app, plot=("vines.csv", table.encode()))
+    boxes = [box for box in app.selectbox if box.key.startswith("ask ")]
+    boxes[0].set_value("EPSG:32636").run()
+    press(app, "Use this")
+    assert "not its corners" in app.warning[0].value
+    press(app, texts.THESE_ARE_PLANTS)
+    assert not app.exception
+    assert not app.warning
+    assert metric(app, "Plants") == "60"
+    # the boxes are empty: another file dropped there is not one with this
+    assert not any(box.value for box in app.file_uploader)
+    assert "In use: " in texts_of(app)
+    assert "vines.csv" in texts_of(app)
 
 
 def two_layers(folder):

@@ -49,6 +49,15 @@ def test_a_code_opens_the_season_for_one_person_until_it_is_taken_back(scout, se
     assert len(scout.code) == 0
 
 
+def test_the_fold_stays_open_at_a_code_until_that_is_taken_back(scout):
+    fold = lambda: next(one for one in scout.expander if one.label == texts.INVITE)  # noqa: E731
+    assert not fold().proto.expanded
+    made(scout)
+    assert fold().proto.expanded
+    scout.button(key="take back Ann").click().run()
+    assert not fold().proto.expanded
+
+
 def test_a_code_without_a_name_is_none(scout, season):
     scout.text_input(key="invite_name").set_value(" ")
     press(scout, texts.INVITE_BUTTON)

@@ -91,13 +91,34 @@ def test_a_file_of_findings_is_recorded_once(season_app, season):
     assert season().history.inspections.result.tolist() == [1, 0]
 
 
+def test_a_file_of_which_some_was_left_out_is_a_warning_that_can_be_closed(season_app, season):
+    go(season_app, "record")
+    table = b"row,number,found,count\n1,1,yes,3\n999,1,yes,\n"
+    boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
+    season_app.button(key="record_file").click().run()
+    assert not season_app.success
+    assert "1 recorded, 0 known" in season_app.warning[0].value
+    assert "1 was left out" in season_app.warning[0].value
+    press(season_app, texts.NOTICE_CLOSE)
+    assert not season_app.warning
+    assert len(season().history.inspections) == 1
+
+
+def test_a_day_before_the_season_is_refused_with_the_row_and_the_plant(season_app):
+    go(season_app, "record")
+    table = b"row,number,found,date\n1,1,yes,2026-11-16\n2,3,no,2026-11-15\n"
+    boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
+    season_app.button(key="record_file").click().run()
+    assert season_app.error[0].value.startswith("Row 2, plant 3: The day must be of this season")
+
+
 def test_a_record_without_a_date_beside_dated_ones_gets_none_silently(season_app, season):
     go(season_app, "record")
     table = b"row,number,date,found\n1,1,2026-11-16,yes\n1,2,,yes\n"
     boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
     season_app.button(key="record_file").click().run()
-    assert "1 recorded, 0 known" in season_app.success[0].value
-    assert "1 record has no date, as others have: left out." in season_app.success[0].value
+    assert "1 recorded, 0 known" in season_app.warning[0].value
+    assert "1 record has no date, as others have: left out." in season_app.warning[0].value
     assert len(season().history.inspections) == 1
 
 
@@ -138,7 +159,7 @@ def test_a_file_that_does_not_fit_is_a_sentence(season_app, season, data):
     boxed(season_app.file_uploader, "findings_file").upload("found.csv", data).run()
     season_app.button(key="record_file").click().run()
     assert not season_app.exception
-    (said,) = [*season_app.error, *season_app.success]
+    (said,) = [*season_app.error, *season_app.warning]
     assert "found must" in said.value or "found.csv" in said.value or "0 recorded" in said.value
     assert not len(season().history.inspections)
 

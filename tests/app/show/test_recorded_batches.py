@@ -5,7 +5,7 @@ from datetime import date
 import numpy as np
 from shapely import MultiPolygon, box
 
-from app.show.recorded_batches import in_short
+from app.show.recorded_batches import in_short, source
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.monitoring import Application
 from fieldmon.plot.grid import row_label
@@ -34,6 +34,12 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     assert said[2] == f"typed in · {second}: could not inspect · inspected Mon 16 Nov · Ann"
     assert said[3] == f"typed in · {first}: found · inspected Mon 16 Nov"
     assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:4]}
+
+
+def test_ways_to_record_are_said_in_the_language_of_the_page_and_files_by_their_names(speaking):
+    assert source("typed in") == "typed in"
+    speaking("he")
+    assert [source(name) for name in ("typed in", "day.csv")] == ["הוקלד", "day.csv"]
 
 
 def test_a_treatment_is_told_by_how_many_plants_were_treated_and_when(season_app, season):

@@ -7,6 +7,7 @@ import pytest
 
 from app.state import chosen_day, morning
 from fieldmon.infestation.inspections import SKIPPED, Inspections
+from fieldmon.monitoring import scouts
 from tests.app.chosen import DAY, a_plot, chosen, in_season
 from tests.monitoring.seasons import BEGINS, Insects, a_season, all_on
 
@@ -44,6 +45,16 @@ def test_a_day_goes_from_the_plan_to_the_phone_to_the_records_to_the_report(kept
     assert next_of(in_season(kept, BEGINS)) == morning.SEND
     morning.note(choices, morning.SEND)
     assert next_of(in_season(kept, BEGINS)) == morning.RECORD
+
+
+@pytest.mark.usefixtures("session")
+def test_a_day_that_was_recorded_without_being_sent_was_not_taken_along(kept):
+    kept.record(Insects(kept).look(0, kept.plan(BEGINS).route.plant[:3]), "typed in")
+    choices = in_season(kept, BEGINS)
+    assert steps_of(choices)[morning.SEND].done
+    assert steps_of(choices)[morning.SEND].nothing
+    scouts.let_in(kept, "Dana")
+    assert not steps_of(choices)[morning.SEND].nothing
 
 
 @pytest.mark.usefixtures("session")

@@ -10,8 +10,8 @@ from fieldmon.errors import SettingError
 @pytest.fixture
 def shown(session, monkeypatch):  # noqa: ARG001 - said within it
     said = []
-    for kind in ("success", "error"):
-        monkeypatch.setattr(st, kind, lambda text, kind=kind: said.append((kind, text)))
+    for kind in ("success", "warning", "error"):
+        monkeypatch.setattr(st, kind, lambda text, kind=kind, **_: said.append((kind, text)))
     return said
 
 
@@ -20,6 +20,17 @@ def test_what_an_action_returns_is_said_once(shown):
     notices.show()
     notices.show()
     assert shown == [("success", "3 recorded")]
+
+
+def test_what_was_done_by_half_is_no_success_and_what_is_done_next_is_one(shown):
+    def by_half():
+        notices.warn()
+        return "2 recorded, 2 left out"
+
+    for action in (by_half, lambda: "3 recorded"):
+        notices.reporting(action)()
+        notices.show()
+    assert shown == [("warning", "2 recorded, 2 left out"), ("success", "3 recorded")]
 
 
 def test_a_problem_is_said_and_anything_else_is_a_fault(shown):

@@ -5,7 +5,7 @@ from streamlit.util import calc_hash
 
 from app.state import rooms
 from app.words import texts
-from tests.app.driving import go, texts_of
+from tests.app.driving import go, opened, texts_of
 
 SEVERAL = [name for name, room in rooms.ROOMS.items() if len(room.parts) > 1]
 
@@ -32,6 +32,21 @@ def test_the_part_that_was_shown_is_shown_again_after_another_room(app):
     assert app.segmented_control(key=rooms.key("season")).value == "field"
     go_to_room(app, "today")
     assert app.segmented_control(key=rooms.key("today")).value == "scout"
+
+
+def test_a_reload_leads_back_to_the_part_and_so_does_going_back(season_app):
+    box = lambda app: app.segmented_control(key=rooms.key("today"))  # noqa: E731
+    box(season_app).set_value("record").run()
+    assert season_app.query_params[rooms.KEY] in ("record", ["record"])
+    assert box(opened("Gate 2026", part="record")).value == "record"
+    box(season_app).set_value("decide").run()
+    # as a browser that goes back: the address is an earlier one
+    season_app.query_params[rooms.KEY] = "record"
+    assert box(season_app.run()).value == "record"
+    # a click just now comes before an address that is behind
+    season_app.query_params[rooms.KEY] = "scout"
+    assert box(box(season_app).set_value("today").run()).value == "today"
+    assert rooms.KEY not in season_app.query_params
 
 
 def go_to_room(app, name):

@@ -147,6 +147,35 @@ def test_a_table_of_two_plots_asks_which_are_the_corners():
     assert set(asked.value.choices) >= {"part=a", "part=b"}
 
 
+# three rows of eight plants, each row up: through them runs no outline
+IN_ROWS = [(5 + 0.0001 * row, 45 + 0.0001 * plant) for row in range(3) for plant in range(8)]
+# up, down, up: their line crosses itself nowhere
+UP_AND_DOWN = [*IN_ROWS[:8], *IN_ROWS[15:7:-1], *IN_ROWS[16:]]
+
+
+@pytest.mark.parametrize(
+    ("places", "more"),
+    [
+        (IN_ROWS, {}),
+        (IN_ROWS, {"Vine ID": [f"V{k // 2}" for k in range(24)], "variety": ["a", "b"] * 12}),
+        (UP_AND_DOWN, {"row": [k // 8 for k in range(24)]}),
+    ],
+)
+def test_plants_in_place_of_a_plot_are_offered_as_plants_and_nothing_else(places, more):
+    with pytest.raises(ChoiceNeeded, match="lists 24 positions that are not its corners") as asked:
+        plots_of(corners(*places, **more), ANY)
+    assert (asked.value.option, asked.value.choices) == ("kind", ("plants",))
+
+
+def test_a_few_numbered_corners_are_corners_and_so_are_those_that_are_said_to_be():
+    at = list(ONE.exterior.coords)[:-1]
+    (field,) = plots_of(corners(*at, row=[1, 2, 3, 4]), ANY).value
+    assert field.boundary.equals(MultiPolygon([ONE]))
+    walked = corners(*IN_ROWS[:8], *IN_ROWS[23:15:-1], *IN_ROWS[8:16], row=["a"] * 16 + ["b"] * 8)
+    (field,) = plots_of(walked, PlotOptions(where="row=a")).value
+    assert field.boundary.area > 0
+
+
 MISTYPED = [(5, 45), (5.001, 45), (5.001, 450.01), (5, 45.001)]
 
 

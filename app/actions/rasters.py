@@ -12,6 +12,12 @@ from ..words import texts
 from . import bringing_files
 
 
+def show() -> None:
+    """Show the boxes for rasters: missing plants, and risk."""
+    show_missing()
+    show_risk()
+
+
 def show_missing() -> None:
     """Show the box for a raster of missing plants, and below which value no plant is there."""
     with st.expander(texts.MISSING, expanded=rasters.MISSING in brought()):

@@ -37,10 +37,9 @@ def bring(problem: FieldmonError | None) -> None:
         st.title(texts.TITLE)
         st.markdown(texts.EMPTY)
     # what is wrong, or asked, comes first: below five boxes it was not seen
-    said, boxes = st.container(), st.container()
+    said = st.container()
     if plot_source.chosen() == plot_source.FILES:
-        with boxes:
-            drawing_plot.offer()
+        drawing_plot.offer()
     if problem is not None:
         with said:
             answering.show(problem)
@@ -67,8 +66,7 @@ def show(choices: Choices) -> None:
         drawing.tools(choices)
         drawing.rows(choices.plot_key, measured=choices.plot.field.plants is not None)
         drawing.blocks(choices)
-        rasters.show_missing()
-        rasters.show_risk()
+        rasters.show()
     else:
         st.info(texts.FIXED)
         beginning.another(choices)

@@ -31,6 +31,6 @@ def test_answers_that_lead_to_a_plot_have_buttons_under_their_numbers_on_the_map
     nowhere = (TriedAnswer("row=1"), TriedAnswer("row=2"))
     labels = []
     monkeypatch.setattr(st, "button", lambda label, **_: labels.append(label))
-    question = ChoiceNeeded("Which?", "where", ("row=1", "row=2", "EPSG:2039"))
+    question = ChoiceNeeded("Which?", "crs", ("row=1", "row=2", "EPSG:2039"))
     bringing_files.say(question, "plot a", (*nowhere, ANSWERS[0]))
     assert labels == ["3 · EPSG:2039 · Israel", texts.CHOOSE_BUTTON]

@@ -87,7 +87,7 @@ class MapVerdict:
         )  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AskedVerdict:
     """What is asked of a verdict.
 

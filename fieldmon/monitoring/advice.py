@@ -88,9 +88,9 @@ class AdviceSettings:
     learnt_of: str = ""
 
     def __post_init__(self) -> None:
+        must_be_rate(self.rate_l_ha)
         must_hold_kinds(self, "The advice's")
         AskedVerdict(self.level, self.sure)  # refuses what cannot be
-        must_be_rate(self.rate_l_ha)
 
     def assumed(self, units: Units | None = None) -> Worded:
         """Return in words what nobody measured here or set, and what was set.

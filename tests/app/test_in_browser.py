@@ -830,7 +830,7 @@ def contrast(button):
 
 _SHADES = """b => { const words = b.querySelector("p") || b; let ground = b, shade;
         do { shade = getComputedStyle(ground).backgroundColor; ground = ground.parentElement; }
-        while (ground && /, 0\\)$/.test(shade));
+        while (ground && /^rgba.*, 0\\)$/.test(shade));
         return [getComputedStyle(words).color, shade]; }"""
 
 

@@ -87,7 +87,7 @@ def test_what_does_not_go_with_a_team_is_a_sentence(run, words, says):
 def test_a_season_keeps_who_works(run, season):
     code, _, err, _ = run("plan", season, "--robots", 2)
     assert code == 2
-    assert "Change that with: fieldmon change --robots" in err
+    assert "Change it with: fieldmon change --robots" in err
 
 
 def test_one_alone_needs_no_room_to_pass_another(run):

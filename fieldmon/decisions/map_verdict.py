@@ -79,11 +79,11 @@ class MapVerdict:
 
     def believed(self) -> str:
         """Return what the answer rests on."""
+        # its interval hangs on rates alone: another than that of the status, it would confuse
         return worded(
-            "{share:.1%} of the plants are believed infested ({low:.1%} to {high:.1%}). Treating "
-            "pays if it is {level:.1%} or more; the chance of that is {chance:.0%}.",
-            share=self.share, low=self.low, high=self.high, level=self.level,
-            chance=self.chance_above,
+            "{share:.1%} of the plants are believed infested. Treating pays if it is {level:.1%} "
+            "or more; the chance of that is {chance:.0%}.",
+            share=self.share, level=self.level, chance=self.chance_above,
         )  # fmt: skip
 
 

@@ -146,7 +146,7 @@ def estimate_of(
     True
     """
     must_be_sure(sure)
-    chance, doubt, named = belief.chance, belief.doubt, belief.pest is not None
+    chance, doubt, named = belief.chance, level_doubt(belief), belief.pest is not None
     asked = np.ones(len(chance), np.bool_) if found is None else ~found
     expected, n = float(chance[asked].sum()), int(np.count_nonzero(asked))
     if (since := belief.since_inspected) is not None:
@@ -160,6 +160,15 @@ def estimate_of(
     return _estimate(expected, numbers, (clean, sure), exact=doubt <= 0.0)
 
 
+def level_doubt(belief: Belief) -> float:
+    """Return how far the expected number may be off, as a share.
+
+    On days without inspections it is that of their first morning: nobody learns anything since.
+    """
+    since = belief.since_inspected
+    return belief.doubt if since is None else since.counted.doubt
+
+
 def _doubted_numbers(
     drawn: tuple[Floats, float], doubt: float, n: int, *, named: bool
 ) -> tuple[Floats, float]:
@@ -168,13 +177,15 @@ def _doubted_numbers(
     if doubt <= 0.0:
         return numbers, float(np.exp(none))
     factors = doubted_level(doubt, named=named)
-    return of_odds(numbers, factors, n), float(np.exp(none * factors).mean())
+    return of_odds(numbers, factors, max(n, 1)), float(np.exp(none * factors).mean())
 
 
 def _estimate(
     expected: float, numbers: Floats, clean_sure: tuple[float, float], *, exact: bool
 ) -> PlotEstimate:
     clean, sure = clean_sure
+    # there is one with no higher chance than so many are expected (Markov)
+    clean = max(clean, 1.0 - expected)
     below, above = _ends(sure)
     low, high = map(float, np.quantile(numbers, [below, above]))
     # doubted, to the nearest: outwards, an interval of a few plants would hold far more than asked

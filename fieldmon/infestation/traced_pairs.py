@@ -403,7 +403,7 @@ class TracedPairs:
         counted = None
         if self.unwatched.begins:
             drawn, none = drawn_numbers(self.grid, (self.chance, self.pair_chance), unknown)
-            counted = Counted(drawn / before, none, before)
+            counted = Counted(drawn / before, none, before, self.doubt)
         unwatched = self.unwatched.overnight(before, after, new, counted)
         return replace(morning, unwatched=unwatched)
 

@@ -54,11 +54,14 @@ class Counted(NamedTuple):
         Logarithm of the chance that there were none.
     expected
         How many were expected.
+    doubt
+        How far that might be off by then, as a share (`Belief.doubt`).
     """
 
     drawn: Floats
     none: float
     expected: float
+    doubt: float
 
 
 class Since(NamedTuple):
@@ -214,7 +217,7 @@ class Unwatched(NamedTuple):
 
     @property
     def array(self) -> Floats:
-        """What to keep of it on a morning, ``(4,)`` or, with what was counted, ``(6 + k,)``."""
+        """What to keep of it on a morning, ``(4,)`` or, with what was counted, ``(7 + k,)``."""
         counted = () if self.counted is None else self.counted
         return np.concatenate([self[:4], *(np.atleast_1d(part) for part in counted[::-1])])
 
@@ -222,6 +225,8 @@ class Unwatched(NamedTuple):
     def of_array(cls, kept: Floats) -> Unwatched:
         """Return what such an array has kept."""
         days, grown, left, arrived = map(float, kept[:4])
-        expected, none, drawn = kept[4:5], kept[5:6], kept[6:]
-        counted = Counted(drawn, float(none[0]), float(expected[0])) if len(kept) > 4 else None
+        counted = None
+        if len(kept) > 4:
+            doubt, expected, none = map(float, kept[4:7])
+            counted = Counted(kept[7:], none, expected, doubt)
         return cls(int(days), grown, left, arrived, counted=counted)

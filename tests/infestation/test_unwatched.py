@@ -193,3 +193,27 @@ def test_where_nothing_was_left_a_verdict_counts_what_may_have_arrived():
     said = verdict(nights(clean, 25), 0.01)
     assert said.low == 0.0 < said.chance_above < 1.0
     assert said.high > said.share
+
+
+def test_where_hardly_any_is_expected_it_is_hardly_likely_that_there_is_one():
+    evening = inspected(TracedPairs.of(GRID, np.full(400, 0.05)), 8)
+    treated = nights(evening, 2).treated(np.full(400, 1e-4))
+    for belief in (treated, nights(treated, 1)):
+        now = told(belief)
+        assert now.expected < 0.5
+        assert now.chance_clean >= 1.0 - now.expected
+
+
+def test_a_month_without_inspections_brings_no_jump(evening):
+    each = [told(nights(evening, number)) for number in range(26, 36)]
+    low, clean = zip(*((one.low, one.chance_clean) for one in each), strict=True)
+    assert np.all(np.diff(low) >= 0)
+    assert np.all(np.diff(clean) <= 1e-9)
+
+
+def test_where_every_plant_was_found_none_is_left_to_find():
+    found = np.ones(400, np.bool_)
+    belief = TracedPairs.of(GRID, np.full(400, 0.05))
+    belief = belief.learn(np.arange(400, dtype=np.int32), found, Learning(0.8, treated=False))
+    for now in (estimate_of(GRID, each, found=found) for each in (belief, nights(belief, 3))):
+        assert (now.expected, now.low, now.high, now.chance_clean) == (0.0, 0, 0, 1.0)

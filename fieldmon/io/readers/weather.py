@@ -140,7 +140,9 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
         cells[column], said = _without_marks(values, column)
         messages += said
         if column.measure == "rain_mm" and not (service.title or _is_rate(column, options)):
-            cells[column], said = what_fell(column.name, cells[column], timed.at, options.rain_is)
+            cells[column], said = what_fell(
+                column.name, cells[column], timed.at, options.rain_is, timed.zone
+            )
             messages += said
     unit_of, said = _units_of(cells, options)
     messages += said

@@ -98,8 +98,9 @@ def _month_begins(times: NDArray[np.int64], zone: tzinfo) -> NDArray[np.bool_]:
     """Return before which of times ``(n,)``, seconds, but the first another month begins."""
     # a day that is stated as UTC midnight is that day all the same
     there = zone if (times % DAY_S).any() else UTC
-    months = [datetime.fromtimestamp(one, there).month for one in times.tolist()]
-    return np.diff(months) != 0
+    months = np.array([datetime.fromtimestamp(one, there).month for one in times.tolist()])
+    begins: NDArray[np.bool_] = months[1:] != months[:-1]
+    return begins
 
 
 def _counts_up(
@@ -116,8 +117,10 @@ def _counts_up(
     if not values.any() or still_s < _STILL_EACH_S * len(falls):
         return False
     by_month = begins is not None and len(falls) > 0
-    if by_month and ((steps < 0.0)[~begins].any() or not (steps > 0.0)[~begins].any()):
-        return False
+    if begins is not None and by_month:
+        within = steps[~begins]
+        if (within < 0.0).any() or not (within > 0.0).any():
+            return False
     if is_named:
         return True
     if np.count_nonzero(is_still) < _STILL or still_s < _STILL_S:

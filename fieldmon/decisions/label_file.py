@@ -134,12 +134,31 @@ def _label(said: Mapping[str, str], where: str) -> ProductLabel:
 
 
 def _dose(said: Mapping[str, str]) -> Dose | None:
+    _refuse_unit_in_cell(said.get("max_dose", ""))
     value, unit = _number(said, "max_dose"), said.get("unit", "")
     if value is not None and not unit:
         raise SettingError(
             worded("the dose is {value:g}, but of which unit is not said.", value=value)
         )
     return None if value is None else Dose(value, unit)
+
+
+def _refuse_unit_in_cell(cell: str) -> None:
+    """Raise `SettingError` where a number and the unit of a dose stand in one cell."""
+    unit = cell.lstrip("0123456789., ")
+    if unit == cell:
+        return
+    try:
+        Dose(1.0, unit)
+    except SettingError:
+        return
+    raise SettingError(
+        worded(
+            "max_dose must be a number, and its unit stand in the column unit, but both stand in "
+            "one ({cell!r}).",
+            cell=cell,
+        )
+    )
 
 
 def _number(said: Mapping[str, str], role: str) -> float | None:

@@ -48,6 +48,8 @@ def test_only_the_product_is_needed_and_what_says_nothing_is_told(tmp_path):
         (f"{NAMES}\n", "must hold a label or more"),
         (f"{NAMES}\n,tomato,,,,,,,,\n", "line 2: A label must name its product"),
         (f"{NAMES}\nA,,,much,l/ha,,,,,\n", "line 2: max_dose must be a number, but it is 'much'"),
+        (f"{NAMES}\nA,,,0.5 l/ha,,,,,,\n", "line 2: max_dose .* in the column unit, .*'0.5 l/ha'"),
+        (f'{NAMES}\nA,,,"1,500 ml/ha",l/ha,,,,,\n', "line 2: max_dose .* in the column unit"),
         (f'{NAMES}\nA,,,"1,500",g/ha,,,,,\n', "line 2: max_dose is 1,500: is that 1500 or 1.5"),
         (f"# ours\n{NAMES}\nA,,,,,inf,,,,\n", "line 3: waiting_days must be a number"),
         (f"{NAMES}\nA,,,1,5,l/ha,,,,,,x\n", "line 2 has 12 cells, but there are 10 columns"),

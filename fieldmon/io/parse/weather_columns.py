@@ -99,11 +99,11 @@ _EXACT = {
     ),
 }
 _LOW = (
-    *("min", "low", "tief", "laag", "bassa", "baja", "נמוכ", "מינימ", "صغر"),
+    *("min", "low", "tief", "laag", "bassa", "baja", "נמוכ", "מינ", "صغر"),
     *("ادن", "أدن", "دنيا"),
 )
 _HIGH = (
-    *("max", "high", "hoch", "hoechst", "höchst", "hoog", "alta", "מקסימ", "מירב", "גבוה"),
+    *("max", "high", "hoch", "hoechst", "höchst", "hoog", "alta", "מקס", "מירב", "גבוה"),
     *("عظم", "اعل", "أعل", "قصوى", "massim"),
 )
 _RAIN = (
@@ -121,6 +121,13 @@ _KINDS = (
 # too short, or within too many words, to be told by a stem: Hi Temp, but hauteur
 _LOW_WORDS = frozenset({"lo", "bas", "basse", "basses"})
 _HIGH_WORDS = frozenset({"hi", "haut", "haute", "hautes"})
+# means of half a day are none of the day: those of the night, and beside them those of the day
+_NIGHT = ("night", "nacht", "nuit", "noche", "nocturn", "nott", "noite", "לילה", "ليل")
+_DAY = ("daytemp", "tempday", "daytime", "tagtemp", "tagestemp", "dagtemp")
+_DAY_WORDS = frozenset(
+    {"day", "tag", "tags", "dag", "jour", "dia", "día", "diurna", "diurno", "giorno"}
+    | {"יום", "نهار", "النهار"}
+)
 _DIRECTION = ("dir", "richt", "rumbo", "כיוון", "اتجاه", "azimut")
 # what looks like one of them and is none
 _NOT = (
@@ -151,11 +158,20 @@ def weather_columns(names: list[str], units: dict[str, str]) -> tuple[WeatherCol
         What a line of units below the names says, by name; empty without one.
     """
     found: dict[str, WeatherColumn] = {}
+    halves = half_days(names)
     for name in names:
         column = weather_column(name, units.get(name, ""))
-        if column is not None:
+        if column is not None and name not in halves:
             found.setdefault(column.measure, column)
     return tuple(found.values())
+
+
+def half_days(names: list[str]) -> tuple[str, ...]:
+    """Return the columns with the temperature of the night, or of the day beside it, by name."""
+    means = [n for n in names if (one := weather_column(n)) and one.measure == "temperature_c"]
+    nights = [name for name in means if _has(plain(name), _NIGHT)]
+    days = [n for n in means if _has(plain(n), _DAY) or not _words_of(n).isdisjoint(_DAY_WORDS)]
+    return (*days, *nights) if nights else ()
 
 
 def weather_column(name: str, unit: str = "") -> WeatherColumn | None:
@@ -167,9 +183,7 @@ def weather_column(name: str, unit: str = "") -> WeatherColumn | None:
     WeatherColumn(name='Wind_Speed_km_h', measure='wind_speed_m_s', unit='km/h')
     """
     bare, stated = _split(name)
-    measure = _measure(
-        plain(bare) or plain(name), frozenset(word.casefold() for word in _words(bare))
-    )
+    measure = _measure(plain(bare) or plain(name), _words_of(bare))
     if measure is None:
         return None
     return WeatherColumn(name, measure, unit_named(unit) or stated)
@@ -198,6 +212,11 @@ def _words(name: str) -> list[str]:
     """Return the words of a name, as in ``Hi Temp``, ``hi_temp`` and ``hiTemp``."""
     spread = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     return [part for part in re.split(r"[\s_\-,.:;]+", spread) if part]
+
+
+def _words_of(name: str) -> frozenset[str]:
+    """Return the words of a name in small letters."""
+    return frozenset(word.casefold().strip("()[]'") for word in _words(name))
 
 
 def unit_named(text: str) -> str:

@@ -7,13 +7,16 @@ Decisions
 - Where the name says that it is counted up (``Daily Rain``, ``Precip. Accum.``), hours of standing
   still for each fall are enough. Elsewhere it must also have stood still for longer, and have risen
   twice in a row.
-- In tables by the day nothing is counted up that ever falls: ``Daily Rain`` is what fell on each.
+- In tables by the day ``Daily Rain`` is what fell on each. Nothing is counted up there that falls,
+  but where a month begins: rain of the month or the season. It must also rise within months, for a
+  month's mean stands on each of its days.
 - What fell is the difference, after a fall the value itself; before the first value nobody knows.
   Of rain over midnight a little is lost where the new day's count is at once above the old one's.
 """
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +27,8 @@ from fieldmon.io.parse.columns import plain
 from fieldmon.pests.weather import DAY_S, HOUR_S
 
 if TYPE_CHECKING:
+    from datetime import tzinfo
+
     from numpy.typing import NDArray
 
     from fieldmon.pests.weather import Floats, Times
@@ -42,7 +47,7 @@ _STILL_ALL_S = 3 * DAY_S
 
 
 def what_fell(
-    name: str, counted: Floats, at: Times, told: str | None
+    name: str, counted: Floats, at: Times, told: str | None, zone: tzinfo = UTC
 ) -> tuple[Floats, list[ImportMessage]]:
     """Return the rain of each measurement ``(n,)``, and what is to be said of its column.
 
@@ -56,6 +61,8 @@ def what_fell(
         ``(n,)`` when it was measured, UTC.
     told
         `EACH` or `RUNNING`; None: nobody said.
+    zone
+        Of the place, by which its months begin.
     """
     known = np.flatnonzero(~np.isnan(counted) & ~np.isnat(at))
     # a line that stands twice says the same twice
@@ -68,7 +75,8 @@ def what_fell(
         return (fell if told == RUNNING else counted), []
     by_day = _step_s(times) > DAY_S / 2
     is_named = not by_day and any(stem in plain(name) for stem in _NAMED)
-    if _counts_up(values, times, is_named=is_named, by_day=by_day):
+    begins = _month_begins(times, zone) if by_day else None
+    if _counts_up(values, times, begins, is_named=is_named):
         said = worded("{name} counts up; what fell was read as the difference.", name=name)
         remedy = Remedy("rain_is", EACH, worded("Read each value as what fell"))
         return fell, [guessed(said, None, remedy)]
@@ -86,19 +94,38 @@ def _differences(values: Floats) -> Floats:
     return np.where(steps < 0.0, values, steps)
 
 
-def _counts_up(values: Floats, times: NDArray[np.int64], *, is_named: bool, by_day: bool) -> bool:
-    """Return whether values ``(n,)`` at times ``(n,)`` in order, seconds, are counted up."""
+def _month_begins(times: NDArray[np.int64], zone: tzinfo) -> NDArray[np.bool_]:
+    """Return before which of times ``(n,)``, seconds, but the first another month begins."""
+    # a day that is stated as UTC midnight is that day all the same
+    there = zone if (times % DAY_S).any() else UTC
+    months = np.array([datetime.fromtimestamp(one, there).month for one in times.tolist()])
+    begins: NDArray[np.bool_] = months[1:] != months[:-1]
+    return begins
+
+
+def _counts_up(
+    values: Floats, times: NDArray[np.int64], begins: NDArray[np.bool_] | None, *, is_named: bool
+) -> bool:
+    """Return whether values ``(n,)`` at times ``(n,)`` in order, seconds, are counted up.
+
+    In tables by the day, `begins` says before which of them but the first another month does.
+    """
     steps, apart_s = np.diff(values), np.diff(times)
     falls, rises = (times[1:][which] for which in (steps < 0.0, steps > 0.0))
     is_still = (steps == 0.0) & (values[1:] > 0.0)
     still_s = float(apart_s[is_still].sum())
-    if not values.any() or still_s < _STILL_EACH_S * len(falls) or (by_day and len(falls)):
+    if not values.any() or still_s < _STILL_EACH_S * len(falls):
         return False
+    by_month = begins is not None and len(falls) > 0
+    if begins is not None and by_month:
+        within = steps[~begins]
+        if (within < 0.0).any() or not (within > 0.0).any():
+            return False
     if is_named:
         return True
     if np.count_nonzero(is_still) < _STILL or still_s < _STILL_S:
         return False
-    if not len(falls) and still_s > _STILL_ALL_S:
+    if (by_month or not len(falls)) and still_s > _STILL_ALL_S:
         return True
     # amounts that were shared out to the hours of a day, or of half a day, rise once in that time
     again_s = np.diff(rises)

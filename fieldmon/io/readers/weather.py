@@ -40,6 +40,7 @@ from fieldmon.io.parse.weather_columns import (
     UNITS,
     WRITTEN,
     WeatherColumn,
+    half_days,
     weather_columns,
 )
 from fieldmon.io.readers.running_rain import what_fell
@@ -52,6 +53,8 @@ from fieldmon.io.sandbox.unpack import members
 from fieldmon.pests.weather import HOUR_S, MEASURED
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from fieldmon.io.formats.layer import Layer
@@ -122,10 +125,13 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     measures = {one.measure for one in columns}
     others = weather_columns([n for n in names if n not in {one.name for one in columns}], units)
     columns += [one for one in others if one.measure not in measures]
+    _must_tell_whole_days(half_days(names), columns)
     names_read = ", ".join(one.name for one in columns) or "none"
     messages += [seen(worded("Columns of weather: {names}.", names=names_read)), *said]
     timed = times_of(layer, when, options, service)
-    taken = {*when.names, *(one.name for one in columns), *filter(_is_forecast, layer.columns)}
+    taken = {*when.names, *(one.name for one in columns)}
+    telling = _column_of_forecast(layer, taken)
+    taken |= {*filter(_is_forecast, layer.columns), *([telling] if telling else [])}
     must_be_one_station(layer, timed.at, taken)
     messages += timed.messages
     measured, step_s = {}, _step_s(timed.at)
@@ -140,7 +146,9 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
         cells[column], said = _without_marks(values, column)
         messages += said
         if column.measure == "rain_mm" and not (service.title or _is_rate(column, options)):
-            cells[column], said = what_fell(column.name, cells[column], timed.at, options.rain_is)
+            cells[column], said = what_fell(
+                column.name, cells[column], timed.at, options.rain_is, timed.zone
+            )
             messages += said
     unit_of, said = _units_of(cells, options)
     messages += said
@@ -149,7 +157,7 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     if service.tenths and "rain_mm" in measured:
         # -1 is less than could be measured
         measured["rain_mm"] = np.maximum(measured["rain_mm"], 0.0)
-    forecast, said = _forecast(layer)
+    forecast, said = _forecast(layer, telling)
     messages += said
     return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
 
@@ -189,6 +197,18 @@ def _about_one_extreme(columns: list[WeatherColumn]) -> list[ImportMessage]:
         said = worded("{name} was read as the high and {mean} as the mean, but no column as the "
                       "low.", name=high, mean=mean)  # fmt: skip
     return [doubtful(said)]
+
+
+def _must_tell_whole_days(halves: tuple[str, ...], columns: list[WeatherColumn]) -> None:
+    """Refuse a table whose only temperatures are those of the day and of the night."""
+    if halves and not any(KIND_OF[one.measure] == "temperature" for one in columns):
+        raise FileProblem(
+            worded(
+                "Temperatures must be of whole days or hours, or highs and lows, but here they are "
+                "of the day or the night alone ({names}). Name highs and lows Tmax and Tmin.",
+                names=", ".join(halves),
+            )
+        )
 
 
 def _step_s(at: NDArray[np.datetime64]) -> float:
@@ -373,9 +393,29 @@ def _is_forecast(name: str) -> bool:
     return _FORECAST.search(plain(name)) is not None
 
 
-def _forecast(layer: Layer) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
+def _column_of_forecast(layer: Layer, taken: Collection[str]) -> str | None:
+    """Return the column that says what was forecast, by its name or, as *type* does, by each cell.
+
+    `taken` hold something else.
+    """
+    named = next((name for name in layer.columns if _is_forecast(name)), None)
+    free = (name for name in layer.columns if name not in taken)
+    return named or next((name for name in free if _tells_forecast(layer.columns[name])), None)
+
+
+def _tells_forecast(cells: NDArray[np.object_]) -> bool:
+    """Return whether each cell says in words that it was forecast or measured, and some the one."""
+    is_forecast = False
+    for name in (plain(text(cell)) for cell in cells):
+        if not _MEASURED.search(name):
+            if not _FORECAST.search(name):
+                return False
+            is_forecast = True
+    return is_forecast
+
+
+def _forecast(layer: Layer, column: str | None) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
     """Return which rows a column calls forecast, and a doubt about those of which it is unclear."""
-    column = next((n for n in layer.columns if _is_forecast(n)), None)
     if column is None:
         return np.zeros(len(layer), bool), []
     cells = [text(v) for v in layer.columns[column]]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.io.parse.weather_columns import weather_column, weather_columns
+from fieldmon.io.parse.weather_columns import half_days, weather_column, weather_columns
 
 
 @pytest.mark.parametrize(
@@ -26,6 +26,9 @@ from fieldmon.io.parse.weather_columns import weather_column, weather_columns
         ("Höchsttemperatur", "high_c", ""),
         ("טמפרטורה (°C)", "temperature_c", "°c"),
         ("טמפרטורת מינימום", "low_c", ""),
+        ("טמפ מקס", "high_c", ""),
+        ("טמפ' מינ'", "low_c", ""),
+        ("Day temperature (°C)", "temperature_c", "°c"),
         ("درجة الحرارة العظمى", "high_c", ""),
         ("Wind Speed (km/h)", "wind_speed_m_s", "km/h"),
         ("wind_speed_m_s", "wind_speed_m_s", "m/s"),
@@ -67,3 +70,15 @@ def test_what_looks_like_weather_and_is_none_is_passed_over(name):
 def test_of_two_columns_for_one_measure_the_first_counts_and_a_line_of_units_goes_first():
     found = weather_columns(["Temp", "Temp 2 (C)", "Rain (mm)"], {"Temp": "°F"})
     assert [(one.name, one.unit) for one in found] == [("Temp", "°f"), ("Rain (mm)", "mm")]
+
+
+@pytest.mark.parametrize(
+    ("day", "night"),
+    [("Day temperature (°C)", "Night temperature (°C)"), ("day_temp", "night_temp"),
+     ("Temperatura día", "Temperatura noche"), ("Tagestemperatur", "Nachttemperatur"),
+     ("טמפ יום", "טמפ לילה"), ("dayTemp", "nightTemp")],
+)  # fmt: skip
+def test_means_of_the_day_and_of_the_night_are_none_of_both(day, night):
+    assert half_days([day, night, "Temperatura media", "Night min temp"]) == (day, night)
+    assert [one.name for one in weather_columns([day, night, "Temp"], {})] == ["Temp"]
+    assert half_days([day, "Daily mean temp"]) == ()

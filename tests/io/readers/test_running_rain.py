@@ -62,7 +62,8 @@ def test_a_line_that_stands_twice_loses_no_rain(read_weather):
 
 def drawn(rng, step_s):
     """Return a few days of rain that comes and goes, in a gauge that tips."""
-    n = int(rng.choice([1, 2, 5, 14])) * 86_400 // step_s
+    # by the day, over months that begin
+    n = int(rng.choice([1, 2, 5, 14])) * max(86_400 // step_s, 10 * (step_s == 86_400))
     ends = 1.0 - np.exp(-step_s / (3600 * rng.choice([0.5, 2.0, 6.0])))
     begins = 1.0 - np.exp(-step_s / 3600 * rng.choice([0.01, 0.03, 0.1]))
     wet, is_wet = np.zeros(n, bool), False
@@ -73,7 +74,7 @@ def drawn(rng, step_s):
     return 0.2 * np.rint(mm / 0.2)
 
 
-@pytest.mark.parametrize("step_s", [300, 900, 3600, 10_800, 21_600])
+@pytest.mark.parametrize("step_s", [300, 900, 3600, 10_800, 21_600, 86_400])
 def test_rain_measured_each_time_is_read_as_it_stands(step_s):
     """Also that of a few dry days, and of hardly a shower."""
     rng = np.random.default_rng(step_s)
@@ -98,6 +99,22 @@ def test_rain_by_the_day_is_what_fell_on_each_whatever_its_name(name):
     assert read(days, name, 86_400) == (pytest.approx(days), "")
     season = np.cumsum([0.0, 5, 0, 0, 0, 2, 1, 0, 0, 0])
     assert read(season, name, 86_400)[0].tolist() == [0, 5, 0, 0, 0, 2, 1, 0, 0, 0]
+
+
+def test_rain_of_the_month_by_the_day_is_counted_up_where_it_falls_on_the_first_only(read_weather):
+    fell = np.where(np.arange(61) % 4 == 1, 5.0, 0.0)
+    counted = np.concatenate([np.cumsum(fell[:31]), np.cumsum(fell[31:])])
+    days = np.datetime64("2026-03-01") + np.arange(61)
+
+    def read_days(values):
+        rows = "\n".join(f"{day},20,{mm}" for day, mm in zip(days, values, strict=True))
+        return read_weather(f"date,temp (C),Rain MTD (mm)\n{rows}")
+
+    assert read_days(counted).value.rain_mm.tolist() == fell.tolist()
+    assert "Rain MTD (mm) counts up" in " ".join(map(str, read_days(counted).messages))
+    # a fall on another day, or a month's mean on each of its days
+    for each in (np.roll(counted, 1), np.where(days < np.datetime64("2026-04-01"), 3.2, 1.1)):
+        assert read_days(each).value.rain_mm.tolist() == each.tolist()
 
 
 def test_a_name_that_says_counted_up_of_what_falls_all_day_is_said():

@@ -221,6 +221,13 @@ def test_gaps_are_stated_with_the_longest(read):
     assert "4 days without a temperature; the longest gap, 3 days" in said(imported)
 
 
+def test_temperatures_of_the_day_and_the_night_alone_are_refused(read):
+    half = "date,Day temperature (C),Night temperature (C){}\n2026-11-18,20,10{}"
+    with pytest.raises(FileProblem, match=r"the night alone \(Day temperature .*Night"):
+        read(half.format("", ""))
+    assert read(half.format(",Temp (C)", ",14")).value.temperature_c.tolist() == [14]
+
+
 def test_what_lies_ahead_is_forecast(read):
     now = datetime(2026, 11, 18, 12, tzinfo=UTC)
     options = WeatherOptions(zone="UTC", now=now)
@@ -240,6 +247,23 @@ def test_what_a_column_calls_forecast_is_read_in_its_language(read, column, meas
     imported = read(f"date,temp (C),{column}\n2026-11-18,20,{measured}\n2026-11-19,21,{forecast}")
     assert imported.value.forecast.tolist() == [False, True]
     assert "doubtful" not in said(imported)
+
+
+@pytest.mark.parametrize(
+    ("column", "measured", "forecast"),
+    [("type", "observed", "forecast"), ("Tipo de dato", "observado", "pronóstico"),
+     ("סוג", "נמדד", "תחזית")],
+)  # fmt: skip
+def test_a_column_of_any_name_whose_each_cell_says_forecast_or_measured_is_read(
+    read, column, measured, forecast
+):
+    table = f"date,temp (C),{column}\n2026-11-18,20,{measured}\n2026-11-19,21,{{}}\n"
+    assert read(table.format(forecast)).value.forecast.tolist() == [False, True]
+    for other in ("", "rain", measured):
+        assert not read(table.format(other)).value.forecast.any()
+    # of one time, both
+    both = read(f"{table.format(forecast)}2026-11-19,22,{measured}").value
+    assert (both.temperature_c.tolist(), both.forecast.tolist()) == ([20, 22], [False, False])
 
 
 def test_words_that_say_neither_forecast_nor_measured_are_doubted(read):

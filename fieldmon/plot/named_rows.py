@@ -56,6 +56,15 @@ def _ends(called: CalledRows, part: str, rows: str) -> list[int]:
     raise SettingError(worded("Rows must be such as 3-5,8, but they are {rows}.", rows=rows))
 
 
+def row_meant(grid: PlantGrid, said: int) -> int:
+    """Return the number of the row that somebody typed as a number; itself where there is none.
+
+    Raise `SettingError` where it may be the name of another row.
+    """
+    meant = CalledRows(grid).number(f"{said}")
+    return said if meant is None else meant
+
+
 class CalledRows:
     """The rows of a plot by what a person calls them."""
 

@@ -161,7 +161,7 @@ def by_name(
             if which is not None:
                 line[i], number[i] = one, which
         if which is None and open_yet[i] and not (row.isdecimal() and said.isdecimal()):
-            problems[i] = worded("row {row} has no plant {plant} here", row=row, plant=said)
+            problems[i] = _unknown(called, row, said)
     messages: tuple[ImportMessage, ...] = ()
     if alone.any():
         said_alone = worded(
@@ -171,6 +171,15 @@ def by_name(
         )
         messages = (guessed(said_alone),)
     return replace(rows, plant=plant, line=line, number=number), problems, messages
+
+
+def _unknown(called: CalledRows, row: str, plant: str) -> str:
+    """Return why there is no such plant: its row is none of the plot, or has no plant so called."""
+    if called.meant(row):
+        return worded("row {row} has no plant {plant} here", row=row, plant=plant)
+    return worded(
+        "no row is called {row} here. Rows of this plot are {some}", row=row, some=called.listed()
+    )
 
 
 def by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> PlantsFound:

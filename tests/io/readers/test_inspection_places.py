@@ -179,7 +179,10 @@ def test_rows_and_plants_may_be_named_as_their_file_has_them():
         assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 49, 59]], abs=1e-9)
     wrong = read("row,plant,found\nF,Av01,x\nG,1,x\nF,Fv11,x\n", grid=grid)
     assert not len(wrong.value)
-    assert "row F has no plant Av01 here" in wrong.of(Severity.DROPPED)[0].sentence
+    no_plant, no_row, _ = (one.sentence for one in wrong.of(Severity.DROPPED))
+    assert "row F has no plant Av01 here" in no_plant
+    assert "no row is called G here" in no_row
+    assert "Rows of this plot are 1–6 (in the file of plants: F, E, D, C, B, ...)" in no_row
 
 
 def test_a_plant_alone_is_the_one_that_its_file_names_so_and_that_is_said():

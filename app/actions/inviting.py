@@ -9,6 +9,7 @@ import streamlit as st
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.scouts_out import scouts_out
 from fieldmon.planning.members import person
+from fieldmon.plot.named_rows import row_meant
 
 from ..show import qr_code, who_is_out
 from ..state import morning, notices, phone, scout_page
@@ -106,8 +107,11 @@ def _invite(choices: Choices) -> str:
     name, first, last = state["invite_name"], state["invite_first"], state["invite_last"]
     name = (name or "").strip()
     whole = first is None and last is None
-    low, high = _ends(choices.season)
-    rows = low if first is None else int(first), high if last is None else int(last)
+    (low, high), grid = _ends(choices.season), choices.plot.grid
+    rows = (
+        low if first is None else row_meant(grid, int(first)),
+        high if last is None else row_meant(grid, int(last)),
+    )
     before = {person(one.name) for one in scouts.scouts_of(choices.season)}
     state[_SHOWN] = name, let_in(choices, name, None if whole else rows)
     morning.note(choices, morning.SEND)

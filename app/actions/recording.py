@@ -18,6 +18,7 @@ from fieldmon.io.options import Upload
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.named_rows import row_meant
 
 from ..show import plant_history, recorded_batches
 from ..state import chosen_day, fresh_boxes, notices, unconfirmed
@@ -40,6 +41,8 @@ _LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
 _ONE, _ROUTE, _FILE = "one_plant", "route", "file"
+# row and number of the plant that was tapped: no name of another row is meant by them
+_TAPPED = "one_tapped"
 
 
 def show(choices: Choices) -> None:
@@ -71,6 +74,7 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
         boxes.empty()  # a result that was said of another plant is none of this one
         boxes.put("one_row", int(label.line[0]))
         boxes.put("one_plant", int(label.number[0]))
+        boxes.put(_TAPPED, (int(label.line[0]), int(label.number[0])))
         plant_history.take_plant(choices, layer, index)
 
 
@@ -94,11 +98,13 @@ def _show_one(choices: Choices) -> None:
 
 @notices.reporting
 def _record_one(choices: Choices) -> str:
-    said = FreshBoxes(_ONE, choices).said
+    said, grid = FreshBoxes(_ONE, choices).said, choices.plot.grid
     row, number, result, count = map(said, ("one_row", "one_plant", "one_result", "one_count"))
     if None in (row, number, result):
         raise SettingError(texts.ONE_UNSAID)
-    plant = plant_at(choices.plot.grid, int(row), int(number))
+    if said(_TAPPED) != (row, number):
+        row = row_meant(grid, int(row))
+    plant = plant_at(grid, int(row), int(number))
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted

@@ -144,12 +144,14 @@ def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
 
 
 def _one_row(place: object, plant: object, result: int, count: object) -> dict[str, np.ndarray]:
+    from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID  # noqa: PLC0415 - late
+
     point = geometry(place) if isinstance(place, bytes) else None
     lonlat = (point.x, point.y) if point is not None and not point.is_empty else (np.nan, np.nan)
     return {
         "plant": np.array([-1 if plant is None else int(str(plant))]),
-        "line": np.zeros(1, np.int64),
-        "number": np.zeros(1, np.int64),
+        "line": np.array([UNSAID]),
+        "number": np.array([UNSAID]),
         "face": np.zeros(1, np.int8),
         "lonlat": np.array([lonlat], float),
         "accuracy_m": np.array([np.nan]),

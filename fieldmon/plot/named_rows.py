@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import runs, worded
+from fieldmon.compute.wording import first_few, runs, worded
 from fieldmon.errors import SettingError
 from fieldmon.plot.grid import block_label, row_label
 
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
+
+
+_NAMED = 5  # names of rows that a sentence has room for
 
 
 def plants_in_rows(grid: PlantGrid, rows: str) -> NDArray[np.bool_]:
@@ -53,7 +56,22 @@ def _ends(called: CalledRows, part: str, rows: str) -> list[int]:
                     row=next(int(one) for one in named if called.number(one) is None),
                 )
             )
-    raise SettingError(worded("Rows must be such as 3-5,8, but they are {rows}.", rows=rows))
+    raise SettingError(
+        worded(
+            "Rows must be such as 3-5,8, but they are {rows}. Rows of this plot are {some}.",
+            rows=rows,
+            some=called.listed(),
+        )
+    )
+
+
+def row_meant(grid: PlantGrid, said: int) -> int:
+    """Return the number of the row that somebody typed as a number; itself where there is none.
+
+    Raise `SettingError` where it may be the name of another row.
+    """
+    meant = CalledRows(grid).number(f"{said}")
+    return said if meant is None else meant
 
 
 class CalledRows:
@@ -61,7 +79,7 @@ class CalledRows:
 
     def __init__(self, grid: PlantGrid) -> None:
         self.numbers = grid.line_number.tolist()
-        self._known = set(self.numbers)
+        self._known, self._names = set(self.numbers), list[str]()
         self._counts_on = grid.n_blocks > 1 and grid.counts_on
         self._named: dict[str, list[tuple[int, int]]] = defaultdict(list)
         if grid.line_named is not None:
@@ -71,6 +89,18 @@ class CalledRows:
             for names, number, of in zip(*columns, strict=True):
                 for name in names.splitlines():
                     self._named[key(name)].append((number, of))
+                    self._names.append(name)
+
+    def listed(self) -> str:
+        """Return the numbers of all rows, and some of the names that are others than these."""
+        numbers, names = runs(self.numbers), dict.fromkeys(self._names)
+        if all(name.isdecimal() and int(name) in self._known for name in names):
+            return numbers
+        return worded(
+            "{numbers} (in the file of plants: {names})",
+            numbers=numbers,
+            names=first_few(list(names), _NAMED),
+        )
 
     def meant(self, said: str, block: int | None = None) -> set[int]:
         """Return the numbers of the rows that may be meant, perhaps those of a block.

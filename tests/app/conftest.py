@@ -9,11 +9,12 @@ import tempfile
 import time
 import tomllib
 import urllib.request
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 from functools import cache
 from itertools import count
 from pathlib import Path
 
+import numpy as np
 import pytest
 import streamlit as st
 from streamlit import config
@@ -22,8 +23,13 @@ from streamlit.runtime.scriptrunner.script_cache import ScriptCache
 from streamlit.testing.v1 import local_script_runner
 
 from app.words import language
-from fieldmon.monitoring import Season
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.plot import local_clock
+from fieldmon.plot.plant_names import PlantNames
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
+from fieldmon.plot.robot import Robot
 from tests.app.driving import begun, opened
 from tests.app.map_in_browser import dressed, picture
 from tests.paths import ROOT, SHARED
@@ -110,6 +116,17 @@ def season_app(begun_file, seasons_folder):
 def season(seasons_folder):
     """Return what opens that season, as another program would."""
     return lambda: Season(seasons_folder / "Gate 2026.gpkg")
+
+
+@pytest.fixture
+def season_named(seasons_folder):
+    """Return a season of rows 1 to 4 that their file calls 5a, 4, 2, 3."""
+    row, plant = np.divmod(np.arange(80), 20)
+    lonlat = Frame(35.0, 30.0, 90.0).lonlat(np.stack([2.0 * plant, 3.0 * row], axis=1))
+    names = PlantNames(np.array(["5a", "4", "2", "3"])[row], None, (plant + 1).astype(np.str_))
+    plot = Plot.around("own", lonlat, names=names)
+    settings = MonitoringSettings(date(2026, 11, 16), robot=Robot(hours=1.0))
+    return Season.create(seasons_folder / "Own 2026.gpkg", plot, Observations.none(), settings)
 
 
 @pytest.fixture

@@ -1,5 +1,6 @@
 """Rows that a person names hold the plants that people count in them."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -64,5 +65,15 @@ def test_a_name_that_is_another_rows_number_is_refused():
     assert plants_in_rows(grid, "0").tolist() == plants_in_rows(rectangle(5, 4), "1").tolist()
     with pytest.raises(SettingError, match="but 3 may be any of rows 3–4 here"):
         plants_in_rows(grid, "3")
-    with pytest.raises(SettingError, match="such as 3-5,8, but they are Malbec"):
-        plants_in_rows(replace(grid, line_named=ROWS), "Malbec")
+
+
+def test_whoever_names_no_row_hears_what_rows_are_called():
+    named = replace(rectangle(5, 4), line_named=ROWS)
+    for says in (
+        "such as 3-5,8, but they are Malbec. Rows of this plot are 1–5 (in the file",
+        "(in the file of plants: Pinot-1, Pinot-2, Merlot, B, ROW05).",
+    ):
+        with pytest.raises(SettingError, match=re.escape(says)):
+            plants_in_rows(named, "Malbec")
+    with pytest.raises(SettingError, match=r"Rows of this plot are 1–5\."):
+        plants_in_rows(rectangle(5, 4), "Malbec")

@@ -24,6 +24,7 @@ from scipy.spatial import cKDTree
 from fieldmon.compute.wording import runs, worded
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
+from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 from fieldmon.plot.grid import block_label, row_in_block, row_label
 from fieldmon.plot.named_rows import CalledPlants, CalledRows, called_blocks, key
 
@@ -68,7 +69,7 @@ def by_number(rows: InspectionRows, grid: PlantGrid) -> PlantsFound:
     here = np.flatnonzero(plant >= 0)
     label = row_label(grid, plant[here])
     line, number = rows.line[here], rows.number[here]
-    other = (line > 0) & ((label.line != line) | (label.number != number))
+    other = (line != UNSAID) & ((label.line != line) | (label.number != number))
     for k in np.flatnonzero(other).tolist():
         doubts[int(here[k])] = worded(
             "plant {plant} is {label} on this plot, but the record says row {row}, number {number}",
@@ -133,7 +134,7 @@ def by_name(
     plant, line, number = rows.plant.copy(), rows.line.copy(), rows.number.copy()
     problems: dict[int, str] = {}
     open_yet = ~np.isfinite(rows.lonlat.sum(axis=1))
-    alone = (line == 0) & open_yet
+    alone = (line == UNSAID) & open_yet
     alone &= (rows.row_called == "") & (rows.plant_called != "")
     for i in np.flatnonzero(alone).tolist():
         found = plants.plant(str(rows.plant_called[i]))
@@ -160,7 +161,7 @@ def by_name(
             if which is not None:
                 line[i], number[i] = one, which
         if which is None and open_yet[i] and not (row.isdecimal() and said.isdecimal()):
-            problems[i] = worded("row {row} has no plant {plant} here", row=row, plant=said)
+            problems[i] = _unknown(called, row, said)
     messages: tuple[ImportMessage, ...] = ()
     if alone.any():
         said_alone = worded(
@@ -172,11 +173,19 @@ def by_name(
     return replace(rows, plant=plant, line=line, number=number), problems, messages
 
 
+def _unknown(called: CalledRows, row: str, plant: str) -> str:
+    """Return why there is no such plant: its row is none of the plot, or has no plant so called."""
+    if called.meant(row):
+        return worded("row {row} has no plant {plant} here", row=row, plant=plant)
+    return worded(
+        "no row is called {row} here. Rows of this plot are {some}", row=row, some=called.listed()
+    )
+
+
 def by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -> PlantsFound:
     """Place records that name a row and a number in it."""
     plant = np.full(len(rows), -1, np.int64)
-    # both are 0 where none is named; a plot may have a row or a plant 0
-    is_named = (rows.line >= 0) & (rows.number >= 0) & (rows.line + rows.number > 0)
+    is_named = (rows.line != UNSAID) & ~below_first(rows, grid)
     records = np.flatnonzero(wanted & is_named)
     if not len(records):
         return PlantsFound(plant, {}, {})
@@ -196,12 +205,21 @@ def by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -
     return PlantsFound(plant, problems, {}, said)
 
 
-def from_zero(rows: InspectionRows, plant: NDArray[np.int64]) -> dict[int, str]:
+def below_first(rows: InspectionRows, grid: PlantGrid) -> NDArray[np.bool_]:
+    """Return which records name a row or a plant below 1, where the plot has none so low."""
+    label = row_label(grid)
+    row = min(1, int(label.line.min()), int(row_in_block(grid).min()))
+    plant = min(1, int(label.number.min()))
+    below: NDArray[np.bool_] = (rows.line != UNSAID) & ((rows.line < row) | (rows.number < plant))
+    return below
+
+
+def from_zero(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) -> dict[int, str]:
     """Return a doubt for each plant ``(m,)`` named by its row where others of the file say row 0.
 
     Who counts from 0 means the next plant or row each time, and only the first of them shows it.
     """
-    if not (rows.line < 0).any():
+    if not below_first(rows, grid).any():
         return {}
     why: str = worded(
         "others in the file say row 0 or plant 0: rows and plants are counted from 1 here. Add 1 "

@@ -37,8 +37,10 @@ from fieldmon.io.import_report import (
     seen,
 )
 from fieldmon.io.read import read_inspection_rows
+from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspection_places import (
+    below_first,
     by_label,
     by_name,
     by_number,
@@ -119,10 +121,11 @@ def look_up(
     snapped = by_position(rows, grid, np.flatnonzero(open_yet), options)
     plant = np.where(snapped.plant >= 0, snapped.plant, plant)
     problems |= snapped.problems
-    doubts = doubts | from_zero(rows, labelled.plant) | snapped.doubts | _own_doubts(rows)
+    doubts = doubts | from_zero(rows, grid, labelled.plant) | snapped.doubts | _own_doubts(rows)
     problems |= _unknown_faces(rows, grid, plant)
+    below = below_first(rows, grid)
     for i in np.flatnonzero(plant < 0).tolist():
-        problems.setdefault(i, _nowhere(str(rows.unread[i]), below_one=rows.line[i] < 0))
+        problems.setdefault(i, _nowhere(str(rows.unread[i]), below_one=bool(below[i])))
     taken = plant >= 0
     if not options.take_doubtful:
         taken[list(doubts)] = False
@@ -280,7 +283,7 @@ def _about_numbers(
     rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64], taken: NDArray[np.bool_]
 ) -> list[ImportMessage]:
     """Return what to say of plants named by a number that nothing else in the file bears out."""
-    alone = taken & (plant >= 0) & (rows.line == 0) & ~np.isfinite(rows.lonlat).all(axis=1)
+    alone = taken & (plant >= 0) & (rows.line == UNSAID) & ~np.isfinite(rows.lonlat).all(axis=1)
     if not alone.any():
         return []
     said = worded(

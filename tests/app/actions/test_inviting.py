@@ -13,7 +13,7 @@ from fieldmon.errors import AccessError
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.planning.members import team_of
-from tests.app.driving import go, press, tap
+from tests.app.driving import go, opened, press, tap
 
 
 @pytest.fixture
@@ -135,3 +135,14 @@ def test_who_is_out_stands_in_the_scout_room_with_what_each_did(scout, season):
     said = next(one.value for one in scout.run().caption if "code made" in one.value)
     assert texts.OUT_SILENT not in said
     assert any("Has the plan of" in one.value for one in scout.markdown)
+
+
+def test_rows_of_a_code_that_may_be_others_by_their_names_are_refused(season_named):
+    app = go(opened(season_named.path.stem), "scout")
+    for rows in ({"first": 2}, {"first": 1, "last": 2}):
+        ask_for(app, "Ann", **rows)
+        assert "2 may be any of rows 2–3 here" in app.error[0].value
+    assert not scouts.scouts_of(season_named)
+    ask_for(app, "Ann", first=1, last=1)
+    (one,) = scouts.scouts_of(season_named)
+    assert one.rows == (1, 1)

@@ -16,7 +16,7 @@ from app.words import texts
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
 from tests.app.chosen import in_season
-from tests.app.driving import begun, boxed, go, metric, press, texts_of
+from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
 from tests.monitoring.test_outside_changes import outside
 
@@ -39,6 +39,22 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
     press(season_app, "Undo")
     assert metric(go(season_app, "season"), "Found") == "0"
     assert not len(season().history.inspections)
+
+
+def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_tapped(season_named):
+    app = opened(season_named.path.stem)
+    go(app, "record")
+    for name, value in {"one_row": 2, "one_plant": 5, "one_result": FOUND}.items():
+        app.session_state[key_of(app, name)] = value
+    app.run()
+    send(app, "one_plant")
+    assert "2 may be any of rows 2–3 here" in app.error[0].value
+    assert not len(season_named.history.inspections)
+    app.session_state[key_of(app, "one_row").replace("one_row", "one_tapped")] = (2, 5)
+    send(app, "one_plant")
+    assert "1 recorded" in app.success[0].value
+    (plant,) = season_named.history.inspections.plant
+    assert season_named.label.line[plant] == 2
 
 
 def expected(app):
@@ -302,6 +318,7 @@ def test_a_plant_tapped_has_no_result_yet(tmp_path):
     boxes.put("one_result", FOUND)
     recording.take_plant(choices, "plants-state", 0)
     assert (boxes.said("one_row"), boxes.said("one_plant")) == (1, 1)
+    assert boxes.said("one_tapped") == (1, 1)
     assert boxes.said("one_result") is None
 
 

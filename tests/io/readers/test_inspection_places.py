@@ -179,7 +179,10 @@ def test_rows_and_plants_may_be_named_as_their_file_has_them():
         assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 49, 59]], abs=1e-9)
     wrong = read("row,plant,found\nF,Av01,x\nG,1,x\nF,Fv11,x\n", grid=grid)
     assert not len(wrong.value)
-    assert "row F has no plant Av01 here" in wrong.of(Severity.DROPPED)[0].sentence
+    no_plant, no_row, _ = (one.sentence for one in wrong.of(Severity.DROPPED))
+    assert "row F has no plant Av01 here" in no_plant
+    assert "no row is called G here" in no_row
+    assert "Rows of this plot are 1–6 (in the file of plants: F, E, D, C, B, ...)" in no_row
 
 
 def test_a_plant_alone_is_the_one_that_its_file_names_so_and_that_is_said():
@@ -202,9 +205,20 @@ def test_a_name_of_one_row_that_is_the_number_of_another_is_refused():
 
 def test_rows_and_plants_may_count_from_zero_where_their_file_does():
     grid, lonlat = own_names(lambda k, _: f"{5 - k}", lambda _, j: f"{j}")
-    imported = read("row,plant,found\n5,3,x\n0,3,x\n3,0,x\n", grid=grid)
-    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[3, 53, 20]], abs=1e-9)
+    imported = read("row,plant,found\n5,3,x\n0,3,x\n3,0,x\n0,0,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[3, 53, 20, 50]], abs=1e-9)
     assert imported.of(Severity.DOUBTFUL) == ()
+
+
+def test_row_0_is_held_against_the_plant_that_is_named_beside_it():
+    grid, _ = own_names(lambda k, _: f"{5 - k}", lambda _, j: f"{j}")
+    first = plant_at(grid, 0, 0)
+    given_out = read(f"plant,row,number,found\n{first},0,0,x\n", grid=grid)
+    assert given_out.value.plant.tolist() == [first]
+    for of in (grid, GRID):
+        other = read("plant,row,number,found\n25,0,3,x\n", grid=of)
+        assert not len(other.value)
+        assert "but the record says row 0, number 3" in other.of(Severity.DOUBTFUL)[0].sentence
 
 
 def test_rows_of_blocks_may_be_named_as_their_file_has_them():

@@ -10,6 +10,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+#: the row, and the number in it, of a plant that is not named by them: 0 is one where plots say so
+UNSAID = -(2**31)
+
+
 @dataclass(frozen=True, eq=False)
 class InspectionRows:
     """Inspections as a file tells them, one entry a record that says anything, ``(m,)`` each.
@@ -19,8 +23,8 @@ class InspectionRows:
     plant
         Number of the plant in the grid, as files given out have it; -1 where it is not named.
     line, number, face
-        Row and number in it as people count, and which face; 0 where not named. Row and number are
-        -1 where one of them is said to be less than 1.
+        Row and number in it as people count, both `UNSAID` where one is not named; and which face,
+        0 where not named.
     lonlat
         ``(m, 2)`` degrees; NaN without a position.
     accuracy_m

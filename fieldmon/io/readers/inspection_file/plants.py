@@ -15,6 +15,7 @@ from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.named_positions import could_be_positions
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.values import is_missing, numbers
+from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,24 +29,20 @@ _LABEL = re.compile(r"^[^\d\s]{0,8}\s*(\d{1,6})\s*[/\-.,:;\s]\s*[^\d\s]{0,8}\s*(
 PLANT_IN_NAME = re.compile(r"(?:^|\s)(?:\d+\s+)?R(\d{1,6})/(\d{1,6})([ab]?)(?=\s|$)")
 _FACES = {"1": 1, "a": 1, "2": 2, "b": 2}
 _ROW = "\0row"
-_UNSAID = -(2**31)
 
 
 def named_plants(
     layer: Layer, columns: InspectionColumns
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
-    """Return the plant's number in the grid, or row, number and face, by which a file names it.
-
-    People count rows and numbers from 1: both are -1 where one of them is said to be less.
-    """
+    """Return the plant's number in the grid, or row, number and face, by which a file names it."""
     n = len(layer)
     plant = np.full(n, -1, np.int64)
-    line, number, face = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int8)
-    unsaid = np.ones(n, bool)
+    line, number = np.full((2, n), UNSAID)
+    face = np.zeros(n, np.int8)
     if columns.line is not None and columns.number is not None:
-        line, number = (_whole(layer, name, _UNSAID) for name in (columns.line, columns.number))
-        unsaid = (line == _UNSAID) | (number == _UNSAID)
-        line[unsaid] = number[unsaid] = 0
+        line, number = (_whole(layer, name, UNSAID) for name in (columns.line, columns.number))
+        unsaid = (line == UNSAID) | (number == UNSAID)
+        line[unsaid] = number[unsaid] = UNSAID
     if columns.face is not None:
         words = [text(v).casefold() for v in layer.column(columns.face)]
         face[:] = [_FACES.get(word, 0) for word in words]
@@ -59,9 +56,6 @@ def named_plants(
             if found and plant[i] < 0:
                 line[i], number[i] = int(found.group(1)), int(found.group(2))
                 face[i] = _FACES.get(found.group(3).casefold(), 0)
-                unsaid[i] = False
-    below = ~unsaid & (np.minimum(line, number) < 1)
-    line[below] = number[below] = -1
     return plant, line, number, face
 
 

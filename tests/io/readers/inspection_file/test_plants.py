@@ -5,6 +5,7 @@ import pytest
 
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.readers.inspection_file.columns import columns_of
+from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from tests.io.tables_of_cells import table
@@ -39,26 +40,26 @@ def test_a_label_that_holds_row_and_number_is_taken_apart(label, place):
 @pytest.mark.parametrize("label", ["7", 7, 7.0])
 def test_a_whole_number_is_the_plants_own(label):
     plant, line, *_ = named(plant=[label], found=["x"])
-    assert (plant, line) == ([7], [0])
+    assert (plant, line) == ([7], [UNSAID])
 
 
 @pytest.mark.parametrize("label", ["", None, "tree", 2.0**40])
 def test_what_is_neither_names_no_plant(label):
     plant, line, *_ = named(plant=[label], found=["x"])
-    assert (plant, line) == ([-1], [0])
+    assert (plant, line) == ([-1], [UNSAID])
 
 
 def test_a_row_counts_only_with_a_number_in_it():
     _, line, number, face = named(
         row=[2, 2, 0, None], number=[3, None, 3, 3], found=["x"] * 4, side=["b", 1, "A", "?"]
     )
-    assert (line, number) == ([2, 0, -1, 0], [3, 0, -1, 0])  # people count from 1
+    assert (line, number) == ([2, UNSAID, 0, UNSAID], [3, UNSAID, 3, UNSAID])
     assert face == [2, 1, 1, 0]
 
 
 def test_the_name_of_a_waypoint_given_out_holds_its_plant():
     _, line, number, face = named(name=["012 R3/17b found", "001", "R1/2"])
-    assert (line, number, face) == ([3, 0, 1], [17, 0, 2], [2, 0, 0])
+    assert (line, number, face) == ([3, UNSAID, 1], [17, UNSAID, 2], [2, 0, 0])
 
 
 def test_a_file_that_names_plants_needs_no_positions():

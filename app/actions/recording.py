@@ -12,7 +12,7 @@ import streamlit as st
 
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ContradictionError, SettingError
-from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
@@ -88,7 +88,7 @@ def _show_one(choices: Choices) -> None:
         left.number_input(texts.HISTORY_ROW, 0, None, None, key=key("one_row"))
         right.number_input(texts.HISTORY_PLANT, 0, None, None, key=key("one_plant"))
         st.segmented_control(
-            texts.RESULT, list(texts.RESULTS_OF), default=None, key=key("one_result"),
+            texts.RESULT, [FOUND, CLEAN, SKIPPED], default=None, key=key("one_result"),
             format_func=texts.RESULTS_OF.__getitem__,
         )  # fmt: skip
         st.number_input(texts.COUNT, 0, None, None, key=key("one_count"))

@@ -180,7 +180,7 @@ def _shorter_than_the_label(
     days, asked = one.application.waiting_days, label.waiting_days if label else None
     if days is not None and asked is not None and days < asked:
         said = worded(
-            "The waiting period of {product} on {day} was entered as {days}, but its label says "
+            "The waiting period of {product} on {day} is recorded as {days}, but its label says "
             "{asked}: the label's counts.",
             days=counted(days, "day"), asked=counted(asked, "day"), **named,
         )  # fmt: skip
@@ -188,7 +188,7 @@ def _shorter_than_the_label(
     hours, least = one.application.reentry_hours, label.reentry_hours if label else None
     if hours is not None and least is not None and hours < least:
         said = worded(
-            "Re-entry after {product} on {day} was entered as {hours} h, but its label says "
+            "Re-entry after {product} on {day} is recorded as {hours} h, but its label says "
             "{least} h: the label's counts.",
             hours=figure(hours, "g"), least=figure(least, "g"), **named,
         )  # fmt: skip

@@ -310,9 +310,11 @@ def _drawn(
     for first in range(0, _DRAWS, at_once):
         fields = np.empty((min(at_once, _DRAWS - first), n), bool)
         draw_fields(believed, grid.adjacent, key + np.uint64(first), fields)
-        fields[:, known] = False
+        if asked.found is not None:
+            fields[:, known] = False
         sums[first : first + len(fields)] = fields @ weights
-        numbers[first : first + len(fields)] = np.count_nonzero(fields, axis=1)
+        if asked.since is not None:
+            numbers[first : first + len(fields)] = np.count_nonzero(fields, axis=1)
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     unknown = np.where(known, 0.0, chance)
     right = unknown @ weights

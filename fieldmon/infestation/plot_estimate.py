@@ -106,10 +106,8 @@ def estimate_plot(
         Whether somebody named the pest (`Belief.pest`), see `doubted_level`.
     """
     must_be_sure(sure)
-    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
     every = np.ones(len(chance), np.bool_)
-    drawn = drawn_numbers(grid, (chance, pairs), every)
-    numbers, clean = _doubted_numbers(drawn, doubt, len(chance), named=named)
+    numbers, clean = _of_map(grid, (chance, pair_chance), every, doubt, named=named)
     return _estimate(float(chance.sum()), numbers, (clean, sure), exact=doubt <= 0.0)
 
 
@@ -148,15 +146,13 @@ def estimate_of(
     must_be_sure(sure)
     chance, doubt, named = belief.chance, level_doubt(belief), belief.pest is not None
     asked = np.ones(len(chance), np.bool_) if found is None else ~found
-    expected, n = float(chance[asked].sum()), int(np.count_nonzero(asked))
+    expected = float(chance[asked].sum())
     if (since := belief.since_inspected) is not None:
         factors = doubted_level(doubt, named=named)
-        numbers = since.numbers(factors, expected, n)
+        numbers = since.numbers(factors, expected, int(np.count_nonzero(asked)))
         clean = since.chance_of_none(factors, expected)
     else:
-        pairs = pair_chances(chance, grid) if belief.pair_chance is None else belief.pair_chance
-        drawn = drawn_numbers(grid, (chance, pairs), asked)
-        numbers, clean = _doubted_numbers(drawn, doubt, n, named=named)
+        numbers, clean = _of_map(grid, (chance, belief.pair_chance), asked, doubt, named=named)
     return _estimate(expected, numbers, (clean, sure), exact=doubt <= 0.0)
 
 
@@ -169,15 +165,22 @@ def level_doubt(belief: Belief) -> float:
     return belief.doubt if since is None else since.counted.doubt
 
 
-def _doubted_numbers(
-    drawn: tuple[Floats, float], doubt: float, n: int, *, named: bool
+def _of_map(
+    grid: PlantGrid,
+    believed: tuple[Floats, Floats | None],
+    asked: NDArray[np.bool_],
+    doubt: float,
+    *,
+    named: bool,
 ) -> tuple[Floats, float]:
-    """Return how many of n plants there may be, ``(400,)``, and the chance that there is none."""
-    numbers, none = drawn
+    """Return how many of the plants asked about there may be by a map, and the chance of none."""
+    chance, pair_chance = believed
+    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
+    numbers, none = drawn_numbers(grid, (chance, pairs), asked)
     if doubt <= 0.0:
         return numbers, float(np.exp(none))
-    factors = doubted_level(doubt, named=named)
-    return of_odds(numbers, factors, max(n, 1)), float(np.exp(none * factors).mean())
+    factors, n = doubted_level(doubt, named=named), max(int(np.count_nonzero(asked)), 1)
+    return of_odds(numbers, factors, n), float(np.exp(none * factors).mean())
 
 
 def _estimate(

@@ -391,9 +391,9 @@ class TracedPairs:
         """Return what is believed the next morning."""
         morning = self._overnight(spread, tells_apart=True)
         morning = self._with_ancestry(morning, self._sends(spread), spread)
-        return self._unwatched(morning, spread)
+        return self._in_doubt(morning, spread)
 
-    def _unwatched(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
+    def _in_doubt(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
         """Return the next morning with what is in doubt of it if nobody inspected today."""
         # of those that were not found yet
         unknown = self.chance <= KNOWN
@@ -435,7 +435,7 @@ class TracedPairs:
 
         No find can be traced by it, but it is worked out in half the time.
         """
-        return self._unwatched(self._overnight(spread, tells_apart=False), spread)
+        return self._in_doubt(self._overnight(spread, tells_apart=False), spread)
 
     @property
     def _degree(self) -> float:

@@ -445,7 +445,8 @@ def inspections_to_verdict(
 
     def verdict(looks: int, *, all_found: bool) -> Verdict:
         after = evening.learn(order[:looks], np.full(looks, all_found), learning)
-        now = known | (np.isin(np.arange(n), order[:looks]) if all_found else False)
+        now = known.copy()
+        now[order[:looks]] |= all_found
         question = AskedVerdict.on(after, asked.level, asked.sure, now)
         return map_verdict(scene.grid, after.chance, question, after.pair_chance).verdict
 

@@ -303,9 +303,9 @@ class History:
             measured = sum(pest.measured(number) for number in ahead)
         evening, spreads = self.evening(morning, day), [self.night(number) for number in ahead]
         # what is flagged and not treated is still out there
-        found = self.found_and_left(evening, day)
-        now = self.estimate(morning, day)
-        if found is not None:
+        if (found := self.found_and_left(evening, day)) is None:
+            now = self.estimate(morning, day)
+        else:
             now = estimate_of(self.grid, self.in_hindsight(morning, day), found=found)
         made = forecast(evening, self.grid, spreads, known, now, found)
         return replace(made, measured=measured)

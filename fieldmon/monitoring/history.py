@@ -483,7 +483,7 @@ class History:
         """
         aisles, robot = shift.aisles, shift.robot
         later = self._past_midnight(shift, day, who)
-        today = self.worked(shift, day, who)
+        today = self._with_later(day, later)
         # what the day's finds say of other plants counts for the rest of it, too
         believed = in_sight(
             in_hindsight(self._evening(morning, day, later), self.night(day))
@@ -531,7 +531,10 @@ class History:
 
         Inspections after midnight are dated the next day; here their seconds go on from 86 400.
         """
-        later = self.inspections.take(self._past_midnight(shift, day, who))
+        return self._with_later(day, self._past_midnight(shift, day, who))
+
+    def _with_later(self, day: int, rows: NDArray[np.signedinteger]) -> Inspections:
+        later = self.inspections.take(rows)
         return self.on(day).and_those(replace(later, second=later.second + DAY_S))
 
     def _past_midnight(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import zipfile
 from functools import partial
@@ -10,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.geojson import route_geojson
+from fieldmon.monitoring.estate_routes import TABLE, plan_table, stems
 
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots
@@ -79,13 +78,13 @@ def _crew() -> EstateCrew:
 
 
 def _say(made: SharedPlots, crew: EstateCrew) -> None:
-    routes = [one.plan.route for one in made.turns]
+    routes = [one.route for one in made.turns]
     plants = sum(len(route) for route in routes)
     finds = sum(route.expected_found for route in routes)
     with st.container(key="lead"):
         said = texts.PLAN_ALL_LEAD.format(
             plants=number(plants, ","),
-            n=len({one.plot.name for one in made.turns}),
+            n=len({one.plot for one in made.turns}),
             finds=about(finds),
         )
         st.markdown(said)
@@ -108,21 +107,12 @@ def _say(made: SharedPlots, crew: EstateCrew) -> None:
 
 def packed(made: SharedPlots) -> bytes:
     """Return the routes as GeoJSON, a file each, and a table of them."""
-    out, table = io.BytesIO(), io.StringIO()
-    rows = csv.writer(table)
-    rows.writerow(("file", "plot", "who", "from", "to", "plants", "finds_expected", "closed"))
+    out = io.BytesIO()
+    files = {f"{stem}.geojson": one for stem, one in stems(made.turns).items()}
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
-        for k, one in enumerate(made.turns, start=1):
-            name = "".join(c if c.isalnum() or c in "-_" else "_" for c in one.plot.name)[:60]
-            file = f"{k:02d}-{name}.geojson"
-            notes = RouteNotes(one.plot.name, one.sampler, one.begins)
-            archive.writestr(file, route_geojson(one.plan.route, notes))
-            rows.writerow((
-                file, one.plot.name, one.who, one.begins.isoformat(), one.ends.isoformat(),
-                len(one.plan.route), round(one.plan.route.expected_found, 2),
-                " ".join(one.closed),
-            ))  # fmt: skip
-        archive.writestr("plan.csv", ("\ufeff" + table.getvalue()).encode())
+        for file, one in files.items():
+            archive.writestr(file, route_geojson(one.route, one.notes))
+        archive.writestr(TABLE, plan_table(files))
     return out.getvalue()
 
 

@@ -84,7 +84,7 @@ def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapC
     )  # fmt: skip
     states = dict.fromkeys(map(state_of, plots))
     items = [("square", _COLOURS[name], texts.PLOTS_STATES[name]) for name in states]
-    of_plot = {id(turn.plot): turn for turn in turns}
+    of_plot = {id(turn.state): turn for turn in turns}
     marked = {id(plot) for plot in small(plots)}
     names = [_label(plot, of_plot.get(id(plot)), marked=id(plot) in marked) for plot in plots]
     who = {turn.number: turn.who for turn in turns}
@@ -150,7 +150,7 @@ def _named(plot: PlotState, turn: PlannedTurn | None) -> str:
 
 def _routes(turns: tuple[PlannedTurn, ...]) -> list[Layer]:
     rows = [
-        {"path": np.round(turn.plan.route.line_lonlat(), 7).tolist(),
+        {"path": np.round(turn.route.line_lonlat(), 7).tolist(),
          "c": list(_WHO[turn.number % len(_WHO)])}
         for turn in turns
     ]  # fmt: skip

@@ -36,11 +36,11 @@ def of(
     name_px = (_PLANNED_PX if turns else _PX)["name"]
     how = {names["name"]: st.column_config.TextColumn(width=name_px)}
     if turns:
-        own = [next((one for one in turns if one.plot is plot), None) for plot in plots]
+        own = [next((one for one in turns if one.state is plot), None) for plot in plots]
         columns |= {
             more["who"]: [one and one.who for one in own],
             more["when"]: [one and f"{one.begins:%H:%M}-{one.ends:%H:%M}" for one in own],
-            more["finds"]: [one and _rounded(one.plan.route.expected_found) for one in own],
+            more["finds"]: [one and _rounded(one.route.expected_found) for one in own],
         }
         for k in ("who", "when"):
             how[more[k]] = st.column_config.TextColumn(width=_PLANNED_PX[k])

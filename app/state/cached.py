@@ -17,7 +17,7 @@ from fieldmon.infestation import hotspots
 from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.monitoring import worked_route
+from fieldmon.monitoring import estate_day, worked_route
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
 from fieldmon.reports import season as reports
 
@@ -41,14 +41,13 @@ if TYPE_CHECKING:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice import Advice, AdviceSettings
-    from fieldmon.monitoring.estate_day import EstateTurn
+    from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.reports.content import Report
-    from fieldmon.samplers.base import Scene
 
     Array = NDArray[np.float64]
 
@@ -147,10 +146,9 @@ def season_plan(
 
 
 @st.cache_resource(max_entries=FEW)
-def season_scene(key: str, revision: str, day: str, _season: Season) -> Scene:
-    """Return what is known and believed on a season's day before it is planned: nothing closed."""
-    with _season.entering_treated():
-        return _season.scene(np.datetime64(day).item())
+def estate_plot(key: str, revision: str, day: str, _season: Season) -> EstatePlot:
+    """Return a season's plot as its day begins, for a day shared with other plots."""
+    return estate_day.EstatePlot.of(_season, np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_DAYS)

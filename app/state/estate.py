@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fieldmon.errors import FieldmonError
 from fieldmon.io.options import PlotOptions
+from fieldmon.monitoring.estate_day import days_since
 from fieldmon.plot.local_clock import local_clock
 
 from ..words.language import of_error
@@ -115,14 +114,8 @@ def _of_season(name: str, season: Season) -> PlotState:
     on = max(today, season.settings.begins)
     of = season.key, season.revision, str(on), season
     expected = cached.day_figures(*of).expected + cached.flagged(*of)
-    dates = season.history.inspections.date
-    seen = None
-    if len(dates):
-        seen = int((np.datetime64(today) - dates.max()) / np.timedelta64(1, "D"))
-    return PlotState(
-        name, name, season.plot.field.boundary, None,
-        None if seen is None else max(seen, 0), expected,
-    )  # fmt: skip
+    seen = days_since(season, today)
+    return PlotState(name, name, season.plot.field.boundary, None, seen, expected)
 
 
 def open_plot(plot: PlotState) -> None:

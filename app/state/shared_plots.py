@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from datetime import timedelta
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
@@ -11,6 +10,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.monitoring import estate_day
 from fieldmon.monitoring.closures import any_closed, left_off_in_words
 from fieldmon.monitoring.estate_day import EstatePlot
+from fieldmon.monitoring.estate_routes import EstateRoute
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
@@ -32,7 +32,6 @@ from .chosen_day import STARTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-    from datetime import datetime
 
     from fieldmon.monitoring.closures import Closure
     from fieldmon.monitoring.estate_day import EstateTurn
@@ -63,22 +62,12 @@ class EstateCrew:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class PlannedTurn:
-    """A plot of the day's plan: who works there and from when on, the route, and what is closed."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PlannedTurn(EstateRoute):
+    """A plot of the day's plan: its state, and the number of who works there."""
 
-    plot: PlotState
-    who: str
+    state: PlotState
     number: int
-    begins: datetime
-    plan: DayPlan
-    sampler: str
-    closed: tuple[str, ...] = ()
-
-    @property
-    def ends(self) -> datetime:
-        """Return when the route ends."""
-        return self.begins + timedelta(seconds=float(self.plan.route.end_s))
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +127,10 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         one, who = ready[turn.plot], members[turn.who].name
         plan = _plan(one, turn)
         if len(plan.route):
-            turns.append(PlannedTurn(one.plot, who, turn.who, turn.begins, plan, one.sampler,
-                                     said[turn.plot]))  # fmt: skip
+            turns.append(PlannedTurn(
+                plot=one.plot.name, who=who, begins=turn.begins, route=plan.route,
+                sampler=one.sampler, closed=said[turn.plot], state=one.plot, number=turn.who,
+            ))  # fmt: skip
         else:
             waiting.add(turn.plot)
     return SharedPlots(
@@ -170,8 +161,7 @@ def _of_season(plot: PlotState) -> _Ready:
     on = max(local_clock(season.plot.field).today(), settings.begins)
     now = cached.revision_on(season, on)
     key = f"{season.key} {now} {on}"
-    scene = cached.season_scene(season.key, now, str(on), season)
-    known = EstatePlot(on, scene, settings.decides(), season)
+    known = cached.estate_plot(season.key, now, str(on), season)
     return _Ready(plot, key, settings.sampler, known)
 
 

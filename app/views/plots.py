@@ -32,7 +32,7 @@ def show() -> None:
         st.fragment(_watch, run_every=estate.LOOK_AGAIN_S)(held)
     turns = sharing_plots.show(plots).turns if sharing_plots.is_on() else ()
     # those with work come first
-    planned = {id(turn.plot) for turn in turns}
+    planned = {id(turn.state) for turn in turns}
     plots = sorted(plots, key=lambda one: id(one) not in planned) if planned else plots
     field_map.want(estate_map.content(plots, turns), MapAnswers(tapped=partial(_tapped, plots)))
     st.caption(texts.PLOTS_PICK)

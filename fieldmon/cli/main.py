@@ -26,6 +26,7 @@ from fieldmon.cli.plots import plots
 from fieldmon.cli.record import record
 from fieldmon.cli.report import report
 from fieldmon.cli.salvage import salvage
+from fieldmon.cli.share import share
 from fieldmon.cli.simulate import simulate
 from fieldmon.cli.stand_in import stand_in
 from fieldmon.cli.status import status
@@ -46,7 +47,13 @@ app = Commands(
 )
 _PANELS: dict[str, dict[str, Any]] = {
     "Begin": {"app": open_app, "plots": plots, "plan": plan, "init": init},
-    "Every day": {"record": record, "status": status, "report": report, "undo": undo},
+    "Every day": {
+        "share": share,
+        "record": record,
+        "status": status,
+        "report": report,
+        "undo": undo,
+    },
     "Spray or not": {"decide": decide, "treat": treat, "labels": labels},
     "Keep a season": {
         "change": change,

@@ -47,6 +47,8 @@ _OTHER_FILES = {
     "plants": "Give the plants with --plants FILE.",
 }
 #: what commands that have `FLAGS` also take by an option of its own
+# plots that are named where something is so of some only
+_NAMED = 3
 _BY_NAME = frozenset({"crs", "layer", "feature"})
 
 
@@ -140,6 +142,25 @@ def describe(plot: Plot) -> None:
 def tell_assumed(assumed: Iterable[Assumed]) -> None:
     """Print what the figures of a day rest on though nobody said it, in one line."""
     said = assumed_in_words(assumed)
+    if said:
+        typer.echo(f"assumed: {said}", err=True)
+
+
+def tell_assumed_of_plots(assumed: Mapping[str, str]) -> None:
+    """Print what was assumed of which plots, from one line of each: what is so of all, once."""
+    from fieldmon.compute.wording import counted, first_few
+
+    plots: dict[str, list[str]] = {}
+    for plot, line in assumed.items():
+        for one in line.split("; "):
+            plots.setdefault(one, []).append(plot)
+    plots.pop("", None)
+    said = "; ".join(
+        one
+        if len(named) == len(assumed)
+        else f"{one} ({counted(len(named), 'plot')}: {first_few(named, _NAMED)})"
+        for one, named in plots.items()
+    )
     if said:
         typer.echo(f"assumed: {said}", err=True)
 

@@ -287,6 +287,14 @@ Background = Annotated[
 StudySeed = Annotated[
     int, typer.Option(help="Seed; the same seed gives the same figures.", callback=within(SEED))
 ]
+MoveMinutes = Annotated[
+    float,
+    typer.Option(
+        "--move",
+        help="Minutes from one plot to the next.",
+        callback=within(0, 120, unit=" minutes"),
+    ),
+]
 StartTime = Annotated[str, typer.Option(help="Local time at which work starts, HH:MM.")]
 
 

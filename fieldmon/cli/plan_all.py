@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fieldmon.cli.messages import assumed_in_words
+from fieldmon.cli.messages import assumed_in_words, tell_assumed_of_plots
 from fieldmon.cli.waiting import progress
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
@@ -24,6 +24,7 @@ from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.io.writers.file_names import plain_name
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.batch import plan_task
 
@@ -47,8 +48,6 @@ _EVERY_S = 2.0
 _AHEAD = 32
 # up to so many plots are planned here: starting other processes takes longer
 _FEW = 6
-# a name of a file may be 255 bytes long; Hebrew and Arabic take two a letter
-_NAME_BYTES = 120
 # plots refused for one reason that are told one by one; of more there is one line
 _NAMED = 3
 
@@ -113,16 +112,10 @@ def _tasks(plots: Estate, orders: Orders) -> dict[str, Task]:
         stated = {"hours": crew.hours, "look_s": crew.look_s}
         stated["speed_m_s"] = None if crew.speed_km_h is None else crew.speed_km_h / 3.6
         known = {name: value for name, value in stated.items() if value is not None}
-        tasks[f"{number:0{digits}d}-{_plain(plot.name)}.geojson"] = Task(
+        tasks[f"{number:0{digits}d}-{plain_name(plot.name)}.geojson"] = Task(
             plot, crew.who, known, orders, crew.wrong or {}, crew.left_aside or ()
         )
     return tasks
-
-
-def _plain(name: str) -> str:
-    """Return a name without what a file's name must not hold."""
-    kept = "".join(c if c.isalnum() or c in "-_" else "_" for c in name)
-    return kept.encode()[:_NAME_BYTES].decode(errors="ignore") or "plot"
 
 
 def _finished(folder: Path, files: dict[str, str], digests: dict[str, str]) -> dict[str, Row]:
@@ -277,31 +270,13 @@ def _tell(rows: dict[str, Row], folder: Path) -> None:
     from fieldmon.compute.wording import counted
 
     planned = [row for row in rows.values() if row["state"] == "planned"]
-    if told := _assumptions(planned):
-        typer.echo(f"assumed: {told}", err=True)
+    tell_assumed_of_plots({row["plot"]: row.get("assumed") or "" for row in planned})
     for line in _refusals([row for row in rows.values() if row["state"] == "refused"]):
         typer.echo(line, err=True)
     stops = sum(int(row["stops"]) for row in planned)
     typer.echo(
         f"{len(planned)} of {len(rows)} plots planned, {counted(stops, 'plant')} in "
         f"{sum(float(row['hours']) for row in planned):.0f} h. Routes and {SUMMARY} in {folder}"
-    )
-
-
-def _assumptions(planned: list[Row]) -> str:
-    """Return what was assumed of which plots; empty where nothing was."""
-    from fieldmon.compute.wording import counted, first_few
-
-    plots: dict[str, list[str]] = {}
-    for row in planned:
-        for one in (row.get("assumed") or "").split("; "):
-            plots.setdefault(one, []).append(row["plot"])
-    plots.pop("", None)
-    return "; ".join(
-        one
-        if len(named) == len(planned)
-        else f"{one} ({counted(len(named), 'plot')}: {first_few(named, _NAMED)})"
-        for one, named in plots.items()
     )
 
 

@@ -50,6 +50,13 @@ class EstatePlot:
     decides: Sampler
     season: Season | None = None
 
+    @classmethod
+    def of(cls, season: Season, on: date) -> EstatePlot:
+        """Return the plot of a season, as its day begins."""
+        with season.entering_treated():
+            scene = season.scene(on)
+        return cls(on, scene, season.settings.decides(), season)
+
     def closed(self, begins: datetime, ends: datetime) -> tuple[Closure, ...]:
         """Return what is closed to work between two local times of its day."""
         if self.season is None:
@@ -108,6 +115,13 @@ class SharedEstate:
     waiting: tuple[int, ...]
 
 
+def days_since(season: Season, on: date) -> int | None:
+    """Return how many days before a day a plant of a season was last inspected; None: never."""
+    dates = season.history.inspections.date
+    dates = dates[dates <= np.datetime64(on)]
+    return int((np.datetime64(on) - dates.max()) / np.timedelta64(1, "D")) if len(dates) else None
+
+
 def due(days_since: Sequence[int | None]) -> list[int]:
     """Return the numbers of the plots that are due, from how long ago each was seen; None: never.
 
@@ -138,13 +152,13 @@ def share_estate(
     plots
         Those that are due.
     members
-        Who works; of each, the hours count.
+        Who works; of each, the hours and the start count, not the gate.
     starts
         When their day does.
     move_s
         What going from one plot to the next takes.
     """
-    day_s = max((one.robot.day_s for one in members), default=0.0)
+    day_s = max((one.starts_s + one.robot.day_s for one in members), default=0.0)
     closed = [_all_day(plot, starts, day_s) for plot in plots]
     while True:
         is_open = [
@@ -197,7 +211,8 @@ def _need(scene: Scene, is_open: NDArray[np.bool_], members: Sequence[TeamMember
 def _turn(plot: EstatePlot, turn: PlotTurn, member: TeamMember, starts: time) -> EstateTurn:
     # to the second, so that the same turn is planned once
     robot = replace(member.robot, hours=max(round(turn.seconds), 1) / 3600)
-    begins = datetime.combine(plot.on, starts) + timedelta(seconds=round(turn.starts_s))
+    after_s = round(member.starts_s + turn.starts_s)
+    begins = datetime.combine(plot.on, starts) + timedelta(seconds=after_s)
     closed = plot.closed(begins, begins + timedelta(seconds=robot.day_s))
     scene = replace(open_to_people(plot.scene, closed), robot=robot, seconds_left=robot.day_s)
     return EstateTurn(turn.plot, turn.who, begins, scene, plot.decides, closed)

@@ -1,12 +1,14 @@
 """An estate's day: hours go to plots where people may be, and what is closed is left off."""
 
+from dataclasses import replace
 from datetime import date, datetime, time, timedelta
 
 import numpy as np
 import pytest
 
+from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.estate_day import EstatePlot, due, share_estate
+from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, share_estate
 from fieldmon.planning.members import team_of
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.base import NEVER
@@ -23,8 +25,7 @@ def seasons(tmp_path):
 
 
 def plot_of(season, on: date = ON):
-    with season.entering_treated():
-        return EstatePlot(on, season.scene(on), season.settings.decides(), season)
+    return EstatePlot.of(season, on)
 
 
 def spray(season, began, hours, plants=None):
@@ -117,3 +118,21 @@ def test_a_plot_of_no_season_has_nothing_closed(seasons):
     assert turn.closed == ()
     assert turn.scene.last_inspected.max() == NEVER
     assert turn.begins + timedelta(hours=2) == datetime.combine(ON, time(8))
+
+
+def test_who_starts_later_comes_later_and_meets_what_is_closed_then(seasons):
+    late = replace(ONE[0], starts_s=3600.0)
+    (turn,) = share_estate([plot_of(seasons[0])], [late], SIX).turns
+    assert turn.begins == datetime.combine(ON, time(7))
+    spray(seasons[0], time(0, 30), 6.0)  # until 06:30
+    (turn,) = share_estate([plot_of(seasons[0])], [late], SIX).turns
+    assert turn.closed == ()
+    assert share_estate([plot_of(seasons[0])], ONE, SIX).turns == ()
+
+
+def test_days_since_a_plant_was_seen_leave_out_what_comes_later(seasons):
+    season = seasons[0]
+    assert days_since(season, ON) is None
+    for day in (ON, ON + timedelta(days=4)):
+        season.record(Inspections.of(np.array([3]), np.array([CLEAN]), day), str(day))
+    assert [days_since(season, ON + timedelta(days=k)) for k in (-1, 0, 3, 6)] == [None, 0, 3, 2]

@@ -47,9 +47,9 @@ def test_the_files_hold_each_route_and_a_table(session):  # noqa: ARG001 - read 
         route = json.loads(archive.read("01-Nursery.geojson"))
         (row,) = csv.DictReader(io.StringIO(archive.read("plan.csv").decode("utf-8-sig")))
     line = np.array(route["features"][0]["geometry"]["coordinates"])
-    assert np.allclose(line, turn.plan.route.line_lonlat(), atol=1e-8)
+    assert np.allclose(line, turn.route.line_lonlat(), atol=1e-8)
     assert (row["plot"], row["who"], int(row["plants"])) == (
-        "Nursery", "robot 1", len(turn.plan.route)
+        "Nursery", "robot 1", len(turn.route)
     )  # fmt: skip
 
 

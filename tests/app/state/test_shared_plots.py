@@ -13,6 +13,7 @@ from app.state import estate, shared_plots
 from app.state.estate import PlotState
 from app.state.shared_plots import EstateCrew
 from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.estate_day import EstatePlot, share_estate
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.samplers import sampler
@@ -47,7 +48,7 @@ def test_the_sample_s_plots_are_shared_by_two():
     made = shared_plots.planned(some, EstateCrew(robots=1, robot_hours=3, scouts=1, scout_hours=2),
                                 lambda k, n: told.append((k, n)))  # fmt: skip
     assert made.problems == ()
-    assert {one.plot.name for one in made.turns} | {one.name for one in made.waiting} == {
+    assert {one.plot for one in made.turns} | {one.name for one in made.waiting} == {
         one.name for one in some
     }
     assert {one.who for one in made.turns} == {"robot 1", "scout 1"}
@@ -74,10 +75,13 @@ def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
         [own, plot("gone", None)], EstateCrew(robot_hours=1), lambda *_: None
     )
     (turn,) = made.turns
-    assert turn.plot is own
+    assert turn.state is own
     assert turn.sampler == "bouncy"
-    by_itself = plan_in(turn.plan.scene, sampler("bouncy", every=6)).route.plant
-    assert turn.plan.route.plant.tolist() == by_itself.tolist()
+    on = turn.begins.date()
+    members = EstateCrew(robot_hours=1).members()
+    (alone,) = share_estate([EstatePlot.of(project, on)], members, time(6)).turns
+    by_itself = plan_in(alone.scene, sampler("bouncy", every=6)).route.plant
+    assert turn.route.plant.tolist() == by_itself.tolist()
     assert len(by_itself) > 10
     assert len(made.problems) == 1
     assert "gone" in made.problems[0]
@@ -105,7 +109,7 @@ def test_rows_are_closed_by_the_hours_at_which_somebody_is_there(
     made = planned(np.unique(line)[::2])
     (turn,) = made.turns
     assert turn.begins.time() == time(6)
-    assert not (line[turn.plan.route.plant] % 2).any()
+    assert not (line[turn.route.plant] % 2).any()
     assert turn.closed
     (said,) = made.closed
     assert "Closed until 06:30" in said

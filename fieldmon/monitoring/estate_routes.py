@@ -1,0 +1,89 @@
+"""An estate's day as files: a route for each turn, and a table of who is where when."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING
+
+from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.io.writers.file_names import plain_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from fieldmon.planning.route import Route
+
+#: the table's file, beside the routes
+TABLE = "plan.csv"
+_COLUMNS = ("file", "plot", "who", "from", "to", "plants", "finds_expected", "closed")
+
+
+@dataclass(frozen=True, eq=False)
+class EstateRoute:
+    """A turn of an estate's day, ready to be handed out.
+
+    Parameters
+    ----------
+    plot, who
+        Names of the plot and of who works there.
+    begins
+        Local time.
+    route
+        What they drive or walk.
+    sampler
+        Who chose the plants.
+    closed
+        Sentences on what is left off, as people may not be there.
+    """
+
+    plot: str
+    who: str
+    begins: datetime
+    route: Route
+    sampler: str
+    closed: Sequence[str] = ()
+
+    @property
+    def ends(self) -> datetime:
+        """Return when the route ends."""
+        return self.begins + timedelta(seconds=float(self.route.end_s))
+
+    @property
+    def notes(self) -> RouteNotes:
+        """Return what the route's file says beside it."""
+        return RouteNotes(self.plot, self.sampler, self.begins)
+
+
+def stems(routes: Iterable[EstateRoute]) -> dict[str, EstateRoute]:
+    """Return routes by the names of their files, without the endings."""
+    return {f"{k:02d}-{plain_name(one.plot)}": one for k, one in enumerate(routes, start=1)}
+
+
+def plan_table(files: Mapping[str, EstateRoute]) -> bytes:
+    """Return the table of routes, by the names of their files, as CSV that a spreadsheet reads.
+
+    A route in several formats has their names in one cell, apart by spaces.
+    """
+    text = io.StringIO()
+    table = csv.writer(text)
+    table.writerow(_COLUMNS)
+    for file, one in files.items():
+        hours = (when.isoformat(timespec="seconds") for when in (one.begins, one.ends))
+        finds = round(one.route.expected_found, 2)
+        table.writerow(
+            (file, one.plot, one.who, *hours, len(one.route), finds, " ".join(one.closed))
+        )
+    # the mark at the beginning tells a spreadsheet that names may be in any script
+    return text.getvalue().encode("utf-8-sig")
+
+
+def files_named(table: bytes) -> list[str]:
+    """Return the names of the files that a table of routes lists; none where it is another."""
+    try:
+        lines = csv.DictReader(io.StringIO(table.decode("utf-8-sig")))
+        return [file for one in lines for file in (one.get("file") or "").split()]
+    except (UnicodeDecodeError, csv.Error):
+        return []

@@ -1,0 +1,98 @@
+"""`fieldmon share`: hours go to the seasons that are due, and each route is a file."""
+
+import csv
+import json
+import shutil
+
+import pytest
+
+from tests.cli.estate import BEGINS, MITES, ZIP
+
+NEXT = "2026-11-03"
+
+
+def table(path):
+    """Return the rows of a table that begins with a spreadsheet's mark."""
+    with path.open(encoding="utf-8-sig") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture
+def seasons(run, begun, tmp_path):
+    """Return the files of two seasons."""
+    shutil.copy(begun, tmp_path / "nursery.gpkg")
+    code, _, err, _ = run(
+        "init", "bend.gpkg", ZIP, "--feature", "Bend", "--observations", MITES, "--begins", BEGINS
+    )
+    assert code == 0, err
+    return "nursery.gpkg", "bend.gpkg"
+
+
+def test_two_share_the_plots_by_a_table(run, seasons, tmp_path):
+    (tmp_path / "crew.csv").write_text(
+        "name,who,hours,start\nRex,robot,1.5,06:00\nAnn,scout,1,07:00\n"
+    )
+    code, out, err, made = run(
+        *("share", *seasons, "--date", BEGINS, "--robots", "crew.csv", "-o", "monday"),
+        *("--format", "geojson", "--format", "gpx"),
+    )
+    assert code == 0, err
+    rows = {row["plot"]: row for row in table(tmp_path / "monday" / "plan.csv")}
+    assert rows.keys() == {"nursery", "bend"}
+    assert {row["who"]: row["from"] for row in rows.values()} == {
+        "Rex": f"{BEGINS}T06:00:00", "Ann": f"{BEGINS}T07:00:00",
+    }  # fmt: skip
+    named = {name for row in rows.values() for name in row["file"].split()}
+    assert {path.name for path in made} == named | {"monday", "plan.csv"}
+    for row in rows.values():
+        main, gpx = row["file"].split()
+        line, *stops = json.loads((tmp_path / "monday" / main).read_text())["features"]
+        assert len(stops) == int(row["plants"]) > 0
+        assert line["properties"]["start"] == row["from"]
+        assert gpx.endswith(".gpx")
+        assert f"{row['plot']}, {row['who']}: from {row['from'][11:16]}, " in out
+    assert "chance to find what is there 69 % (Ann)" in err
+
+
+def test_what_was_just_seen_is_not_due_and_its_route_of_the_morning_is_gone(run, seasons, tmp_path):
+    words = ("share", *seasons, "--hours", 1, "--move", 0, "-o", "day")
+    assert run(*words, "--date", BEGINS)[0] == 0
+    assert len([*(tmp_path / "day").iterdir()]) == 3
+    (tmp_path / "day" / "own.txt").write_text("stays")
+    (tmp_path / "finds.csv").write_text("row,plant,result\n1,1,clean\n")
+    assert run("record", seasons[0], "finds.csv", "--date", BEGINS)[0] == 0
+    code, out, err, _ = run(*words, "--date", NEXT)
+    assert code == 0, err
+    assert "nursery was inspected 1 day ago and is not due." in out
+    assert {path.name for path in (tmp_path / "day").iterdir()} == {
+        "01-bend.geojson", "plan.csv", "own.txt",
+    }  # fmt: skip
+    code, _, err, _ = run(*words, "--date", NEXT, "--all")
+    assert code == 0, err
+    assert len(table(tmp_path / "day" / "plan.csv")) == 2
+
+
+def test_a_plot_without_time_and_who_has_none_are_said(run, seasons):
+    code, out, err, _ = run("share", *seasons, "--date", BEGINS, "--hours", 0.3, "-o", "day")
+    assert code == 0, err
+    assert "No time for nursery." in out or "No time for bend." in out
+    code, out, err, _ = run("share", seasons[0], "--date", BEGINS, "--robots", 2, "-o", "day")
+    assert code == 0, err
+    assert "Without a plot: robot-2." in out
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("--date", "2026-11-01"), "At least one season must have begun and be due"),
+        (("--format", "xyz"), "but not as 'xyz'"),
+        (("--robots", "crew.csv"), "Leave them out"),
+        (("--move", "-1"), "--move must be 0 minutes or more"),
+    ],
+)
+def test_what_cannot_be_shared_is_a_sentence_and_writes_nothing(run, begun, tmp_path, words, says):
+    (tmp_path / "crew.csv").write_text("name,lon,lat\nRex,35.15,30.36\n")
+    code, _, err, made = run("share", begun, "-o", "day", *words)
+    assert code == 2
+    assert says in err
+    assert not made

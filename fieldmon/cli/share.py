@@ -140,7 +140,8 @@ def _due(seasons: Sequence[Season], told: date | None, *, every: bool) -> Iterat
         if k in wanted:
             yield EstatePlot.of(season, on)
         else:
-            ago = "today" if not since[k] else f"{counted(since[k], 'day')} ago"
+            days = since[k] or 0
+            ago = f"{counted(days, 'day')} ago" if days else "today"
             typer.echo(f"{season.path.stem} was inspected {ago} and is not due.")
 
 

@@ -24,7 +24,7 @@ from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.plot_estimate import estimate_of, level_doubt
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_day import KNOWN
 from fieldmon.infestation.traced_pairs import TracedPairs
@@ -404,10 +404,7 @@ class History:
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""
-        left = self._still_out(morning, day)
-        named = left.pest is not None
-        doubt = level_doubt(left)
-        return level_range(left.chance, doubt, since=left.since_inspected, named=named)
+        return level_range(self._still_out(morning, day))
 
     def _still_out(self, morning: Belief, day: int) -> Belief:
         """Return what is believed of plants not found yet."""

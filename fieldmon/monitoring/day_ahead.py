@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.monitoring import routes
-from fieldmon.monitoring.closures import any_closed
+from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import scouts_in
@@ -232,8 +232,8 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     ahead = DayAhead.of(season, on)
     with season.entering_treated():
         scene = season.scene(on, who=part.name)
-    shut = season.closed_to_kept(on, part.name, ahead.kept_as(part))
-    closed = any_closed(shut, len(scene.chance))
+    to_kept = season.closed_to_kept(on, part.name, ahead.kept_as(part))
+    closed = closed_plants(to_kept, len(scene.chance))
     kept = ahead.route(part)
     kept = kept[scene.last_inspected[kept] != scene.day]
     left = kept[ahead.own(part)[kept]]

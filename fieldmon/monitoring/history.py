@@ -488,7 +488,7 @@ class History:
             else self.in_hindsight(morning, day)
         )
         last = self.last_inspected(day)
-        last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
+        last[today.plant] = day  # nobody is sent to a plant twice a day, not even a skipped one
         trail = self._trail(day, who)
         today = made_by(today, who)
         resting = resting_place(robot, trail)

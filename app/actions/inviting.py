@@ -86,7 +86,7 @@ def _show_out(choices: Choices) -> None:
                 st.markdown(f"**{line.title}**", width="stretch")
                 if line.has_code:
                     st.button(texts.TAKE_BACK, key=f"take back {line.name}", type="tertiary",
-                              on_click=_take_back, args=(choices, line.name))  # fmt: skip
+                              on_click=_withdraw_key, args=(choices, line.name))  # fmt: skip
             st.caption(line.said)
             for caution in line.cautions:
                 st.markdown(f":material/warning: {caution}")
@@ -136,7 +136,7 @@ def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
 
 
 @notices.reporting
-def _take_back(choices: Choices, name: str) -> str:
-    scouts.take_back(choices.season, name)
+def _withdraw_key(choices: Choices, name: str) -> str:
+    scouts.withdraw_key(choices.season, name)
     st.session_state.pop(_SHOWN, None)
     return texts.TAKEN_BACK.format(name=texts.isolated(name))

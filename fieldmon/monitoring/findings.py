@@ -252,7 +252,7 @@ def _take(
         known[one.id] = one.content(), ""
     letter = replace(letter, findings=list(news.values()))
     problems, batch, made = _write(season, change, scout, letter)
-    taken_back = _take_back(change) if news else set()
+    taken_back = _undo_as_told(change) if news else set()
     if made:
         states = season_log.states(change.db, {batch, *taken_back})
         columns = (np.concatenate([getattr(one, name) for one in made])
@@ -455,9 +455,9 @@ def _keep(
     )
 
 
-def _take_back(change: SeasonChange) -> set[int]:
-    """Take back what was told to be; return the batches that it was of."""
-    back = phone_tables.take_back(change.db)
+def _undo_as_told(change: SeasonChange) -> set[int]:
+    """Undo what was told to be taken back; return the batches that it was of."""
+    back = phone_tables.undo_as_told(change.db)
     for batch, day in back:
         batches.close_if_empty(change.db, batch)
         change.reaches(day)

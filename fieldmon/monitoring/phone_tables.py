@@ -212,7 +212,7 @@ def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> lis
         db.execute(f"DELETE FROM {table.name}")  # noqa: S608 - names of ours
         insert(db, table, made)
         touch(db, table.name)
-    back = take_back(db)
+    back = undo_as_told(db)
     pointed = [(_inspection_of(db, made), one) for one, made in told.items() if len(made) > 1]
     db.executemany("UPDATE tellings SET inspection = ? WHERE id = ?", pointed)
     return back
@@ -242,7 +242,7 @@ def _inspection_of(db: sqlite3.Connection, told: set[tuple[str, ...]]) -> int | 
     return int(next(others, found[0][1]))
 
 
-def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
+def undo_as_told(db: sqlite3.Connection) -> list[tuple[int, int]]:
     """Mark as undone what a finding of the same person takes back, whichever came first.
 
     A finding that came to two copies of a season is taken back in both.
@@ -256,9 +256,7 @@ def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
     rows = [row[:3] for row in rows if person(row[3]) == person(row[4])]
     db.executemany("UPDATE inspections SET undone = 1 WHERE fid = ?", [row[:1] for row in rows])
     others = [
-        (batch, day)
-        for inspection, _, day in rows
-        for batch in replaced.take_back_others(db, inspection)
+        (batch, day) for inspection, _, day in rows for batch in replaced.undo_same(db, inspection)
     ]
     return others + [(batch, day) for _, batch, day in rows]
 

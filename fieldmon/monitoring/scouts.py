@@ -167,7 +167,7 @@ def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def take_back(season: OpenSeason, name: str) -> None:
+def withdraw_key(season: OpenSeason, name: str) -> None:
     """End the key of somebody, at once; raise `SettingError` if nobody of that name has one."""
     with season.store.writing() as db:
         if not _end(db, name):

@@ -34,7 +34,7 @@ def test_a_person_is_written_as_at_first_whoever_types_it(path):
     season.record_instead(otherwise, "h", "ANN")
     assert {*season.history.inspections.who.tolist()[-3:]} <= {"Ann", "Ben"}
     assert {entry.who for entry in season.log()[-6:]} == {"Ann", "Ben"}
-    scouts.take_back(season, "ANN")
+    scouts.withdraw_key(season, "ANN")
     assert scouts.who(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"
 
 

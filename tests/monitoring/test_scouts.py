@@ -49,12 +49,12 @@ def test_a_key_taken_back_ends_and_a_new_one_of_that_name_ends_the_old(season):
     with pytest.raises(AccessError):
         scouts.who(season, first)
     assert scouts.who(season, second).name == "Ann"
-    scouts.take_back(season, "Ann")
+    scouts.withdraw_key(season, "Ann")
     with pytest.raises(AccessError):
         scouts.who(season, second)
     assert scouts.scouts_of(season) == ()
     with pytest.raises(SettingError, match="Ann must have a key"):
-        scouts.take_back(season, "Ann")
+        scouts.withdraw_key(season, "Ann")
 
 
 def test_who_got_a_key_in_each_of_two_copies_is_one_person_and_both_keys_hold(season, tmp_path):
@@ -67,7 +67,7 @@ def test_who_got_a_key_in_each_of_two_copies_is_one_person_and_both_keys_hold(se
     (one,) = scouts.scouts_of(season)
     assert one.rows == (5, 12)
     assert [scouts.who(season, key) for key in (first, last)] == [one, one]
-    scouts.take_back(season, "Ann")
+    scouts.withdraw_key(season, "Ann")
     for key in (first, last):
         with pytest.raises(AccessError):
             scouts.who(season, key)

@@ -249,7 +249,7 @@ def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
     assert held.hours == pytest.approx((ann.end_s + dan.end_s) / 3600, abs=0.01)
     done = Inspections.of(dan.plant[:3], np.zeros(3, np.int8), np.datetime64(today))
     season.record(done, "f", "Dan")
-    scouts.take_back(season, "Dan")
+    scouts.withdraw_key(season, "Dan")
     held = season.planned_and_done(today)
     assert (held.planned, held.done, held.people) == (len(ann) + 3, 3, 1)
 
@@ -261,7 +261,7 @@ def test_a_code_taken_back_on_a_later_day_changes_no_day_before(tmp_path):
         scouts.let_in(season, part.name)
     route_ahead(season, BEGINS, parts[0])
     before = season.planned_and_done(BEGINS)
-    scouts.take_back(season, "Dan")
+    scouts.withdraw_key(season, "Dan")
     assert season.planned_and_done(BEGINS) == before
 
 

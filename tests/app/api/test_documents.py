@@ -75,7 +75,7 @@ def test_the_day_is_what_the_season_says(served, scout):
 
 
 def test_who_has_a_part_is_sent_to_its_rows(served):
-    scouts.take_back(served.season, "Ann")
+    scouts.withdraw_key(served.season, "Ann")
     key = scouts.let_in(served.season, "Ben", (1, 5))
     day = json.loads(day_document(served.season, scouts.who(served.season, key), BEGINS))
     label = served.season.label

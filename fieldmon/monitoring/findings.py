@@ -33,7 +33,7 @@ from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def take(
     fast = sent - received
     shift = fast if abs(fast) > CLOCK_IS_WRONG else timedelta()
     with season.changing() as change:
-        scout = scouts.who_in(change.db, season, key)
+        scout = scouts.key_owner_in(change.db, season, key)
         letter = _SentFindings([*findings], (received, sent), received, shift)
         return _take(season, change, scout, letter)
 
@@ -357,7 +357,7 @@ def _write(
 def _of_another(db: sqlite3.Connection, scout: Scout, one: Finding) -> dict[str, str]:
     """Return why a finding takes nothing back, by its id: nobody takes back what others told."""
     told = db.execute("SELECT scout FROM tellings WHERE id = ?", (one.undoes,)).fetchone()
-    if told is None or person(told[0]) == person(scout.name):
+    if told is None or person_key(told[0]) == person_key(scout.name):
         return {}
     said = worded("This was recorded by {who}, so nobody else can take it back here.", who=told[0])
     return {one.id: said}

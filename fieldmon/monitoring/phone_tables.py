@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.monitoring import replaced
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, insert, touch
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     import sqlite3
@@ -134,7 +134,7 @@ _STANDARD = "http://docs.opengeospatial.org/is/18-000/18-000.html"
 def n_sent(db: sqlite3.Connection, table: GeoPackageTable, who: str, since: str) -> int:
     """Return how many findings or photos somebody sent since a moment."""
     sent = f"SELECT scout, count(*) FROM {table.name} WHERE received > ? GROUP BY scout"  # noqa: S608 - ours
-    return sum(n for name, n in db.execute(sent, (since,)) if person(name) == person(who))
+    return sum(n for name, n in db.execute(sent, (since,)) if person_key(name) == person_key(who))
 
 
 def phones_come(db: sqlite3.Connection) -> None:
@@ -253,7 +253,7 @@ def undo_as_told(db: sqlite3.Connection) -> list[tuple[int, int]]:
         "ON f.id = u.undoes JOIN inspections i ON i.fid = f.inspection "
         "WHERE u.undoes NOTNULL AND i.undone <> 1"
     ).fetchall()
-    rows = [row[:3] for row in rows if person(row[3]) == person(row[4])]
+    rows = [row[:3] for row in rows if person_key(row[3]) == person_key(row[4])]
     db.executemany("UPDATE inspections SET undone = 1 WHERE fid = ?", [row[:1] for row in rows])
     others = [
         (batch, day) for inspection, _, day in rows for batch in replaced.undo_same(db, inspection)

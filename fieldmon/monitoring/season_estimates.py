@@ -193,7 +193,7 @@ class SeasonEstimates(OpenSeason):
                 )
             )
         settings, plot = contents.settings, self.plot
-        told = settings.robot.detects if settings.team else contents.history.told(day)
+        told = settings.robot.detects if settings.team else contents.history.mean_detection(day)
         believed = settings.belief.believed(plot.grid, settings.pest, told)
         return EarlierSeason.of(evening, believed, plot.field.name, on)
 

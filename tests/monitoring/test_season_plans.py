@@ -13,7 +13,7 @@ from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.planning.members import person, team_of
+from fieldmon.planning.members import person_key, team_of
 from fieldmon.plot.local_clock import local_clock
 from tests.monitoring.seasons import (
     BEGINS,
@@ -149,7 +149,7 @@ def test_a_day_that_is_planned_again_keeps_the_team_it_was_worked_with(season, m
     assert np.isin(again[1].route.plant, days[1].route.plant).any()
     assert season.kept_route(on(0), "mia").tolist() == again[1].route.plant.tolist()
     with season.reading() as (db, _):
-        assert {*kept_last(db, 0)} == {*map(person, names)}
+        assert {*kept_last(db, 0)} == {*map(person_key, names)}
     assert season.planned_by(on(1)).team == later
 
 

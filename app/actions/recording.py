@@ -264,7 +264,7 @@ def ask_about_contradictions(choices: Choices) -> None:
     with st.container(horizontal=True):
         for key, label, action in (
             ("leave_out", texts.LEAVE_OUT.format(n=others), _leave_out),
-            ("holds", texts.HOLDS.format(n=len(said)), _hold),
+            ("holds", texts.HOLDS.format(n=len(said)), _record_instead),
             ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
             ("record_none", texts.RECORD_NONE, _drop),
         ):
@@ -317,14 +317,14 @@ def _confirm(choices: Choices) -> str:
 
 
 @notices.reporting
-def _hold(choices: Choices) -> str:
+def _record_instead(choices: Choices) -> str:
     """Record all, and let what contradicts hold in place of what was recorded."""
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
     who = choices.who or ""
     done = choices.season.record_instead(waiting.results, waiting.source, who)
-    return _over(waiting, done)
+    return _end_waiting(waiting, done)
 
 
 @notices.reporting
@@ -342,10 +342,10 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     if waiting is None:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
-    return _over(waiting, choices.season.record(taken, waiting.source, who, confirmed=True))
+    return _end_waiting(waiting, choices.season.record(taken, waiting.source, who, confirmed=True))
 
 
-def _over(waiting: Unconfirmed, done: Recorded) -> str:
+def _end_waiting(waiting: Unconfirmed, done: Recorded) -> str:
     """Let nothing wait any more; return what was done."""
     unconfirmed.drop()
     fresh_boxes.empty(waiting.form)

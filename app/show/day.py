@@ -121,7 +121,7 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
 
     And which rows the robot is too wide for.
     """
-    if told := plan.route.aisles.shut_sentence():
+    if told := plan.route.aisles.narrow_sentence():
         st.warning(in_words(told))
     is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
     said = "" if is_said else texts.NO_STOPS

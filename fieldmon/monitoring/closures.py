@@ -103,7 +103,7 @@ def closed_on(
     return tuple(one for one in closed if one is not None)
 
 
-def any_closed(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
+def closed_plants(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
     """Return ``(n,)`` which plants people may not come to."""
     return np.any([one.plants for one in closed], axis=0) if closed else np.zeros(n, np.bool_)
 
@@ -112,8 +112,8 @@ def open_to_people(scene: Scene, closed: Sequence[Closure]) -> Scene:
     """Return a scene in which nobody is sent to plants that are closed: they seem inspected."""
     if not closed:
         return scene
-    shut = any_closed(closed, len(scene.chance))
-    last = np.where(shut, np.int32(scene.day), scene.last_inspected)
+    plants = closed_plants(closed, len(scene.chance))
+    last = np.where(plants, np.int32(scene.day), scene.last_inspected)
     return replace(scene, last_inspected=last)
 
 
@@ -121,8 +121,8 @@ def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:
     """Tell whether there is time, but no plant where people may be: others were inspected today."""
     if not closed or scene.seconds_left <= 0:
         return False
-    shut = any_closed(closed, len(scene.chance)) | (scene.last_inspected == scene.day)
-    return bool(shut.all())
+    left_out = closed_plants(closed, len(scene.chance)) | (scene.last_inspected == scene.day)
+    return bool(left_out.all())
 
 
 def left_off_in_words(

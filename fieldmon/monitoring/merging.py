@@ -30,7 +30,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.batches import close_if_empty
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     import sqlite3
@@ -293,7 +293,7 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
         first, last, count = span = here.get(number, (0, 0, 0))
         if (ours[number], theirs.get(number)) != (number, number) or span != there.get(number):
             break
-        if (first, last) != (n + 1, n + count) or not _same(both, number, count):
+        if (first, last) != (n + 1, n + count) or not _is_same_batch(both, number, count):
             break
         n, batch = last, number
     rest = (
@@ -309,7 +309,9 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
     return int(stay)
 
 
-def _same(both: tuple[sqlite3.Connection, sqlite3.Connection], number: int, count: int) -> bool:
+def _is_same_batch(
+    both: tuple[sqlite3.Connection, sqlite3.Connection], number: int, count: int
+) -> bool:
     """Tell whether so many inspections of a batch say the same in both, each something else."""
     one, other = (db.execute(_TOGETHER, (number,)).fetchone() for db in both)
     there, said = {*one[:4]}, one[4:]
@@ -349,7 +351,7 @@ def _merged_findings(
                 again[row["digest"], row["batch"]] += 1
                 key = row["digest"], row["batch"], again[row["digest"], row["batch"]]
             known = found.setdefault(key, row)
-            known["undone"] = _worse(known["undone"] or 0, row["undone"] or 0)
+            known["undone"] = _undone_in_either(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])
             for free in ("notes", "who"):  # what is no part of what makes it the same
                 if free in row:
@@ -367,7 +369,7 @@ def _merged_findings(
     return rows
 
 
-def _worse(one: int, other: int) -> int:
+def _undone_in_either(one: int, other: int) -> int:
     """Return what became of a row in either copy: taken back, if it was so in one."""
     return TAKEN_BACK if TAKEN_BACK in (one, other) else max(one, other)
 
@@ -388,7 +390,7 @@ def _given_out(*both: sqlite3.Connection) -> dict[Hashable, list[str]]:
     told: dict[Hashable, set[str]] = {}
     for db in both:
         for one in season_log.given_out(db):
-            told.setdefault((one.date, person(one.who), one.digest), set()).add(one.at)
+            told.setdefault((one.date, person_key(one.who), one.digest), set()).add(one.at)
     return {key: sorted(at) for key, at in told.items()}
 
 
@@ -407,7 +409,7 @@ def _write_routes(
             stops.setdefault(stop["route"], []).append(stop)
         given: Counter[Hashable] = Counter()
         for route in copied["routes"]:
-            route["person"] = person(route["who"])
+            route["person"] = person_key(route["who"])
             given[_key(route, known_by[:-1])] += 1
             route["again"] = given[_key(route, known_by[:-1])]
         before = ""

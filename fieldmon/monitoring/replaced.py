@@ -110,8 +110,8 @@ def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None)
                 db.execute("UPDATE inspections SET fid = ? WHERE fid = ?", (there, here))
 
 
-def take_back_others(db: sqlite3.Connection, inspection: int) -> list[int]:
-    """Take back all that say the same as an inspection that was; return their batches."""
+def undo_same(db: sqlite3.Connection, inspection: int) -> list[int]:
+    """Mark as undone all that say the same as an inspection that is; return their batches."""
     found = db.execute(
         "SELECT fid, batch FROM inspections WHERE undone <> ? AND digest = "
         "(SELECT digest FROM inspections WHERE fid = ?)",

@@ -15,7 +15,7 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import left_off_in_words
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
@@ -176,7 +176,7 @@ def who_came(season: Season, on: date, team: tuple[str, ...] = ()) -> tuple[str,
     Whoever is named nowhere is one of several.
     """
     who = season.history.inspections.on(on).inspected.who
-    came = {person(str(name)): str(name) for name in who}
+    came = {person_key(str(name)): str(name) for name in who}
     if not team and len(came) < 2:
         return ()
     named = sorted(name for name in came.values() if name)

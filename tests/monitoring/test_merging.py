@@ -434,7 +434,7 @@ def test_a_batch_is_the_same_in_both_copies_where_each_of_its_rows_is(seed):
             db.executemany(f"{into} VALUES ({batch}, ?, ?, ?, ?)", written)
         alike = rows == others and not any(None in row for row in rows)
         answers.append(alike)
-        assert merging._same(both, batch, n) == alike
+        assert merging._is_same_batch(both, batch, n) == alike
     assert {*answers} == {True, False}
     for db in both:
         db.close()
@@ -445,7 +445,7 @@ def test_a_batch_in_which_something_stands_twice_is_no_batch_that_stays():
     schema.lay_out(db)
     into = "INSERT INTO inspections (batch, digest, undone, who, notes)"
     db.executemany(f"{into} VALUES (1, ?, ?, 'Ann', '')", [("a", 1), ("a", 0)])
-    assert not merging._same((db, db), 1, 2)
+    assert not merging._is_same_batch((db, db), 1, 2)
     db.close()
 
 

@@ -41,11 +41,11 @@ def said_by(app):
 def test_a_code_opens_the_season_for_one_person_until_it_is_taken_back(scout, season):
     said = made(scout, first=2, last=9)
     assert said["season"] == ["Gate 2026"]
-    who = scouts.who(season(), said["key"][0])
+    who = scouts.key_owner(season(), said["key"][0])
     assert (who.name, who.rows) == ("Ann", (2, 9))
     scout.button(key="take back Ann").click().run()
     with pytest.raises(AccessError):
-        scouts.who(season(), said["key"][0])
+        scouts.key_owner(season(), said["key"][0])
     assert len(scout.code) == 0
 
 
@@ -80,7 +80,7 @@ def test_the_morning_sends_a_link_with_a_key_of_that_person(season_app, season, 
     tap(season_app, "do_send")  # a browser keeps the window open, this one draws the page anew
     said, address = said_by(season_app), season_app.code[0].value
     assert address.startswith("https://192.168.1.5:8501/scouting/#season=Gate+2026&key=")
-    assert scouts.who(season(), said["key"][0]).name == "Ben"
+    assert scouts.key_owner(season(), said["key"][0]).name == "Ben"
     pictures = [one.value for one in season_app.get("html") if 'class="qr"' in str(one.value)]
     assert pictures == [qr_code.image(address, texts.INVITE_ALT)]
 
@@ -91,7 +91,7 @@ def test_a_new_code_for_a_name_says_that_the_earlier_one_is_over(scout, season):
     made(scout)
     assert "earlier code of \u2068Ann\u2069 no longer holds" in scout.success[0].value
     with pytest.raises(AccessError):
-        scouts.who(season(), said["key"][0])
+        scouts.key_owner(season(), said["key"][0])
 
 
 def test_a_second_code_for_the_same_plants_says_that_they_are_shared(scout):
@@ -120,7 +120,7 @@ def test_the_names_of_the_team_are_offered_and_any_other_needs_rows(season_app, 
     assert box.options == ["robot-1", "robot-2"]
     box.set_value("robot-2")
     press(scout, texts.INVITE_BUTTON)
-    assert scouts.who(season(), said_by(scout)["key"][0]).name == "robot-2"
+    assert scouts.key_owner(season(), said_by(scout)["key"][0]).name == "robot-2"
     assert not scout.error
 
 

@@ -46,6 +46,7 @@ def _ends(called: CalledRows, part: str, rows: str) -> list[int]:
     for cut in cuts:
         first, last = map(called.number, cut)
         if first is not None and last is not None:
+            called.refuse_odd(cut, (first, last), part)
             return sorted((first, last))
     for named in (*cuts, (part,)):
         if all(one.isdecimal() for one in named):
@@ -81,6 +82,7 @@ class CalledRows:
         self.numbers = grid.line_number.tolist()
         self._known, self._names = set(self.numbers), list[str]()
         self._counts_on = grid.n_blocks > 1 and grid.counts_on
+        self._beyond = grid.rows_beyond
         self._named: dict[str, list[tuple[int, int]]] = defaultdict(list)
         if grid.line_named is not None:
             first = grid.row_start[np.unique(grid.row_line, return_index=True)[1]]
@@ -112,6 +114,21 @@ class CalledRows:
         if not is_own and said.strip().isdecimal() and int(said) in self._known:
             meant.add(int(said))
         return meant
+
+    def refuse_odd(self, ends: tuple[str, str], numbers: tuple[int, int], part: str) -> None:
+        """Refuse rows up to one that has no number of its own: its place among them is not told."""
+        odd = [end for end, number in zip(ends, numbers, strict=True) if number in self._beyond]
+        if odd and numbers[0] != numbers[1]:
+            raise SettingError(
+                worded(
+                    "Rows from one to another must have numbers of their own, but {name} of {part} "
+                    "has none in the file of plants. Write it by itself, such as {first},{last}.",
+                    name=odd[0].strip(),
+                    part=part,
+                    first=ends[0].strip(),
+                    last=ends[1].strip(),
+                )
+            )
 
     def number(self, said: str) -> int | None:
         """Return the number of the row that is meant; None: there is none.

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, joined, worded
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def _told_finds(
     for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
         line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
         words: dict[str, Any] = {
-            "plants": counted(around, "plant"), "row": line, "number": number,
+            "plants": counted(around, "plant"), "row": scene.grid.row_signs[line], "number": number,
         }  # fmt: skip
         if not scene.grid.in_rows:
             sentence = worded("{plants} around the find at plant {number}.", **words)
@@ -118,7 +118,7 @@ def _block(
     line: NDArray[np.int64],
     recorded: NDArray[np.bool_],
 ) -> str:
-    low, high = int(line.min()), int(line.max())
+    low, high = row_ends(scene.grid, line)
     plants_said = counted(len(plants), "plant")
     where = worded("in rows {low} to {high}", low=low, high=high)
     if not scene.grid.in_rows:

@@ -294,7 +294,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     rows = []
     for line in np.unique(label.line).tolist():
         own = label.number[label.line == line].tolist()
-        row = f"{line}" if grid.in_rows else NO_ROW
+        row = grid.row_signs[line] if grid.in_rows else NO_ROW
         rows.append((row, f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,

@@ -91,7 +91,7 @@ class CalledRows:
             for names, number, of in zip(*columns, strict=True):
                 for name in names.splitlines():
                     self._named[key(name)].append((number, of))
-                    self._names.append(name)
+                    self._names += [] if key(name) == f"{number}" else [name]
 
     def listed(self) -> str:
         """Return the numbers of all rows, and some of the names that are others than these."""

@@ -5,7 +5,7 @@ import pytest
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import plant_at, row_in_block, row_label
-from fieldmon.plot.named_rows import plants_in_rows
+from fieldmon.plot.named_rows import plant_meant, plants_in_rows, rows_meant
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, said_of_numbers
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
@@ -105,11 +105,31 @@ def test_a_row_without_a_number_of_its_own_is_beyond_those_of_all_blocks():
 
 def test_rows_up_to_one_without_a_number_of_its_own_are_refused():
     grid = named([["1", "2", "5A", "3", "4", "5"][k] for k in ROW]).grid
-    with pytest.raises(SettingError, match=r"but 5A of 5 - 5A has none .* such as 5,5A\."):
+    with pytest.raises(SettingError, match="but 5A has none in the file of plants"):
         plants_in_rows(grid, "5 - 5A")
-    with pytest.raises(SettingError, match="but 101 of 5-101 has none"):
+    with pytest.raises(SettingError, match="but 101 has none"):
         plants_in_rows(grid, "5-101")
     assert set(row_label(grid).line[plants_in_rows(grid, "4-5,5a")].tolist()) == {4, 5, 101}
+
+
+def test_rows_typed_from_one_to_another_have_numbers_of_their_own_or_are_one():
+    grid = named([["1", "2", "5A", "3", "4", "5"][k] for k in ROW]).grid
+    typed = [(None, None), ("2", None), ("5a", "5A"), (None, "4")]
+    assert [rows_meant(grid, *both) for both in typed] == [(1, 101), (2, 101), (101, 101), (1, 4)]
+    for both in (("5A", "5"), (None, "5A"), ("1", "101")):
+        with pytest.raises(SettingError, match="has none in the file of plants"):
+            rows_meant(grid, *both)
+    with pytest.raises(SettingError, match=r"of 1–5, 101 \(in .*: 5A\) on this plot, but it is 6"):
+        rows_meant(grid, "6", None)
+
+
+def test_a_plant_typed_by_a_number_that_is_the_name_of_another_is_refused():
+    grid = named(ROW + 1, np.where((PLANT == 3) & (ROW == 1), 3, PLANT + 1)).grid
+    assert plant_meant(grid, "1", 4) == plant_at(grid, 1, 4)
+    with pytest.raises(SettingError, match="3 may be any of plants 3–4 of row 2 here"):
+        plant_meant(grid, "2", 3)
+    with pytest.raises(PlotError, match="but it is 11"):
+        plant_meant(grid, "2", 11)
 
 
 def test_plants_of_a_row_that_have_one_name_count_from_one():

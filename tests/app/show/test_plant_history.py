@@ -12,7 +12,7 @@ from app.show.map_view import MapContent
 from app.state import chosen_day
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_at, row_label
 from tests.app.chosen import a_plot, chosen, in_season
 from tests.app.driving import apart
 from tests.monitoring.seasons import BEGINS, a_season
@@ -137,3 +137,19 @@ def test_what_is_shown_first_is_a_plant_also_where_rows_and_plants_have_numbers_
     plant_history.show(chosen(replace(plot, aisles=replace(plot.aisles, grid=grid))))
     assert said[-1] == "Never inspected."
     assert (st.session_state["history row"], st.session_state["history plant"]) == (101, 5)
+
+
+@pytest.mark.usefixtures("said")
+def test_the_plant_shown_may_be_typed_by_the_name_of_its_row():
+    plot = a_plot()
+    called = np.arange(len(plot.grid.line_number)) + 1
+    called[2] = 101
+    names = np.where(called > 100, "5A", called.astype(np.str_))
+    grid = replace(plot.grid, line_called=np.stack([called, called], axis=1), line_named=names)
+    choices = chosen(replace(plot, aisles=replace(plot.aisles, grid=grid)))
+    tap(choices, plant_at(grid, 101, 2))
+    assert plant_history.tapped(choices) == (plant_at(grid, 101, 2),)
+    st.session_state["history row called"] = "5a"
+    assert plant_history.tapped(choices) == (plant_at(grid, 101, 2),)
+    st.session_state["history row called"] = "Top"
+    assert plant_history.tapped(choices) == ()

@@ -210,6 +210,14 @@ def test_a_row_without_a_number_of_its_own_is_meant_by_its_name_and_takes_none_o
     assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[2, 32, 3]], abs=1e-9)
 
 
+def test_a_name_of_one_plant_that_is_the_number_of_another_is_refused():
+    grid, lonlat = own_names(lambda k, _: f"{k + 1}", lambda k, j: f"{j + (j < 3 or k > 0)}")
+    imported = read("row,plant,found\n1,3,x\n1,1,x\n2,3,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 12]], abs=1e-9)
+    (why,) = imported.of(Severity.DROPPED)
+    assert "plant 3 may be any of plants 3–4 of row 1 here" in why.sentence
+
+
 def test_rows_and_plants_may_count_from_zero_where_their_file_does():
     grid, lonlat = own_names(lambda k, _: f"{5 - k}", lambda _, j: f"{j}")
     imported = read("row,plant,found\n5,3,x\n0,3,x\n3,0,x\n0,0,x\n", grid=grid)

@@ -20,7 +20,7 @@ from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
-from ..show import plant_history, recorded_batches
+from ..show import day, plant_history, recorded_batches
 from ..state import chosen_day, fresh_boxes, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
@@ -129,7 +129,7 @@ def _show_route(choices: Choices) -> None:
     label = row_label(choices.plot.grid, plants)
     table = pd.DataFrame(
         {
-            **({texts.COLUMN_ROW: label.line} if choices.plot.grid.in_rows else {}),
+            **day.row_column(choices.plot.grid, label.line),
             texts.COLUMN_PLANT: label.number,
             texts.LEGEND_STATES["found"]: False,
         },
@@ -303,7 +303,7 @@ def show_said_otherwise(choices: Choices) -> None:
     said = choices.season.contradicting(choices.on)
     if not len(said):
         return
-    label = choices.season.label
+    label, signs = choices.season.label, choices.plot.grid.row_signs
     lines = []
     for plant in dict.fromkeys(said.plant.tolist()):
         of = said.take(said.plant == plant)
@@ -312,7 +312,7 @@ def show_said_otherwise(choices: Choices) -> None:
             texts.HISTORY_RESULTS[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         ]  # fmt: skip
-        place = {"row": label.line[plant], "plant": label.number[plant]}
+        place = {"row": signs[int(label.line[plant])], "plant": label.number[plant]}
         lines.append(f"- {texts.SAID_BY.format(said=', '.join(each), **place)}")
     st.info("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
 

@@ -103,9 +103,11 @@ def _blocks(scene: Scene, plants: NDArray[np.int32], recorded: NDArray[np.bool_]
     if not len(plants):
         return []
     line = row_label(scene.grid, plants).line
-    rows = np.unique(line)
-    block_of_row = np.cumsum(np.diff(rows, prepend=rows[0]) > _GAP)
-    block = block_of_row[np.searchsorted(rows, line)]
+    # as they lie on the ground, whatever their numbers
+    place = scene.grid.row_line[scene.grid.row[plants]]
+    places = np.unique(place)
+    block_of_place = np.cumsum(np.diff(places, prepend=places[0]) > _GAP)
+    block = block_of_place[np.searchsorted(places, place)]
     order = list(dict.fromkeys(block.tolist()))
     if len(order) > _BLOCKS:
         order, block = [0], np.zeros_like(block)

@@ -409,6 +409,15 @@ def row_ends(grid: PlantGrid, line: NDArray[np.integer]) -> tuple[str, str]:
     return grid.row_signs[own[0]], ", ".join(grid.row_signs[k] for k in last)
 
 
+def rows_listed(grid: PlantGrid, line: NDArray[np.integer]) -> str:
+    """Return which lines these are: ``1–12, 101 · 5A``."""
+    rows = np.unique(line).tolist()
+    if len(rows) == 1:
+        return grid.row_signs[rows[0]]
+    own = runs(k for k in rows if k not in grid.rows_beyond)
+    return ", ".join([own] * bool(own) + [grid.row_signs[k] for k in rows if k in grid.rows_beyond])
+
+
 def _ends_in(name: str, number: int) -> bool:
     """Tell whether a whole number stands at the end of a name."""
     return re.search(rf"(?<!\d)0*{number}(\.0+)?\s*$", name) is not None

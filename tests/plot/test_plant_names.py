@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.plot.grid import plant_at, row_in_block, row_label
+from fieldmon.plot.grid import plant_at, row_in_block, row_label, rows_listed
 from fieldmon.plot.named_rows import plant_meant, plants_in_rows, rows_meant
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, said_of_numbers
 from fieldmon.plot.planting import Planting
@@ -110,6 +110,12 @@ def test_rows_up_to_one_without_a_number_of_its_own_are_refused():
     with pytest.raises(SettingError, match="but 101 has none"):
         plants_in_rows(grid, "5-101")
     assert set(row_label(grid).line[plants_in_rows(grid, "4-5,5a")].tolist()) == {4, 5, 101}
+
+
+def test_rows_are_listed_with_those_without_a_number_of_their_own_by_name():
+    grid = named([["1", "2", "5A", "3", "4", "Top"][k] for k in ROW]).grid
+    assert rows_listed(grid, np.array([1, 2, 3, 101])) == "1–3, 101 · 5A"
+    assert [rows_listed(grid, np.array(one)) for one in ([4, 4], [102])] == ["4", "102 · Top"]
 
 
 def test_rows_typed_from_one_to_another_have_numbers_of_their_own_or_are_one():

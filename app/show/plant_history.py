@@ -16,7 +16,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import photos
 from fieldmon.plot.grid import plant_at, row_label
-from fieldmon.plot.named_rows import row_meant
+from fieldmon.plot.named_rows import plant_meant
 
 from ..state import chosen_day, widget_memory
 from ..words import texts
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from .map_view import MapContent, Selected, Tapped
 
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
+# a number tapped is the row's own, whoever else has it for a name
+_TAPPED_AT = "history tapped at"
 _MOST_PHOTOS = 3
 
 
@@ -54,8 +56,10 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
         grid = choices.plot.grid
         label = row_label(grid, np.array([min(index, len(grid) - 1)]))
         row = int(label.line[0])
-        st.session_state[_row_box(grid)] = f"{row}" if grid.row_names else row
+        typed = f"{row}" if grid.row_names else row
+        st.session_state[_row_box(grid)] = typed
         st.session_state[_PLANT] = int(label.number[0])
+        st.session_state[_TAPPED_AT] = typed, int(label.number[0])
         st.session_state[_TAPPED] = True
 
 
@@ -118,9 +122,10 @@ def _row_box(grid: PlantGrid) -> str:
 
 
 def _plant(grid: PlantGrid, row: int | str, number: int) -> int:
-    """Return the plant of a row and a number in it, of which a name may be that of the row."""
-    known = f"{row}".strip().isdecimal() and int(row) in grid.row_signs
-    return plant_at(grid, int(row) if known else row_meant(grid, f"{row}"), int(number))
+    """Return the plant that was tapped, or that is meant by what was typed."""
+    if st.session_state.get(_TAPPED_AT) == (row, number):
+        return plant_at(grid, int(row), number)
+    return plant_meant(grid, f"{row}", int(number))
 
 
 def _lowest(grid: PlantGrid) -> tuple[int, int]:

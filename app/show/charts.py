@@ -378,9 +378,12 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64], axes: tu
     table = table.groupby("row", as_index=False)["days"].min()  # NaN only where all are
     table["sign"] = [(signs or {}).get(row, f"{row}") for row in table["row"].tolist()]
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if len(table) <= k * _MOST_ROWS)
+    named = [one.sign != f"{one.row}" for one in table.itertuples()]
     shown = [
-        one.sign for k, one in enumerate(table.itertuples(), start=1)
-        if k == 1 or not k % every or one.sign != f"{one.row}"
+        sign for k, sign in enumerate(table["sign"])
+        if named[k]
+        # and no number so near before a name that it would take its room
+        or ((k == 0 or not (k + 1) % every) and not any(named[k + 1 : k + 1 + every // 2]))
     ]  # fmt: skip
     never = table["days"].isna()
     most = 1.0 if never.all() else max(table["days"].max(), 1.0)

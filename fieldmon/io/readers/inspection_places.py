@@ -155,11 +155,11 @@ def by_name(
                 some=runs(meant),
             )
             continue
-        found = [(one, which) for one in meant for which in plants.meant(one, said)]
-        if len(found) == 1:
-            line[i], number[i] = found[0]
-        elif found or (open_yet[i] and not (row.isdecimal() and said.isdecimal())):
-            problems[i] = _unknown(called, row, said, [which for _, which in found])
+        labels = [(one, which) for one in meant for which in plants.meant(one, said)]
+        if len(labels) == 1:
+            line[i], number[i] = labels[0]
+        elif labels or (open_yet[i] and not (row.isdecimal() and said.isdecimal())):
+            problems[i] = _unknown(called, row, said, [which for _, which in labels])
     messages: tuple[ImportMessage, ...] = ()
     if alone.any():
         said_alone = worded(

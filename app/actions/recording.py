@@ -18,9 +18,9 @@ from fieldmon.io.options import Upload
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
-from fieldmon.plot.named_rows import row_meant
+from fieldmon.plot.named_rows import plant_meant
 
-from ..show import plant_history, recorded_batches
+from ..show import day, plant_history, recorded_batches
 from ..state import chosen_day, fresh_boxes, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
@@ -72,9 +72,11 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
         label = row_label(choices.plot.grid, np.array([min(index, len(choices.plot.grid) - 1)]))
         boxes = FreshBoxes(_ONE, choices)
         boxes.empty()  # a result that was said of another plant is none of this one
-        boxes.put("one_row", int(label.line[0]))
-        boxes.put("one_plant", int(label.number[0]))
-        boxes.put(_TAPPED, (int(label.line[0]), int(label.number[0])))
+        row, number = int(label.line[0]), int(label.number[0])
+        typed = f"{row}" if choices.plot.grid.row_names else row
+        boxes.put("one_row", typed)
+        boxes.put("one_plant", number)
+        boxes.put(_TAPPED, (typed, number))
         plant_history.take_plant(choices, layer, index)
 
 
@@ -85,7 +87,10 @@ def _show_one(choices: Choices) -> None:
     with st.form("one_plant_form", border=False, enter_to_submit=False):
         left, right = st.columns(2)
         # empty: what nobody said must not be recorded by one click
-        left.number_input(texts.HISTORY_ROW, 0, None, None, key=key("one_row"))
+        if choices.plot.grid.row_names:
+            left.text_input(texts.HISTORY_ROW, key=key("one_row"))
+        else:
+            left.number_input(texts.HISTORY_ROW, 0, None, None, key=key("one_row"))
         right.number_input(texts.HISTORY_PLANT, 0, None, None, key=key("one_plant"))
         st.segmented_control(
             texts.RESULT, [FOUND, CLEAN, SKIPPED], default=None, key=key("one_result"),
@@ -100,11 +105,13 @@ def _show_one(choices: Choices) -> None:
 def _record_one(choices: Choices) -> str:
     said, grid = FreshBoxes(_ONE, choices).said, choices.plot.grid
     row, number, result, count = map(said, ("one_row", "one_plant", "one_result", "one_count"))
-    if None in (row, number, result):
+    if {None, ""} & {row, number, result}:
         raise SettingError(texts.ONE_UNSAID)
-    if said(_TAPPED) != (row, number):
-        row = row_meant(grid, int(row))
-    plant = plant_at(grid, int(row), int(number))
+    plant = (
+        plant_at(grid, int(row), number)
+        if said(_TAPPED) == (row, number)
+        else plant_meant(grid, f"{row}", int(number))
+    )
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
@@ -122,7 +129,7 @@ def _show_route(choices: Choices) -> None:
     label = row_label(choices.plot.grid, plants)
     table = pd.DataFrame(
         {
-            **({texts.COLUMN_ROW: label.line} if choices.plot.grid.in_rows else {}),
+            **day.row_column(choices.plot.grid, label.line),
             texts.COLUMN_PLANT: label.number,
             texts.LEGEND_STATES["found"]: False,
         },
@@ -296,7 +303,7 @@ def show_said_otherwise(choices: Choices) -> None:
     said = choices.season.contradicting(choices.on)
     if not len(said):
         return
-    label = choices.season.label
+    label, signs = choices.season.label, choices.plot.grid.row_signs
     lines = []
     for plant in dict.fromkeys(said.plant.tolist()):
         of = said.take(said.plant == plant)
@@ -305,7 +312,7 @@ def show_said_otherwise(choices: Choices) -> None:
             texts.HISTORY_RESULTS[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         ]  # fmt: skip
-        place = {"row": label.line[plant], "plant": label.number[plant]}
+        place = {"row": signs[int(label.line[plant])], "plant": label.number[plant]}
         lines.append(f"- {texts.SAID_BY.format(said=', '.join(each), **place)}")
     st.info("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
 

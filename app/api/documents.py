@@ -63,7 +63,8 @@ def plot_document(season: Season) -> tuple[str, bytes]:
         "plant_spacing_m": grid.plant_spacing_m,
         "rows": {
             "start": grid.row_start.tolist(),
-            "row": season.label.line[grid.row_start[:-1]].tolist(),
+            "row": grid.row_number.tolist(),
+            "sign": [grid.row_signs[row] for row in grid.row_number.tolist()],
             "aisle": grid.corridor.tolist(),
             "side": (-grid.side).tolist(),
         },

@@ -218,9 +218,10 @@ def _show_rows(season: Season, now: Status) -> None:
     from fieldmon.compute.wording import counted
 
     grid = season.plot.grid
-    of_plant, signs = grid.row_number, dict(zip(grid.line_number, grid.line_signs, strict=True))
+    of_plant, signs = grid.row_number, grid.row_signs
+    wide = max(4, *map(len, signs.values()))
     for line in np.unique(of_plant):
         days = now.days_since[of_plant == line]
         known = days[~np.isnan(days)]
         said = f"{counted(round(known.min()), 'day')} ago" if len(known) else "never"
-        typer.echo(f"  row {signs[line]:>4}  {said}")
+        typer.echo(f"  row {signs[line]:>{wide}}  {said}")

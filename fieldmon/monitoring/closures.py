@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, runs, worded
+from fieldmon.compute.wording import counted, worded
 from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.plot.grid import rows_listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -138,18 +139,17 @@ def left_off_in_words(
         plants = one.plants & ~told
         told |= plants
         if plants.any():
-            said.append(_in_words(one, np.unique(label.line[plants]) if grid.in_rows else None,
-                                  int(np.count_nonzero(plants)), units))  # fmt: skip
+            said.append(_in_words(one, grid, label.line[plants], units))  # fmt: skip
     return tuple(said)
 
 
-def _in_words(one: Closure, rows: NDArray[np.integer] | None, n: int, units: Units) -> Worded:
-    which = counted(n, "plant")
-    if rows is not None:
-        said = runs(rows.tolist())
+def _in_words(one: Closure, grid: PlantGrid, line: NDArray[np.integer], units: Units) -> Worded:
+    which = counted(len(line), "plant")
+    if grid.in_rows:
+        said = rows_listed(grid, line)
         which = (
             worded("{plants} in row {row}", plants=which, row=said)
-            if len(rows) == 1
+            if len(np.unique(line)) == 1
             else worded("{plants} in rows {rows}", plants=which, rows=said)
         )
     values = {

@@ -30,7 +30,8 @@ def made(app, name="Ann", **rows):
 def ask_for(app, name, **rows):
     app.text_input(key="invite_name").set_value(name)
     for key, value in rows.items():
-        app.number_input(key=f"invite_{key}").set_value(value)
+        boxes = app.text_input if isinstance(value, str) else app.number_input
+        boxes(key=f"invite_{key}").set_value(value)
     press(app, texts.INVITE_BUTTON)
 
 
@@ -139,10 +140,10 @@ def test_who_is_out_stands_in_the_scout_room_with_what_each_did(scout, season):
 
 def test_rows_of_a_code_that_may_be_others_by_their_names_are_refused(season_named):
     app = go(opened(season_named.path.stem), "scout")
-    for rows in ({"first": 2}, {"first": 1, "last": 2}):
+    for rows in ({"first": "2"}, {"first": "1", "last": "2"}):
         ask_for(app, "Ann", **rows)
         assert "2 may be any of rows 2–3 here" in app.error[0].value
     assert not scouts.scouts_of(season_named)
-    ask_for(app, "Ann", first=1, last=1)
+    ask_for(app, "Ann", first="5A", last="c")
     (one,) = scouts.scouts_of(season_named)
-    assert one.rows == (1, 1)
+    assert one.rows == (1, 2)

@@ -17,6 +17,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
@@ -26,7 +27,6 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_day import KNOWN
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key

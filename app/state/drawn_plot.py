@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 #: what the corners so far are kept as
 CORNERS = "corners"
+#: corners that a plot has
+LEAST = 3
 # a plot as wide as this is a slip of a finger, or two plots
 _WIDEST_M = LARGEST_M2**0.5
 _OPEN, _TURN, _FILE = "draws a plot", "plot drawn anew", "drawn.geojson"
@@ -187,12 +189,18 @@ def _read(data: bytes) -> tuple[Points, str]:
     return tuple((float(lon), float(lat)) for lon, lat in ring[:-1]), feature["properties"]["name"]
 
 
-def checked(corners: Points, units: UnitsInLanguage) -> Points:
-    """Return corners that can be a plot, none twice in a row; else raise `SettingError`."""
+def distinct(corners: Points) -> Points:
+    """Return corners, none twice in a row."""
     made = tuple(at for k, at in enumerate(corners) if not k or at != corners[k - 1])
     while len(made) > 1 and made[-1] == made[0]:
         made = made[:-1]
-    if len(made) < 3:
+    return made
+
+
+def checked(corners: Points, units: UnitsInLanguage) -> Points:
+    """Return corners that can be a plot, none twice in a row; else raise `SettingError`."""
+    made = distinct(corners)
+    if len(made) < LEAST:
         raise SettingError(texts.OUTLINE_LEAST.format(n=len(made)))
     if (wide_m := _wide_m(made)) > _WIDEST_M:
         most, wide = units.metres(_WIDEST_M), units.metres(wide_m)

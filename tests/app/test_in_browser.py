@@ -602,7 +602,6 @@ def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
     place = page.get_by_role("textbox", name=texts.OUTLINE_PLACE)
     place.fill("https://www.openstreetmap.org/#map=17/31.5012/34.9034")
     place.press("Enter")
-    page.get_by_role("button", name=texts.OUTLINE_GO).click()
     until(lambda: view(page)["zoom"] > 15)
     still(page)
     x, y = free(page)
@@ -619,7 +618,10 @@ def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
     area = page.locator(".drawbar span").inner_text()
     page.mouse.move(*start)
     page.mouse.down()
+    edge = page.locator(".label.edge:visible").first
+    before = edge.inner_text()
     page.mouse.move(*end, steps=4)
+    assert edge.inner_text() != before, "the length of an edge follows the finger"
     page.mouse.up()
     until(lambda: page.locator(".drawbar span").inner_text() != area)
     page.reload()

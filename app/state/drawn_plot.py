@@ -21,11 +21,13 @@ from fieldmon.io.parse.geometry import LARGEST_M2, SMALLEST_M2, area_m2, steps_m
 from fieldmon.io.parse.values import positions_in_cells
 
 from ..words import language, texts
-from . import brought_files, plot_source, widget_memory
+from . import brought_files, plot_edits, plot_files, plot_source, widget_memory
 from .brought_files import PLOT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from fieldmon.plot.field import Field
 
     from ..words.units import UnitsInLanguage
     from .plot_edits import Points
@@ -147,6 +149,26 @@ def use(units: UnitsInLanguage) -> None:
         _carry(before.key, brought_files.brought()[PLOT].key)
     brought_files.take_out(CORNERS)
     st.session_state[_OPEN] = False
+
+
+def bring(field: Field) -> None:
+    """Let the plot be this one, as if it had come in a file, with what is drawn on it."""
+    parts = shapely.get_parts(field.boundary)
+    if len(parts) == 1 and not parts[0].interiors:
+        data = geojson(tuple(parts[0].exterior.coords)[:-1], field.name)
+    else:
+        shape = shapely.geometry.mapping(field.boundary)
+        feature = {"type": "Feature", "properties": {"name": field.name}, "geometry": shape}
+        data = json.dumps(feature, ensure_ascii=False).encode()
+    brought_files.keep_uploads(PLOT, (Upload(_FILE, data),))
+    drawn = [plot_edits.Edit(plot_edits.GATE, (field.gate,))] if field.gate is not None else []
+    for kind, lines in (
+        (plot_edits.PATH, shapely.get_parts(field.paths)),
+        (plot_edits.NO_GO, [area.exterior for area in shapely.get_parts(field.no_go)]),
+    ):
+        drawn += [plot_edits.Edit(kind, tuple(line.coords)) for line in lines]
+    files = plot_files.of_session()
+    plot_files.draw(plot_files.outline(files, lambda *_: 0).key, tuple(drawn))
 
 
 def _carry(old: str, new: str) -> None:

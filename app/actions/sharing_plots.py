@@ -67,10 +67,11 @@ def show(plots: list[PlotState]) -> SharedPlots:
 
 def _crew() -> EstateCrew:
     usual = EstateCrew()
-    columns = st.columns(2)
-    chosen = {}
+    chosen, columns = {}, []
     for k, (name, (least, most, step)) in enumerate(_LIMITS.items()):
-        with columns[k % 2]:
+        # each row has columns of its own: on a phone, how many and their hours stay together
+        columns += st.columns(2) if k % 2 == 0 else []
+        with columns[k]:
             chosen[name] = widget_memory.show(
                 st.number_input, texts.PLAN_ALL_CREW[name], least, most, step=step,
                 key=f"crew_{name}", default=getattr(usual, name),

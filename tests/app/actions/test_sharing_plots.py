@@ -26,6 +26,8 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
     worked = table[table[texts.PLAN_ALL_COLUMNS["who"]].notna()]
     assert len(worked) == len(layer(app, "route")["data"]) > 3
     assert sum("robot 1" in one["t"] for one in map_of(app)["labels"]) == len(worked)
+    boxes = [box.key for box in app.number_input if box.key.startswith("crew_")]
+    assert boxes[:4] == ["crew_robots", "crew_robot_hours", "crew_scouts", "crew_scout_hours"]
     app.number_input(key="crew_scouts").set_value(1).run()
     assert not app.exception
     (table,) = (frame.value for frame in app.dataframe)

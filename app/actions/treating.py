@@ -91,16 +91,20 @@ def _boxes(boxes: FreshBoxes) -> None:
     """Show what a certifier asks of each treatment."""
     units, show = boxes.choices.units, boxes.show
     area = texts.UNITS[units.area]
+    # each row has columns of its own: on a phone a dose stays with its unit
     left, right = st.columns(2)
     show(left.number_input, texts.TREAT_DOSE, 0.0, None, box="treat dose")
     show(right.text_input, texts.TREAT_UNIT, box="treat unit", default="", placeholder="l/ha")
     water = texts.TREAT_WATER.format(area=area)
+    left, right = st.columns(2)
     show(left.number_input, water, 0.0, None, box=_water(units))
     show(right.text_input, texts.TREAT_GROUP, box="treat group", default="",
          help=texts.TREAT_GROUP_HELP)  # fmt: skip
     by_label = texts.TREAT_BY_LABEL
+    left, right = st.columns(2)
     show(left.number_input, texts.TREAT_WAIT, 0, None, box="treat days", help=by_label)
     show(right.number_input, texts.TREAT_ENTRY, 0.0, None, box="treat hours", help=by_label)
+    left, right = st.columns(2)
     show(left.time_input, texts.TREAT_BEGAN, box="treat began")
     show(right.time_input, texts.TREAT_ENDED, box="treat ended", help=texts.TREAT_ENDED_HELP)
     for name in _TEXTS:

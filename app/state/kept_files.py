@@ -1,5 +1,6 @@
-"""What a session brought and said of it, kept on this machine: a reload finds it again.
+"""What a session brought, said of it, or typed and did not record yet, is kept on this machine.
 
+A reload finds it again.
 The way back is a long random word in the address. Whoever has it sees the files; who does not
 cannot guess it. Who came by it changes nothing for others who did: the first change is kept under
 a word of one's own. What nobody came back to for a day is removed.

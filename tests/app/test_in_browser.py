@@ -659,6 +659,10 @@ def test_corners_are_walked_to_with_a_phone_and_a_rough_position_is_none(page, a
     bar = page.locator(".drawbar").bounding_box()
     inside = [(0 < x < 390, 0 < y < bar["y"]) for x, y in pixels(view(page), lonlat)]
     assert all(map(all, inside)), "all corners are in view, none is behind the bar"
+    grip = page.get_by_role("button", name=words["sheet"])
+    for is_seen in (False, True):
+        grip.click()
+        until(lambda: page.locator(".drawbar").is_visible() == is_seen)  # noqa: B023 - at once
     window.set_geolocation({"longitude": 34.9, "latitude": 31.502, "accuracy": 900})
     here.click()
     page.locator(".map .tip", has_text="you are seen to 900 m only").wait_for()
@@ -954,6 +958,12 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     place = said.bounding_box()
     assert place["y"] >= sheet, "what was done is said where one looks"
     assert place["y"] + place["height"] <= 844
+    page.goto(f"{address}/plot?season=My+own+files&lang=he")
+    title = page.locator(".st-key-panel h1")
+    title.wait_for()
+    gap = """(one) => { const words = document.createRange(); words.selectNodeContents(one);
+      return one.getBoundingClientRect().right - words.getBoundingClientRect().right; }"""
+    assert title.evaluate(gap) < 5, "a heading of Latin letters begins where the others do"
 
 
 @pytest.mark.parametrize("page", [((960, 600), None)], indirect=True)

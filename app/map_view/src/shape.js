@@ -68,7 +68,7 @@ export function keepShape(words, told = () => {}) {
     Object.assign(shape, change);
     keep(shape);
     page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
-    // above a sheet that is pulled up there is room for the legend alone
+    // above a sheet that is pulled up there is room for the legend alone: the rest lay on it, or was cut off
     page.style.setProperty("--above-sheet", (shape.sheet ?? HALF) > LOW ? "visible" : "hidden");
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
     tell();

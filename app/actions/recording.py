@@ -22,7 +22,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import row_meant
 
 from ..show import plant_history, recorded_batches
-from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
+from ..state import chosen_day, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
@@ -211,7 +211,7 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
         if more:
             notices.warn()
         if not messages:
-            fresh_boxes.empty(_FILE)
+            boxes.empty()
     listed = "".join(f"\n- {in_words(sentence)}" for sentence in messages)
     return "\n\n".join(part for part in (corrected, said + listed if said else "") if part)
 
@@ -239,7 +239,8 @@ def recorded(
         unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form))
         return None
     unconfirmed.drop()
-    fresh_boxes.empty(form)
+    if form:
+        FreshBoxes(form, choices).empty()
     return done
 
 
@@ -336,7 +337,7 @@ def _hold(choices: Choices) -> str:
         return ""
     who = choices.who or ""
     done = choices.season.record_instead(waiting.results, waiting.source, who)
-    return _over(waiting, done)
+    return _over(choices, waiting, done)
 
 
 @notices.reporting
@@ -354,13 +355,15 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     if waiting is None:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
-    return _over(waiting, choices.season.record(taken, waiting.source, who, confirmed=True))
+    done = choices.season.record(taken, waiting.source, who, confirmed=True)
+    return _over(choices, waiting, done)
 
 
-def _over(waiting: Unconfirmed, done: Recorded) -> str:
+def _over(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
     """Let nothing wait any more; return what was done."""
     unconfirmed.drop()
-    fresh_boxes.empty(waiting.form)
+    if waiting.form:
+        FreshBoxes(waiting.form, choices).empty()
     return said_of(done)
 
 

@@ -40,11 +40,15 @@ class FreshBoxes:
     def key(self, box: str) -> str:
         """Return the key of a box."""
         place = f"{self.choices.day} {self.choices.key}"
-        return f"{box} {self.form} {st.session_state.get(_times(self.form), 0)} {place}"
+        return f"{box} {self.form} {st.session_state.get(self._times, 0)} {place}"
+
+    @property
+    def _times(self) -> str:
+        return f"{_TIMES}{self.form} {self.choices.day} {self.choices.key}"
 
     def show(self, widget: Callable[..., T], *arguments: object, box: str, **settings: object) -> T:
         """Show a box with what was said in it and not kept yet."""
-        _shown()[self.key(box)] = self.form
+        _shown()[self.key(box)] = self._times
         return widget_memory.show(widget, *arguments, key=self.key(box), **settings)
 
     def said(self, box: str) -> Any:  # noqa: ANN401 - whatever the widget holds
@@ -55,29 +59,23 @@ class FreshBoxes:
     def put(self, box: str, value: object) -> None:
         """Let a box hold a value (for callbacks)."""
         key = self.key(box)
-        _shown()[key] = self.form
+        _shown()[key] = self._times
         widget_memory.put(key, value)
         st.session_state[key] = value
 
     def empty(self) -> None:
-        """Let the boxes be empty from the next run on."""
-        empty(self.form)
-
-
-def empty(form: str) -> None:
-    """Let the boxes of a form be empty from the next run on; of no form: nothing."""
-    if form:
-        for key in [key for key, of in _shown().items() if of == form]:
+        """Let the boxes be empty from the next run on; those of another day stay as they are."""
+        for key in [key for key, of in _shown().items() if of == self._times]:
             del _shown()[key]
-        st.session_state[_times(form)] = st.session_state.get(_times(form), 0) + 1
+        st.session_state[self._times] = st.session_state.get(self._times, 0) + 1
 
 
 def unfinished() -> dict[str, Any]:
     """Return what was said in all boxes and not kept yet, as JSON can hold it; empty: nothing."""
-    said = {key: [form, widget_memory.value(key)] for key, form in _shown().items()}
+    said = {key: [of, widget_memory.value(key)] for key, of in _shown().items()}
     boxes = {
-        key: [form, str(one) if isinstance(one, time) else one]
-        for key, (form, one) in said.items()
+        key: [of, str(one) if isinstance(one, time) else one]
+        for key, (of, one) in said.items()
         if one not in (None, "", [])
     }
     if not boxes:
@@ -92,17 +90,13 @@ def unfinished() -> dict[str, Any]:
 def take(said: dict[str, Any]) -> None:
     """Let boxes begin with what was said in them before a reload, as `unfinished` returned it."""
     st.session_state.update(said.get("times", {}))
-    for key, (form, value) in said.get("boxes", {}).items():
-        _shown()[key] = form
+    for key, (of, value) in said.get("boxes", {}).items():
+        _shown()[key] = of
         is_time = isinstance(value, str) and key.startswith(("treat began ", "treat ended "))
         widget_memory.first(key, time.fromisoformat(value) if is_time else value)
 
 
 def _shown() -> dict[str, str]:
-    """Return the form of each box that may hold something, by the box's key."""
+    """Return the count of each box that may hold something: how often its form was emptied."""
     shown: dict[str, str] = st.session_state.setdefault(_BOXES, {})
     return shown
-
-
-def _times(form: str) -> str:
-    return f"{_TIMES}{form}"

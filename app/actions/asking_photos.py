@@ -47,7 +47,8 @@ def _show_asking(choices: Choices, plants: tuple[int, ...]) -> None:
 def _show_one(choices: Choices, one: AskedPhoto) -> None:
     label = choices.season.label
     said, ends = st.columns([3, 1], vertical_alignment="center")
-    row, plant = label.line[one.plant], label.number[one.plant]
+    row = choices.season.plot.grid.row_signs[int(label.line[one.plant])]
+    plant = label.number[one.plant]
     note = texts.isolated(one.note)
     said.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
     ends.button(texts.ASK_NO_MORE, key=f"no photo {one.id}", on_click=_ask_no_more,

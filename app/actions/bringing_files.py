@@ -177,7 +177,7 @@ def _offer_undo(key: str) -> None:
     if key and answers(key):
         option, value = answers(key)[-1]
         st.button(texts.UNDO_ANSWER.format(answer=in_short(value, option)), key=f"back {key}",
-                  icon=":material/undo:", on_click=brought_files.take_back,
+                  icon=":material/undo:", on_click=brought_files.drop_answer,
                   args=(key,))  # fmt: skip
 
 

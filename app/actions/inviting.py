@@ -8,8 +8,8 @@ import streamlit as st
 
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.scouts_out import scouts_out
-from fieldmon.planning.members import person
-from fieldmon.plot.named_rows import row_meant
+from fieldmon.planning.members import person_key
+from fieldmon.plot.named_rows import rows_meant
 
 from ..show import qr_code, who_is_out
 from ..state import morning, notices, phone, scout_page
@@ -62,8 +62,12 @@ def _show_codes(choices: Choices) -> None:
             st.text_input(texts.INVITE_NAME, key="invite_name")
         left, right = st.columns(2)
         ends = _ends(choices.season)
-        left.number_input(texts.INVITE_FIRST, *ends, None, key="invite_first")
-        right.number_input(texts.INVITE_LAST, *ends, None, key="invite_last")
+        if choices.plot.grid.row_names:
+            left.text_input(texts.INVITE_FIRST, key="invite_first")
+            right.text_input(texts.INVITE_LAST, key="invite_last")
+        else:
+            left.number_input(texts.INVITE_FIRST, *ends, None, key="invite_first")
+            right.number_input(texts.INVITE_LAST, *ends, None, key="invite_last")
         st.caption(texts.INVITE_RULES_TEAM if choices.team else texts.INVITE_RULES)
         st.form_submit_button(texts.INVITE_BUTTON, on_click=_invite, args=(choices,))
     _show_code()
@@ -86,7 +90,7 @@ def _show_out(choices: Choices) -> None:
                 st.markdown(f"**{line.title}**", width="stretch")
                 if line.has_code:
                     st.button(texts.TAKE_BACK, key=f"take back {line.name}", type="tertiary",
-                              on_click=_take_back, args=(choices, line.name))  # fmt: skip
+                              on_click=_withdraw_key, args=(choices, line.name))  # fmt: skip
             st.caption(line.said)
             for caution in line.cautions:
                 st.markdown(f":material/warning: {caution}")
@@ -104,18 +108,15 @@ def _show_code() -> None:
 @notices.reporting
 def _invite(choices: Choices) -> str:
     state = st.session_state
-    name, first, last = state["invite_name"], state["invite_first"], state["invite_last"]
-    name = (name or "").strip()
+    name = (state["invite_name"] or "").strip()
+    typed = (state["invite_first"], state["invite_last"])
+    first, last = (None if one in {None, ""} else f"{one}" for one in typed)
     whole = first is None and last is None
-    (low, high), grid = _ends(choices.season), choices.plot.grid
-    rows = (
-        low if first is None else row_meant(grid, int(first)),
-        high if last is None else row_meant(grid, int(last)),
-    )
-    before = {person(one.name) for one in scouts.scouts_of(choices.season)}
+    rows = rows_meant(choices.plot.grid, first, last)
+    before = {person_key(one.name) for one in scouts.scouts_of(choices.season)}
     state[_SHOWN] = name, let_in(choices, name, None if whole else rows)
     morning.note(choices, morning.SEND)
-    return _what_follows(choices, name, had_code=person(name) in before)
+    return _what_follows(choices, name, had_code=person_key(name) in before)
 
 
 def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
@@ -123,7 +124,8 @@ def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
     said = texts.isolated(name)
     others = ", ".join(
         texts.isolated(other)
-        for one in scouts_out(choices.season, choices.on) if person(one.name) == person(name)
+        for one in scouts_out(choices.season, choices.on)
+        if person_key(one.name) == person_key(name)
         for other in one.shares
     )  # fmt: skip
     beside = choices.season.settings.team and choices.season.settings.named(name) is None
@@ -136,7 +138,7 @@ def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
 
 
 @notices.reporting
-def _take_back(choices: Choices, name: str) -> str:
-    scouts.take_back(choices.season, name)
+def _withdraw_key(choices: Choices, name: str) -> str:
+    scouts.withdraw_key(choices.season, name)
     st.session_state.pop(_SHOWN, None)
     return texts.TAKEN_BACK.format(name=texts.isolated(name))

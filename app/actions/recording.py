@@ -19,9 +19,9 @@ from fieldmon.io.options import Upload
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
-from fieldmon.plot.named_rows import row_meant
+from fieldmon.plot.named_rows import plant_meant
 
-from ..show import plant_history, recorded_batches
+from ..show import day, plant_history, recorded_batches
 from ..state import chosen_day, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
@@ -74,9 +74,11 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
         label = row_label(choices.plot.grid, np.array([min(index, len(choices.plot.grid) - 1)]))
         boxes = FreshBoxes(_ONE, choices)
         boxes.empty()  # a result that was said of another plant is none of this one
-        boxes.put("one_row", int(label.line[0]))
-        boxes.put("one_plant", int(label.number[0]))
-        boxes.put(_TAPPED, (int(label.line[0]), int(label.number[0])))
+        row, number = int(label.line[0]), int(label.number[0])
+        typed = f"{row}" if choices.plot.grid.row_names else row
+        boxes.put("one_row", typed)
+        boxes.put("one_plant", number)
+        boxes.put(_TAPPED, (typed, number))
         plant_history.take_plant(choices, layer, index)
 
 
@@ -86,7 +88,10 @@ def _show_one(choices: Choices) -> None:
     # no form: what is typed into one is the browser's alone until it is sent
     left, right = st.columns(2)
     # empty: what nobody said must not be recorded by one click
-    show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
+    if choices.plot.grid.row_names:
+        show(left.text_input, texts.HISTORY_ROW, box="one_row", default="")
+    else:
+        show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
     show(right.number_input, texts.HISTORY_PLANT, 0, None, box="one_plant")
     show(
         st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED], box="one_result",
@@ -101,11 +106,13 @@ def _show_one(choices: Choices) -> None:
 def _record_one(choices: Choices) -> str:
     said, grid = FreshBoxes(_ONE, choices).said, choices.plot.grid
     row, number, result, count = map(said, ("one_row", "one_plant", "one_result", "one_count"))
-    if None in (row, number, result):
+    if {None, ""} & {row, number, result}:
         raise SettingError(texts.ONE_UNSAID)
-    if tuple(said(_TAPPED) or ()) != (row, number):
-        row = row_meant(grid, int(row))
-    plant = plant_at(grid, int(row), int(number))
+    plant = (
+        plant_at(grid, int(row), number)
+        if tuple(said(_TAPPED) or ()) == (row, number)
+        else plant_meant(grid, f"{row}", int(number))
+    )
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
@@ -143,7 +150,7 @@ def _marks(
     label, stops = row_label(choices.plot.grid, plants), np.arange(len(plants)) + 1
     table = pd.DataFrame(
         {
-            **({texts.COLUMN_ROW: label.line} if choices.plot.grid.in_rows else {}),
+            **day.row_column(choices.plot.grid, label.line),
             texts.COLUMN_PLANT: label.number,
             texts.LEGEND_STATES["found"]: np.isin(stops, value),
         },
@@ -277,7 +284,7 @@ def ask_about_contradictions(choices: Choices) -> None:
     with st.container(horizontal=True):
         for key, label, action in (
             ("leave_out", texts.LEAVE_OUT.format(n=others), _leave_out),
-            ("holds", texts.HOLDS.format(n=len(said)), _hold),
+            ("holds", texts.HOLDS.format(n=len(said)), _record_instead),
             ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
             ("record_none", texts.RECORD_NONE, _drop),
         ):
@@ -309,7 +316,7 @@ def show_said_otherwise(choices: Choices) -> None:
     said = choices.season.contradicting(choices.on)
     if not len(said):
         return
-    label = choices.season.label
+    label, signs = choices.season.label, choices.plot.grid.row_signs
     lines = []
     for plant in dict.fromkeys(said.plant.tolist()):
         of = said.take(said.plant == plant)
@@ -318,7 +325,7 @@ def show_said_otherwise(choices: Choices) -> None:
             texts.HISTORY_RESULTS[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         ]  # fmt: skip
-        place = {"row": label.line[plant], "plant": label.number[plant]}
+        place = {"row": signs[int(label.line[plant])], "plant": label.number[plant]}
         lines.append(f"- {texts.SAID_BY.format(said=', '.join(each), **place)}")
     st.info("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
 
@@ -330,14 +337,14 @@ def _confirm(choices: Choices) -> str:
 
 
 @notices.reporting
-def _hold(choices: Choices) -> str:
+def _record_instead(choices: Choices) -> str:
     """Record all, and let what contradicts hold in place of what was recorded."""
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
     who = choices.who or ""
     done = choices.season.record_instead(waiting.results, waiting.source, who)
-    return _over(choices, waiting, done)
+    return _end_waiting(choices, waiting, done)
 
 
 @notices.reporting
@@ -356,10 +363,10 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
     done = choices.season.record(taken, waiting.source, who, confirmed=True)
-    return _over(choices, waiting, done)
+    return _end_waiting(choices, waiting, done)
 
 
-def _over(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
+def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
     """Let nothing wait any more; return what was done."""
     unconfirmed.drop()
     if waiting.form:

@@ -32,7 +32,8 @@ def show(choices: Choices) -> None:
     if choices.season is None or ahead or not plants:
         return
     label = row_label(choices.plot.grid, np.array(plants))
-    st.markdown(texts.HERE.format(row=int(label.line[0]), plant=int(label.number[0])))
+    row = choices.plot.grid.row_signs[int(label.line[0])]
+    st.markdown(texts.HERE.format(row=row, plant=int(label.number[0])))
     with st.container(horizontal=True, key="record_here"):
         for result in (FOUND, CLEAN):
             st.button(texts.HERE_RESULTS[result], key=f"here_{result}", on_click=_record,

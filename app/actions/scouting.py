@@ -91,7 +91,7 @@ def longer(choices: Choices) -> str:
     robot = replace(robot, hours=float(min(hours, 24.0)))
     changed = replace(settings, robot=robot)
     if choices.who is not None:
-        changed = _with(settings, replace(settings.member(choices.who), robot=robot))
+        changed = _with_member(settings, replace(settings.member(choices.who), robot=robot))
     choices.season.change(changed, settings)
     return _now_used(choices, texts.IN_HOURS.format(hours=number(robot.hours, "g")))
 
@@ -115,12 +115,12 @@ def _begin_now(choices: Choices) -> str:
     changed = replace(settings, starts=starts)
     if choices.who is not None:  # the others begin as before
         late_s = seconds(starts) - seconds(settings.starts)
-        changed = _with(settings, replace(settings.member(choices.who), starts_s=late_s))
+        changed = _with_member(settings, replace(settings.member(choices.who), starts_s=late_s))
     choices.season.change(changed, settings)
     return _now_used(choices, f"{starts:%H:%M}")
 
 
-def _with(settings: MonitoringSettings, member: TeamMember) -> MonitoringSettings:
+def _with_member(settings: MonitoringSettings, member: TeamMember) -> MonitoringSettings:
     """Return settings in which one of the team works otherwise."""
     team = tuple(member if one.name == member.name else one for one in settings.team)
     return replace(settings, team=team)

@@ -160,6 +160,8 @@ PLOT: dict[str, Any] = {
                 "start": _LIST | {"description": "Plants of row k: start[k] to start[k + 1]."},
                 "row": _LIST
                 | {"description": "Its number, as named in the plot's file or from 1."},
+                "sign": {"type": "array", "items": {"type": "string"}}
+                | {"description": "How it is shown: its number, and its name if that says more."},
                 "aisle": _LIST | {"description": "Rows of one number share their aisle."},
                 "side": _LIST
                 | {"description": "The aisle is left (1) or right (-1) of its plants in order."},

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from fieldmon.compute.arrays import run_ends
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.hotspots import hot_spots
@@ -62,7 +63,8 @@ def plot_document(season: Season) -> tuple[str, bytes]:
         "plant_spacing_m": grid.plant_spacing_m,
         "rows": {
             "start": grid.row_start.tolist(),
-            "row": season.label.line[grid.row_start[:-1]].tolist(),
+            "row": grid.row_number.tolist(),
+            "sign": [grid.row_signs[row] for row in grid.row_number.tolist()],
             "aisle": grid.corridor.tolist(),
             "side": (-grid.side).tolist(),
         },
@@ -205,23 +207,17 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[
     closed, line, mine = [], season.label.line, ahead.own(part)
     for one in season.closed(on, part.name):
         rows = np.unique(line[one.plants])
-        for run in _runs(rows):
+        for run in run_ends(rows).tolist():
             plants = np.flatnonzero(one.plants & (line >= run[0]) & (line <= run[1]))
             closed.append(
                 {
                     "rows": run,
                     "until": f"{one.until:%Y-%m-%dT%H:%M}",
-                    "plants": _runs(plants),
+                    "plants": run_ends(plants).tolist(),
                     "own": int(np.count_nonzero(mine[plants])),
                 }
             )
     return closed
-
-
-def _runs(numbers: NDArray[np.integer]) -> list[list[int]]:
-    """Return the first and the last of numbers in a row, of numbers in order."""
-    each = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
-    return [[int(run[0]), int(run[-1])] for run in each if len(run)]
 
 
 def _hot_spots(season: Season, known: NDArray[np.int8]) -> list[Any]:

@@ -146,7 +146,7 @@ def _opened(name: str, key: str) -> tuple[Season, Scout]:
         )
     try:
         season = opened_seasons.opened(path)
-        scout = scouts.who(season, key)
+        scout = scouts.key_owner(season, key)
     except (AccessError, FileHeld):
         raise
     except FieldmonError as error:  # what is wrong with it is no stranger's business

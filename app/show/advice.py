@@ -13,7 +13,7 @@ import streamlit as st
 from pydeck import Layer
 
 from fieldmon.compute.wording import litres_figure, share_figure
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import row_ends, row_label
 
 from ..state import assumptions, cached
 from ..words import texts
@@ -24,6 +24,7 @@ from .maps import colours, legends
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.advice import Advice
+    from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices
     from .map_view import MapContent
@@ -101,13 +102,18 @@ def table(advice: Advice) -> pd.DataFrame:
     return pd.DataFrame(
         {
             texts.DECIDE_ZONE: [k + 1 for k in range(len(mine))],
-            texts.DECIDE_ROWS: [_span(label.line[plants]) for plants in mine],
+            texts.DECIDE_ROWS: [_rows(advice.grid, label.line[plants]) for plants in mine],
             texts.DECIDE_PLANTS: [_span(label.number[plants]) for plants in mine],
             texts.DECIDE_INFESTED: [number(one.share, ".0%") for one in said],
             texts.DECIDE_ITSELF: [texts.DECIDE_VERDICTS[one.verdict] for one in said],
             texts.DECIDE_WRONG: [number(one.wrong, ".0%") for one in said],
         }
     )
+
+
+def _rows(grid: PlantGrid, line: np.ndarray) -> str:
+    low, high = row_ends(grid, line)
+    return low if low == high else f"{low}-{high}"
 
 
 def _span(numbers: np.ndarray) -> str:

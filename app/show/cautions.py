@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.monitoring.closures import any_closed, is_all_closed, left_off_in_words
+from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
 
 from ..state import chosen_day
 from ..words import texts
@@ -55,8 +55,8 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
     closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
     said = left_off_in_words(closed, (choices.plot.grid, season.label), units)
     to_kept = season.closed_to_kept(choices.on, choices.who or "")
-    shut = any_closed(to_kept, len(choices.plot.grid))
-    kept = np.count_nonzero(shut[chosen_day.given_out(choices)])
+    plants = closed_plants(to_kept, len(choices.plot.grid))
+    kept = np.count_nonzero(plants[chosen_day.given_out(choices)])
     told = texts.KEPT_CLOSED if len(plan.route) else texts.KEPT_ALL_CLOSED
     return [*map(in_words, said), *([told.format(n=int(kept))] if kept else [])]
 

@@ -13,7 +13,7 @@ import pandas as pd
 from ..words import language, texts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
@@ -44,6 +44,8 @@ _ASIDE_PX = 30
 _EDGE_PX = 10
 # as many letters of dates fit side by side in the narrow panel: six of "25 Nov"
 _LETTERS = 36
+# and as many rows
+_MOST_ROWS = 14
 
 
 def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
@@ -365,14 +367,24 @@ def ahead(
 
 
 @_in_language
-def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
-             axes: tuple[str, str]) -> alt.LayerChart:  # fmt: skip
-    """Return the days since each row was inspected, ``(r,)``.
+def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64], axes: tuple[str, str],
+             signs: Mapping[int, str] | None = None) -> alt.LayerChart:  # fmt: skip
+    """Return the days since each row was inspected, ``(r,)``, one beside the other.
 
-    A row inspected today has a tick on the ground, a row never inspected a hollow bar.
+    `signs` is how rows are shown, by their numbers; None: as these. A row inspected today has a
+    tick on the ground, a row never inspected a hollow bar.
     """
     table = pd.DataFrame({"row": lines, "days": days_since})
     table = table.groupby("row", as_index=False)["days"].min()  # NaN only where all are
+    table["sign"] = [(signs or {}).get(row, f"{row}") for row in table["row"].tolist()]
+    every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if len(table) <= k * _MOST_ROWS)
+    named = [one.sign != f"{one.row}" for one in table.itertuples()]
+    shown = [
+        sign for k, sign in enumerate(table["sign"])
+        if named[k]
+        # and no number so near before a name that it would take its room
+        or ((k == 0 or not (k + 1) % every) and not any(named[k + 1 : k + 1 + every // 2]))
+    ]  # fmt: skip
     never = table["days"].isna()
     most = 1.0 if never.all() else max(table["days"].max(), 1.0)
     table["high"] = table["days"].fillna(most)
@@ -381,15 +393,16 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64],
         for d in table["days"]
     ]
     encoding = {
-        # its ends are the rows': to a round number, 70 rows began at -10
+        # a place for each row there is, and none for a number that no row has
         "x": alt.X(
-            "row:Q",
+            "sign:O",
             title=axes[0],
-            axis=alt.Axis(tickMinStep=1, format="d"),
-            scale=alt.Scale(domain=[lines.min() - 0.5, lines.max() + 0.5], nice=False),
+            sort=None,
+            scale=alt.Scale(domain=table["sign"].tolist()),
+            axis=alt.Axis(values=shown, labelAngle=0, labelOverlap=True),
         ),
         "y": alt.Y("high:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
-        "tooltip": [alt.Tooltip("row", title=axes[0]), alt.Tooltip("said", title=axes[1])],
+        "tooltip": [alt.Tooltip("sign", title=axes[0]), alt.Tooltip("said", title=axes[1])],
     }
     seen = alt.Chart(table[~never]).mark_bar(color=_COLOURS[2])
     today = alt.Chart(table[table["days"] == 0]).mark_tick(

@@ -28,8 +28,11 @@ from .assumed import mark
 if TYPE_CHECKING:
     from datetime import date
 
+    from numpy.typing import NDArray
+
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices
     from ..state.chosen_day import DayRoute
@@ -45,7 +48,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
     starts = pd.Timestamp(shown.begins)
     columns = {
         texts.COLUMN_ARRIVE: (starts + gone).strftime("%H:%M:%S"),
-        **({texts.COLUMN_ROW: label.line} if choices.plot.grid.in_rows else {}),
+        **row_column(choices.plot.grid, label.line),
         texts.COLUMN_PLANT: label.number,
         texts.COLUMN_CHANCE: (100 * route.chance).round(1),
     }
@@ -54,6 +57,12 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
         was = dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
         columns[texts.REPORT_WAS] = [texts.HISTORY_RESULTS[was[p]] for p in route.plant.tolist()]
     return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name=texts.STOP_NUMBER))
+
+
+def row_column(grid: PlantGrid, line: NDArray[np.int64]) -> dict[str, object]:
+    """Return the column of a table that says the row: numbers, or texts where rows have names."""
+    named = [grid.row_signs[k] for k in line.tolist()] if grid.row_names else line
+    return {texts.COLUMN_ROW: named} if grid.in_rows else {}
 
 
 def headline(choices: Choices, plan: DayPlan) -> str:
@@ -121,7 +130,7 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
 
     And which rows the robot is too wide for.
     """
-    if told := plan.route.aisles.shut_sentence():
+    if told := plan.route.aisles.narrow_sentence():
         st.warning(in_words(told))
     is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
     said = "" if is_said else texts.NO_STOPS
@@ -205,7 +214,8 @@ def _risen(choices: Choices, since: str) -> str:
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
     rises = [texts.isolated(f"+{number(100 * rise[k], '.1f')}") for k in top]
     return listed(
-        f"{grid.line_number[k]}\u00a0({said})" for k, said in zip(top, rises, strict=True)
+        f"{grid.row_signs[int(grid.line_number[k])]}\u00a0({said})"
+        for k, said in zip(top, rises, strict=True)
     )
 
 

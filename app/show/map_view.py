@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import streamlit as st
 
+from fieldmon.compute.arrays import run_ends
+
 from ..state import browser, chosen_units
 from ..state.map_file import ADDRESS
 from ..words import language, texts
@@ -213,7 +215,7 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
                           "lengths": [list(one) for one in draw.lengths]},
         "taps": answers.tapped is not None,
         "select": answers.selected is not None,
-        "picked": _runs(answers.picked),
+        "picked": run_ends(np.unique(answers.picked)).tolist(),
         "title": content.title,
         "when": content.when,
         "dark": browser.is_dark(),
@@ -246,13 +248,3 @@ def _heard(answers: MapAnswers) -> None:
         runs = ((int(first), int(last)) for first, last in some["runs"])
         plants = chain.from_iterable(range(first, last + 1) for first, last in runs)
         answers.selected(tuple(islice(plants, _MOST_PICKED)))
-
-
-def _runs(plants: tuple[int, ...]) -> list[list[int]]:
-    """Return plants as runs of numbers, first and last of each: few, for whole rows."""
-    if not plants:
-        return []
-    numbers = np.unique(plants)
-    ends = np.flatnonzero(np.diff(numbers) != 1)
-    first, last = np.append(0, ends + 1), np.append(ends, len(numbers) - 1)
-    return np.stack([numbers[first], numbers[last]], axis=1).tolist()

@@ -46,7 +46,7 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         plant,
         lonlat,
         (texts.NEXT_PLACE if grid.in_rows else texts.NEXT_ALONE).format(
-            row=label.line[0], plant=label.number[0]
+            row=grid.row_signs[int(label.line[0])], plant=label.number[0]
         ),
         texts.NEXT_WAY.format(
             metres=units.metres(drive_m), compass=texts.COMPASS[sector],

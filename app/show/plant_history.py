@@ -16,6 +16,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import photos
 from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.named_rows import plant_meant
 
 from ..state import chosen_day, widget_memory
 from ..words import texts
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from .map_view import MapContent, Selected, Tapped
 
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
+# a number tapped is the row's own, whoever else has it for a name
+_TAPPED_AT = "history tapped at"
 _MOST_PHOTOS = 3
 
 
@@ -52,7 +55,11 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
     if layer.startswith("plants"):
         grid = choices.plot.grid
         label = row_label(grid, np.array([min(index, len(grid) - 1)]))
-        st.session_state[_ROW], st.session_state[_PLANT] = int(label.line[0]), int(label.number[0])
+        row = int(label.line[0])
+        typed = f"{row}" if grid.row_names else row
+        st.session_state[_row_box(grid)] = typed
+        st.session_state[_PLANT] = int(label.number[0])
+        st.session_state[_TAPPED_AT] = typed, int(label.number[0])
         st.session_state[_TAPPED] = True
 
 
@@ -60,10 +67,10 @@ def tapped(choices: Choices) -> tuple[int, ...]:
     """Return the plant that was tapped, or none."""
     if not st.session_state.get(_TAPPED):
         return ()
+    grid = choices.plot.grid
+    row, number = (widget_memory.value(key, 1) for key in (_row_box(grid), _PLANT))
     try:
-        return (
-            plant_at(choices.plot.grid, *(widget_memory.value(key, 1) for key in (_ROW, _PLANT))),
-        )
+        return (_plant(grid, row, number),)
     except FieldmonError:
         return ()  # its history says why
 
@@ -85,14 +92,15 @@ def show(choices: Choices) -> None:
     """Show what is known of the plant tapped, or of the one whose row and number are given."""
     st.markdown(f"### {texts.HISTORY}")
     st.caption(texts.HISTORY_TAP)
-    row, number = (
-        widget_memory.show(st.number_input, label, 0, key=key, default=first)
-        for label, key, first in zip(
-            (texts.HISTORY_ROW, texts.HISTORY_PLANT), (_ROW, _PLANT),
-            _lowest(choices.plot.grid), strict=True,
-        )
-    )  # fmt: skip
-    plant = plant_at(choices.plot.grid, int(row), int(number))
+    grid = choices.plot.grid
+    row, number = _lowest(grid)
+    show_box, key = widget_memory.show, _row_box(grid)
+    if grid.row_names:
+        row = show_box(st.text_input, texts.HISTORY_ROW, key=key, default=f"{row}")
+    else:
+        row = show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=row)
+    number = show_box(st.number_input, texts.HISTORY_PLANT, 0, key=_PLANT, default=number)
+    plant = _plant(grid, row, number)
     now = first = chosen_day.chance(choices)
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
@@ -106,6 +114,18 @@ def show(choices: Choices) -> None:
         st.caption(texts.HISTORY_TREATED)
     st.markdown("\n".join(_inspections(choices, plant)))
     _show_photos(choices, plant)
+
+
+def _row_box(grid: PlantGrid) -> str:
+    """Return the key of the box for the row: names need another than numbers."""
+    return f"{_ROW} called" if grid.row_names else _ROW
+
+
+def _plant(grid: PlantGrid, row: int | str, number: int) -> int:
+    """Return the plant that was tapped, or that is meant by what was typed."""
+    if st.session_state.get(_TAPPED_AT) == (row, number):
+        return plant_at(grid, int(row), number)
+    return plant_meant(grid, f"{row}", int(number))
 
 
 def _lowest(grid: PlantGrid) -> tuple[int, int]:

@@ -27,7 +27,8 @@ def in_short(result: str) -> str:
 def last(choices: Choices, said: BatchContents) -> str:
     """Return what was said last, of one plant: what an undo beside it takes back."""
     words = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
-    return words.format(row=said.row, plant=said.plant, result=_result(said))
+    row = choices.plot.grid.row_signs.get(said.row, said.row)
+    return words.format(row=row, plant=said.plant, result=_result(said))
 
 
 def source(name: str) -> str:

@@ -49,7 +49,9 @@ def lines(choices: Choices) -> tuple[OutLine, ...]:
 def _line(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> OutLine:
     title = texts.isolated(one.name)
     if one.rows is not None:
-        title = texts.INVITED.format(name=title, low=one.rows[0], high=one.rows[1])
+        signs = choices.season.plot.grid.row_signs
+        low, high = (signs.get(row, row) for row in one.rows)
+        title = texts.INVITED.format(name=title, low=low, high=high)
     made = texts.OUT_NO_CODE
     if one.made is not None:
         made = texts.OUT_MADE.format(at=_clock(choices, one.made))

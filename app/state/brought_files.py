@@ -149,6 +149,6 @@ def answer(asked: str, option: str, value: str) -> None:
         st.session_state[f"answers {asked}"] = (*answers(asked), (option, value))
 
 
-def take_back(asked: str) -> None:
-    """Take the last answer about a file back."""
+def drop_answer(asked: str) -> None:
+    """Drop the last answer about a file."""
     st.session_state[f"answers {asked}"] = answers(asked)[:-1]

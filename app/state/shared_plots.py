@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
 from fieldmon.monitoring import estate_day
-from fieldmon.monitoring.closures import any_closed, left_off_in_words
+from fieldmon.monitoring.closures import closed_plants, left_off_in_words
 from fieldmon.monitoring.estate_day import EstatePlot
 from fieldmon.monitoring.estate_routes import EstateRoute
 from fieldmon.planning.members import TeamMember
@@ -146,8 +146,8 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
 
 
 def _plan(ready: _Ready, turn: EstateTurn) -> DayPlan:
-    shut = any_closed(turn.closed, len(turn.scene.chance))
-    key = f"{ready.key} {digest(shut)}" if shut.any() else ready.key
+    closed = closed_plants(turn.closed, len(turn.scene.chance))
+    key = f"{ready.key} {digest(closed)}" if closed.any() else ready.key
     return cached.turn_plan(key, turn.scene.robot, turn)
 
 

@@ -70,6 +70,7 @@ def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> Non
     line = choices.plot.grid.row_number
     rows, seen = (len(np.unique(of)) for of in (line, line[~np.isnan(progress.days_since)]))
     if progress.inspected:
-        ages = charts.row_ages(progress.days_since, line, (texts.ROW_AXIS, texts.DAYS_SINCE))
+        signs, axes = choices.plot.grid.row_signs, (texts.ROW_AXIS, texts.DAYS_SINCE)
+        ages = charts.row_ages(progress.days_since, line, axes, signs)
         st.altair_chart(ages, alt=texts.ROW_AGES)
     st.caption(texts.NEVER_ROWS.format(n=rows - seen, all=rows) if seen < rows else texts.EVERY_ROW)

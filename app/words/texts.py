@@ -1150,6 +1150,7 @@ SCOUT_PAGE = {
     "other_plant": "Another plant", "back_to_route": "Back to the route",
     "photos": "Photos: {n}", "drop_photos": "Throw these photos away?",
     "row": "Row", "plant": "Plant", "no_such_plant": "There is no such plant.",
+    "several_rows": "Several rows are called {row}: tap the plant on the map.",
     "no_picture": "This is no picture that the phone can read.",
     "phone_full": "The phone is full: this was NOT kept. Make room and try again.",
     "no_disk": "This phone keeps nothing for this page now, so no work can begin. Leave private "

@@ -208,7 +208,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     decides = sampler_of(options.sampler, options.every)
     monitor = Monitor(plot, decides, worker, chance, seed=options.seed)
     tell_assumed(assumed_by((), prior, worker, plot.grid))
-    if told := aisles.shut_sentence():
+    if told := aisles.narrow_sentence():
         typer.echo(told)
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         begins = local_clock(plot.field).moment(on, time(6))
@@ -236,7 +236,7 @@ def _season(options: DriveOptions, file: Path) -> None:
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
     _tell_others(season, on, today.left_out)
-    if told := aisles.shut_sentence():
+    if told := aisles.narrow_sentence():
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")

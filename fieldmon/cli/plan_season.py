@@ -108,7 +108,7 @@ class _LeftOff(NamedTuple):
     def of(cls, season: Season, on: date, days: tuple[tuple[str, DayPlan], ...]) -> _LeftOff:
         """Return it of the plans of those named."""
         from fieldmon.compute.units import Units
-        from fieldmon.monitoring.closures import any_closed, is_all_closed, left_off_in_words
+        from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
 
         plot, n = (season.plot.grid, season.label), len(season.plot.grid)
         each = [(season.closed(on, who, today.scene.seconds_left), today) for who, today in days]
@@ -118,7 +118,7 @@ class _LeftOff(NamedTuple):
             tuple(dict.fromkeys(said)),
             bool(timely) and all(is_all_closed(today.scene, closed) for closed, today in timely),
             any(one.opens for closed, _ in each for one in closed),
-            any(any_closed(closed, n)[today.route.plant].any() for closed, today in each),
+            any(closed_plants(closed, n)[today.route.plant].any() for closed, today in each),
         )
 
 

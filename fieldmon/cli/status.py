@@ -185,7 +185,7 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
     """Yield what those who inspect on a day find, where they find otherwise than all until then."""
     by = season.planned_by(now.on)
     detects = {one.detects for one in [member.robot for member in by.team] or [by.robot]}
-    if detects == {season.history.told(now.day)}:
+    if detects == {season.history.mean_detection(now.day)}:
         return  # it takes seconds to work out
     for whose, _, learnt in learnt_of_each(season, now.on):
         if learnt != of_all:
@@ -218,9 +218,10 @@ def _show_rows(season: Season, now: Status) -> None:
     from fieldmon.compute.wording import counted
 
     grid = season.plot.grid
-    of_plant, signs = grid.row_number, dict(zip(grid.line_number, grid.line_signs, strict=True))
+    of_plant, signs = grid.row_number, grid.row_signs
+    wide = max(4, *map(len, signs.values()))
     for line in np.unique(of_plant):
         days = now.days_since[of_plant == line]
         known = days[~np.isnan(days)]
         said = f"{counted(round(known.min()), 'day')} ago" if len(known) else "never"
-        typer.echo(f"  row {signs[line]:>4}  {said}")
+        typer.echo(f"  row {signs[line]:>{wide}}  {said}")

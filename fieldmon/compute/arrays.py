@@ -53,3 +53,11 @@ def runs(
     """
     run = np.repeat(np.arange(len(count)), count)
     return np.arange(len(run)) + (first - offsets(count)[:-1])[run], run
+
+
+def run_ends(numbers: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Return the first and the last of each run of ascending whole numbers, ``(k, 2)``."""
+    parted = np.diff(numbers) > 1
+    first, last = np.append(True, parted), np.append(parted, True)
+    n = len(numbers)
+    return np.stack([numbers[first[:n]], numbers[last[:n]]], axis=1)

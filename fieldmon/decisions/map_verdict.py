@@ -210,6 +210,20 @@ def map_verdict(
     return asked.of(shares[:, 0], float(chance[of].mean()))
 
 
+def verdict_of(
+    grid: PlantGrid,
+    belief: Belief,
+    level: float,
+    sure: float = 0.9,
+    found: NDArray[np.bool_] | None = None,
+    *,
+    plants: NDArray[np.bool_] | None = None,
+) -> MapVerdict:
+    """Return the same of a belief, with the doubt that it tells of itself, see `AskedVerdict`."""
+    asked = AskedVerdict.on(belief, level, sure, found)
+    return map_verdict(grid, belief.chance, asked, belief.pair_chance, plants=plants)
+
+
 def _asked(plants: object, n: int) -> NDArray[np.bool_]:
     """Return which plants are asked about, ``(n,)``."""
     asked = array_of(

@@ -12,7 +12,7 @@ from fieldmon.monitoring.day_ahead import DayAhead, inside, through
 from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.pests.weather import DAY_S
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.planning.wishes import Wishes
 
 if TYPE_CHECKING:
@@ -174,7 +174,7 @@ def left_of_plan(
         First and last row of each part that is left to others.
     """
     ahead, scene = DayAhead.of(season, on), season.scene(on, who=who)
-    name = person(who) if isinstance(who, str) else ""
+    name = person_key(who) if isinstance(who, str) else ""
     if (kept := ahead.last.get(name)) is None:
         return None
     done = season.worked(on, who)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.chance_bounds import MOST_CHANCE
-from fieldmon.infestation.plot_estimate import doubted_level, must_be_sure
+from fieldmon.infestation.plot_estimate import doubted_level, level_doubt, must_be_sure
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.unwatched import Since
+    from fieldmon.infestation.belief import Belief
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -53,35 +53,19 @@ class LevelRange:
         return low, high
 
 
-def level_range(
-    chance: Floats,
-    doubt: float,
-    sure: float = 0.9,
-    since: Since | None = None,
-    *,
-    named: bool = False,
-) -> LevelRange:
-    """Return how far a chance map ``(n,)`` may be off as a whole.
+def level_range(belief: Belief, sure: float = 0.9) -> LevelRange:
+    """Return how far a belief's chances may be off as a whole.
 
-    At its ends the chances add up to the ends of what the expected number may be, as
-    `estimate_plot` doubts it; what chance does to single plants is left out.
-
-    Parameters
-    ----------
-    doubt
-        How far the expected number may be off, as a share (`Belief.doubt`).
-    sure
-        Chance that the interval holds the expected number.
-    since
-        What the number may have become on days without inspections (`Belief.since_inspected`).
-    named
-        Whether somebody named the pest, as `estimate_plot` has it.
+    At its ends they add up to the ends of what the expected number may be, as `estimate_of` doubts
+    it; what chance does to single plants is left out. `sure` is the chance that the interval holds
+    the expected number.
     """
     must_be_sure(sure)
+    chance, doubt, since = belief.chance, level_doubt(belief), belief.since_inspected
     share = float(np.mean(chance))
     if doubt <= 0.0 or not 0.0 < share < MOST_CHANCE:
         return LevelRange()
-    factors = doubted_level(doubt, named=named)
+    factors = doubted_level(doubt, named=belief.pest is not None)
     factors = factors if since is None else factors * since.times
     by = np.quantile(factors, [0.5 - sure / 2, 0.5 + sure / 2])
     ends = share * by / (1.0 + share * (by - 1.0))
@@ -98,4 +82,4 @@ def first_level_range(grid: PlantGrid, chance: Floats) -> LevelRange:
 
     A season believes the same on its first morning.
     """
-    return level_range(chance, TracedPairs.of(grid, chance).doubt)
+    return level_range(TracedPairs.of(grid, chance))

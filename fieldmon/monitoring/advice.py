@@ -21,7 +21,7 @@ from fieldmon.compute.wording import (
     share_figure,
     worded,
 )
-from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict, zone_verdicts
+from fieldmon.decisions.map_verdict import AskedVerdict, verdict_of, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, outlines
@@ -420,10 +420,10 @@ def advice(
     found
         ``(n,)`` plants that were found infested and left, of which nothing is in doubt.
     """
-    question = AskedVerdict.on(evening, asked.level, asked.sure, found)
-    plot = map_verdict(grid, evening.chance, question, evening.pair_chance)
+    plot = verdict_of(grid, evening, asked.level, asked.sure, found)
     spared = np.logical_or.reduce([one.plants for one in done]) if done else None
     zones = best_zones(grid, evening.chance, asked.sprayer, asked.costs, spared)
+    question = AskedVerdict.on(evening, asked.level, asked.sure, found)
     said = zone_verdicts(
         grid, (evening.chance, evening.pair_chance), zones.zone, question, asked.costs.works
     )
@@ -447,8 +447,7 @@ def inspections_to_verdict(
         after = evening.learn(order[:looks], np.full(looks, all_found), learning)
         now = known.copy()
         now[order[:looks]] |= all_found
-        question = AskedVerdict.on(after, asked.level, asked.sure, now)
-        return map_verdict(scene.grid, after.chance, question, after.pair_chance).verdict
+        return verdict_of(scene.grid, after, asked.level, asked.sure, now).verdict
 
     return MoreInspections(
         _first(lambda looks: verdict(looks, all_found=False) == LEAVE, len(order)),

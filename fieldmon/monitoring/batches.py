@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
-from fieldmon.monitoring import replaced, schema
+from fieldmon.monitoring import replaced, schema, treatments
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.plot.local_clock import utc_text
 
@@ -229,10 +229,11 @@ def undo(db: sqlite3.Connection, number: int | None) -> tuple[set[int], str]:
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
     replaced.undo_corrections(db, batch.number)
-    again = replaced.count_again(db, table)
+    rows = treatments if batch.kind == "treatment" else replaced
+    again = rows.count_again(db)
     touch(db, table)
     said = _undone(batch, contents(db, [batch.number]).get(batch.number))
-    return {batch.number, *again}, _still(said, replaced.n_elsewhere(db, batch.number, table))
+    return {batch.number, *again}, _still(said, rows.n_elsewhere(db, batch.number))
 
 
 def _undone(batch: Batch, said: BatchContents | None) -> str:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, runs, worded
+from fieldmon.compute.wording import counted, worded
 from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.plot.grid import rows_listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -103,7 +104,7 @@ def closed_on(
     return tuple(one for one in closed if one is not None)
 
 
-def any_closed(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
+def closed_plants(closed: Sequence[Closure], n: int) -> NDArray[np.bool_]:
     """Return ``(n,)`` which plants people may not come to."""
     return np.any([one.plants for one in closed], axis=0) if closed else np.zeros(n, np.bool_)
 
@@ -112,8 +113,8 @@ def open_to_people(scene: Scene, closed: Sequence[Closure]) -> Scene:
     """Return a scene in which nobody is sent to plants that are closed: they seem inspected."""
     if not closed:
         return scene
-    shut = any_closed(closed, len(scene.chance))
-    last = np.where(shut, np.int32(scene.day), scene.last_inspected)
+    plants = closed_plants(closed, len(scene.chance))
+    last = np.where(plants, np.int32(scene.day), scene.last_inspected)
     return replace(scene, last_inspected=last)
 
 
@@ -121,8 +122,8 @@ def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:
     """Tell whether there is time, but no plant where people may be: others were inspected today."""
     if not closed or scene.seconds_left <= 0:
         return False
-    shut = any_closed(closed, len(scene.chance)) | (scene.last_inspected == scene.day)
-    return bool(shut.all())
+    left_out = closed_plants(closed, len(scene.chance)) | (scene.last_inspected == scene.day)
+    return bool(left_out.all())
 
 
 def left_off_in_words(
@@ -138,18 +139,17 @@ def left_off_in_words(
         plants = one.plants & ~told
         told |= plants
         if plants.any():
-            said.append(_in_words(one, np.unique(label.line[plants]) if grid.in_rows else None,
-                                  int(np.count_nonzero(plants)), units))  # fmt: skip
+            said.append(_in_words(one, grid, label.line[plants], units))  # fmt: skip
     return tuple(said)
 
 
-def _in_words(one: Closure, rows: NDArray[np.integer] | None, n: int, units: Units) -> Worded:
-    which = counted(n, "plant")
-    if rows is not None:
-        said = runs(rows.tolist())
+def _in_words(one: Closure, grid: PlantGrid, line: NDArray[np.integer], units: Units) -> Worded:
+    which = counted(len(line), "plant")
+    if grid.in_rows:
+        said = rows_listed(grid, line)
         which = (
             worded("{plants} in row {row}", plants=which, row=said)
-            if len(rows) == 1
+            if len(np.unique(line)) == 1
             else worded("{plants} in rows {rows}", plants=which, rows=said)
         )
     values = {

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.monitoring import routes
-from fieldmon.monitoring.closures import any_closed
+from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import scouts_in
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.wishes import Wishes
@@ -92,7 +92,7 @@ class DayAhead:
     scouts
         Who has a code.
     last, plants
-        The route kept last of each who has one, and its plants ``(k,)``, by `person`.
+        The route kept last of each who has one, and its plants ``(k,)``, by `person_key`.
     asked
         The photos that are asked for.
     """
@@ -116,7 +116,7 @@ class DayAhead:
     def kept(self, who: str = "") -> Plants:
         """Return the plants of somebody's route; nobody named: of the first of the team."""
         named = self.settings.at_work(who)
-        return self.plants.get(person(who if named is None else named.name), _NO_PLANTS)
+        return self.plants.get(person_key(who if named is None else named.name), _NO_PLANTS)
 
     def member(self, part: Part) -> TeamMember | None:
         """Return the one of the team whose part it is, or None."""
@@ -133,16 +133,16 @@ class DayAhead:
         """
         rows = self._lines(part.rows)
         names = {
-            person(one.name): one.name
+            person_key(one.name): one.name
             for one in self.scouts
             if self._lines(one.rows) == rows and self.settings.named(one.name) is None
         }
-        names.setdefault(person(part.name), part.name)
+        names.setdefault(person_key(part.name), part.name)
         return tuple(names.values())
 
     def others(self, part: Part) -> tuple[str, ...]:
         """Return who else shares a part's plants."""
-        return tuple(one for one in self.crew(part) if person(one) != person(part.name))
+        return tuple(one for one in self.crew(part) if person_key(one) != person_key(part.name))
 
     def kept_as(self, part: Part) -> str:
         """Return by which name a part's route is kept.
@@ -154,18 +154,18 @@ class DayAhead:
             return member.name
         if part.rows is not None or self.settings.team or self.others(part):
             return part.name
-        own, seasons = (self.last.get(person(who)) for who in (part.name, ""))
+        own, seasons = (self.last.get(person_key(who)) for who in (part.name, ""))
         is_newer = own is not None and (seasons is None or own.number > seasons.number)
         return part.name if is_newer else ""
 
     def plan_of(self, part: Part) -> int | None:
         """Return the number of the route kept last of a part as a plan; None: none is kept."""
-        kept = self.last.get(person(self.kept_as(part)))
+        kept = self.last.get(person_key(self.kept_as(part)))
         return None if kept is None else kept.plan
 
     def mark(self, part: Part) -> str:
         """Return the digest of the route kept last of a part; empty: none is kept."""
-        kept = self.last.get(person(self.kept_as(part)))
+        kept = self.last.get(person_key(self.kept_as(part)))
         return "" if kept is None else kept.digest
 
     def route(self, part: Part) -> Plants:
@@ -205,10 +205,10 @@ class DayAhead:
         mine, team = self.own(part), [one.name for one in self.settings.team]
         names = self.crew(part) if self.member(part) is None else team
         if part.name and len(names) > 1:
-            if person(part.name) != person(names[0]):
+            if person_key(part.name) != person_key(names[0]):
                 mine &= np.isin(np.arange(len(mine)), self.kept(part.name))
             for one in names:
-                if person(one) != person(part.name):
+                if person_key(one) != person_key(part.name):
                     mine[self.kept(one)] = False
         return tuple(one for one in self.asked if mine[one.plant])
 
@@ -232,8 +232,8 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     ahead = DayAhead.of(season, on)
     with season.entering_treated():
         scene = season.scene(on, who=part.name)
-    shut = season.closed_to_kept(on, part.name, ahead.kept_as(part))
-    closed = any_closed(shut, len(scene.chance))
+    to_kept = season.closed_to_kept(on, part.name, ahead.kept_as(part))
+    closed = closed_plants(to_kept, len(scene.chance))
     kept = ahead.route(part)
     kept = kept[scene.last_inspected[kept] != scene.day]
     left = kept[ahead.own(part)[kept]]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.monitoring.closures import any_closed, open_to_people
+from fieldmon.monitoring.closures import closed_plants, open_to_people
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.shared_day import MOVE_S, PlotNeed, share_day
 
@@ -162,7 +162,8 @@ def share_estate(
     closed = [_all_day(plot, starts, day_s) for plot in plots]
     while True:
         is_open = [
-            (one.scene.last_inspected != one.scene.day) & ~any_closed(known, len(one.scene.chance))
+            (one.scene.last_inspected != one.scene.day)
+            & ~closed_plants(known, len(one.scene.chance))
             for one, known in zip(plots, closed, strict=True)
         ]
         needs = [_need(one.scene, free, members) for one, free in zip(plots, is_open, strict=True)]
@@ -170,7 +171,7 @@ def share_estate(
             _turn(plots[one.plot], one, members[one.who], starts)
             for one in share_day(needs, members, move_s)
         ]
-        more = [one for one in turns if (_shut(one) & is_open[one.plot]).any()]
+        more = [one for one in turns if (_closed(one) & is_open[one.plot]).any()]
         if not more:
             break
         for one in more:
@@ -218,5 +219,5 @@ def _turn(plot: EstatePlot, turn: PlotTurn, member: TeamMember, starts: time) ->
     return EstateTurn(turn.plot, turn.who, begins, scene, plot.decides, closed)
 
 
-def _shut(turn: EstateTurn) -> NDArray[np.bool_]:
-    return any_closed(turn.closed, len(turn.scene.chance))
+def _closed(turn: EstateTurn) -> NDArray[np.bool_]:
+    return closed_plants(turn.closed, len(turn.scene.chance))

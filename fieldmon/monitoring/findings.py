@@ -33,7 +33,7 @@ from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def take(
     fast = sent - received
     shift = fast if abs(fast) > CLOCK_IS_WRONG else timedelta()
     with season.changing() as change:
-        scout = scouts.who_in(change.db, season, key)
+        scout = scouts.key_owner_in(change.db, season, key)
         letter = _SentFindings([*findings], (received, sent), received, shift)
         return _take(season, change, scout, letter)
 
@@ -252,7 +252,7 @@ def _take(
         known[one.id] = one.content(), ""
     letter = replace(letter, findings=list(news.values()))
     problems, batch, made = _write(season, change, scout, letter)
-    taken_back = _take_back(change) if news else set()
+    taken_back = _undo_as_told(change) if news else set()
     if made:
         states = season_log.states(change.db, {batch, *taken_back})
         columns = (np.concatenate([getattr(one, name) for one in made])
@@ -357,7 +357,7 @@ def _write(
 def _of_another(db: sqlite3.Connection, scout: Scout, one: Finding) -> dict[str, str]:
     """Return why a finding takes nothing back, by its id: nobody takes back what others told."""
     told = db.execute("SELECT scout FROM tellings WHERE id = ?", (one.undoes,)).fetchone()
-    if told is None or person(told[0]) == person(scout.name):
+    if told is None or person_key(told[0]) == person_key(scout.name):
         return {}
     said = worded("This was recorded by {who}, so nobody else can take it back here.", who=told[0])
     return {one.id: said}
@@ -455,9 +455,9 @@ def _keep(
     )
 
 
-def _take_back(change: SeasonChange) -> set[int]:
-    """Take back what was told to be; return the batches that it was of."""
-    back = phone_tables.take_back(change.db)
+def _undo_as_told(change: SeasonChange) -> set[int]:
+    """Undo what was told to be taken back; return the batches that it was of."""
+    back = phone_tables.undo_as_told(change.db)
     for batch, day in back:
         batches.close_if_empty(change.db, batch)
         change.reaches(day)

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 from fieldmon.monitoring import batches, copy_corrections, outside_changes
 from fieldmon.monitoring.geopackage import touch
-from fieldmon.monitoring.inspection_table import clock
+from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.monitoring.outside_changes import OutsideChange
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
@@ -54,7 +54,7 @@ def take(
         (row, was), *others = db.execute(_OTHERWISE, key).fetchall()
         change = OutsideChange(INSPECTIONS.name, row, "update", was)
         change = replace(change, before=copy_corrections.as_it_is(db, row))
-        told = clock(float(one.second[0])), str(one.who[0]) or who, str(one.notes[0])
+        told = time_text(float(one.second[0])), str(one.who[0]) or who, str(one.notes[0])
         count = None if np.isnan(one.count[0]) else float(one.count[0])
         db.execute(_SAYS, (result, count, *told, row))
         now = outside_changes.take_row(db, change, plot, settings, batch)

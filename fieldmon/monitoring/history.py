@@ -24,12 +24,12 @@ from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.plot_estimate import estimate_of, level_doubt
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_day import KNOWN
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.weather import DAY_S
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
@@ -352,7 +352,7 @@ class History:
                 )
         return believed
 
-    def told(self, day: int) -> float:
+    def mean_detection(self, day: int) -> float:
         """Return what the inspections up to the evening of a day were told to find, on average.
 
         If there are none, what the first one after it was.
@@ -404,10 +404,7 @@ class History:
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""
-        left = self._still_out(morning, day)
-        named = left.pest is not None
-        doubt = level_doubt(left)
-        return level_range(left.chance, doubt, since=left.since_inspected, named=named)
+        return level_range(self._still_out(morning, day))
 
     def _still_out(self, morning: Belief, day: int) -> Belief:
         """Return what is believed of plants not found yet."""
@@ -424,7 +421,7 @@ class History:
 
         And of inspections that are told to have a `detection`; None: of those made until then.
         """
-        told = self.told(day) if detection is None else detection
+        told = self.mean_detection(day) if detection is None else detection
         if np.all(self.until(day).result == SKIPPED):  # nights alone teach nothing
             return learnt_from(self.first_morning, told)
         return learnt_from(self.in_hindsight(morning, day), told)
@@ -491,7 +488,7 @@ class History:
             else self.in_hindsight(morning, day)
         )
         last = self.last_inspected(day)
-        last[today.plant] = day  # nobody is sent to a plant twice a day, not even a closed one
+        last[today.plant] = day  # nobody is sent to a plant twice a day, not even a skipped one
         trail = self._trail(day, who)
         today = made_by(today, who)
         resting = resting_place(robot, trail)
@@ -571,10 +568,10 @@ def made_by(inspections: Inspections, who: str | Besides | None) -> Inspections:
     """Return those that somebody made; None: all."""
     if who is None:
         return inspections
-    names = np.array([person(str(name)) for name in inspections.who], np.str_)
+    names = np.array([person_key(str(name)) for name in inspections.who], np.str_)
     if isinstance(who, Besides):
-        return inspections.take(~np.isin(names, [person(one) for one in who.others]))
-    return inspections.take(names == person(who))
+        return inspections.take(~np.isin(names, [person_key(one) for one in who.others]))
+    return inspections.take(names == person_key(who))
 
 
 @dataclass(frozen=True, eq=False)

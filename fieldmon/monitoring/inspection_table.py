@@ -76,7 +76,7 @@ def rows(
         label.line[plants].tolist(),
         label.number[plants].tolist(),
         dates,
-        map(clock, inspections.second.tolist()),
+        map(time_text, inspections.second.tolist()),
         [RESULT_NAMES[code] for code in inspections.result.tolist()],
         [None if np.isnan(count) else count for count in inspections.count.tolist()],
         [str(who) or batch[1] for who in inspections.who],
@@ -175,7 +175,7 @@ def _digest(*parts: object) -> str:
     return digest(text.encode(), length=_LENGTH, end=b"")
 
 
-def clock(second: float) -> str | None:
+def time_text(second: float) -> str | None:
     """Return the time of an inspection as files have it, to the second; None: it has none."""
     if np.isnan(second):
         return None

@@ -2,10 +2,11 @@
 
 A row is known again by what it says and by the batch it came with, never by its number. What was
 taken back in one copy is taken back. What both recorded for themselves counts once; the later one
-stands back for the first until that one is taken back. Everything is put in the order in which it
-was recorded, so that it does not matter which copy takes in the other; what a copy recorded later
-stays so, whatever its clock said. Inspections that both copies begin with, and that come out where
-they are, are left there: of a long season these are nearly all.
+stands back for the first until that one is taken back. A treatment is known again whatever labels
+added to it (`treatments.known_by`). Everything is put in the order in which it was recorded, so
+that it does not matter which copy takes in the other; what a copy recorded later stays so, whatever
+its clock said. Inspections that both copies begin with, and that come out where they are, are left
+there: of a long season these are nearly all.
 """
 
 from __future__ import annotations
@@ -13,24 +14,31 @@ from __future__ import annotations
 import json
 from collections import Counter
 from dataclasses import dataclass
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import phone_tables, replaced, schema, season_log, settings_log
+from fieldmon.monitoring import (
+    phone_tables,
+    replaced,
+    schema,
+    season_log,
+    settings_log,
+    treatments,
+)
 from fieldmon.monitoring.batches import close_if_empty
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Hashable, Iterable
+    from collections.abc import Hashable, Iterable, Iterator
 
     from fieldmon.monitoring.geopackage import GeoPackageTable
+    from fieldmon.monitoring.treatments import Row
 
-#: a row by the names of its columns, its number (fid) among them
-Row = dict[str, Any]
 #: what the batches of a copy are numbered now, by their numbers in it
 Numbers = dict[int, int]
 
@@ -59,8 +67,8 @@ class Merged:
     new
         Inspections that count now and did not before.
     contradictions
-        A sentence for each result that the copies tell differently, for each setting, and for the
-        table of labels.
+        A sentence for each result that the copies tell differently, for each setting, for the table
+        of labels, and for treatments that are alike but for what a label may add.
     taken_back
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
@@ -89,7 +97,8 @@ class MergedCopy(NamedTuple):
     new, taken_back
         As `Merged` has them.
     differing
-        A sentence for each setting, and the table of labels, that both chose differently.
+        A sentence for each setting, and the table of labels, that both chose differently, and for
+        treatments that are alike but for what a label may add.
     treatments, codes
         As `Merged` has them.
     """
@@ -116,13 +125,15 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         for copied in copies
     ]
     stay = _n_staying((db, other), numbers)
-    before = _counting(db, stay)
+    before, applied = _counting(db, stay), treatments.counting(db)
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])
     _merge_inspections((db, other), numbers, gone, stay)
-    treated = [copied["treatments"] for copied in copies]
-    _write(db, schema.TREATMENTS, _merged_findings(treated, numbers, set(), set()))
+    own = [copied["treatments"] for copied in copies]
+    treated = _merged_findings(own, numbers, set(), set())
+    treatments.settle(treated)
+    _write(db, schema.TREATMENTS, treated)
     _count(db, batches)
     _write(db, schema.BATCHES, list(batches.values()))
     _write_routes(db, copies, _given_out(db, other))
@@ -135,23 +146,24 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     for batch, _ in phone_tables.bring_together(db, phones):
         close_if_empty(db, batch)
     now = _counting(db, stay)
-    new, treatments, codes = (len(one - was) for one, was in zip(now, before, strict=True))
+    new, codes = (len(one - was) for one, was in zip(now, before, strict=True))
     taken_back = len(before[0] - now[0])
-    said = *_differing(copies, chosen), *replaced_twice
-    return MergedCopy(new, taken_back, said, treatments, codes)
+    known = frozenset().union(*applied)
+    n_treated = sum(known.isdisjoint(marks) for marks in treatments.counting(db))
+    held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
+            for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
+    said = *_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held)
+    return MergedCopy(new, taken_back, said, n_treated, codes)
 
 
 def _counting(db: sqlite3.Connection, stay: int) -> list[set[str]]:
-    """Return inspections and treatments that count, and keys that hold, by their digests.
+    """Return inspections that count, and keys that hold, by their digests.
 
     Inspections that `stay` are left out.
     """
     counts = "SELECT digest FROM inspections WHERE undone = 0 AND digest NOTNULL AND fid > ?"
-    wanted = (
-        "SELECT digest FROM treatments WHERE undone = 0",
-        "SELECT key_digest FROM scouts WHERE ended IS NULL",
-    )
-    rows = (db.execute(counts, (stay,)), *map(db.execute, wanted))
+    keys = "SELECT key_digest FROM scouts WHERE ended IS NULL"
+    rows = db.execute(counts, (stay,)), db.execute(keys)
     return [{mark for (mark,) in found} for found in rows]
 
 
@@ -281,7 +293,7 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
         first, last, count = span = here.get(number, (0, 0, 0))
         if (ours[number], theirs.get(number)) != (number, number) or span != there.get(number):
             break
-        if (first, last) != (n + 1, n + count) or not _same(both, number, count):
+        if (first, last) != (n + 1, n + count) or not _is_same_batch(both, number, count):
             break
         n, batch = last, number
     rest = (
@@ -297,7 +309,9 @@ def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: lis
     return int(stay)
 
 
-def _same(both: tuple[sqlite3.Connection, sqlite3.Connection], number: int, count: int) -> bool:
+def _is_same_batch(
+    both: tuple[sqlite3.Connection, sqlite3.Connection], number: int, count: int
+) -> bool:
     """Tell whether so many inspections of a batch say the same in both, each something else."""
     one, other = (db.execute(_TOGETHER, (number,)).fetchone() for db in both)
     there, said = {*one[:4]}, one[4:]
@@ -337,7 +351,7 @@ def _merged_findings(
                 again[row["digest"], row["batch"]] += 1
                 key = row["digest"], row["batch"], again[row["digest"], row["batch"]]
             known = found.setdefault(key, row)
-            known["undone"] = _worse(known["undone"] or 0, row["undone"] or 0)
+            known["undone"] = _undone_in_either(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])
             for free in ("notes", "who"):  # what is no part of what makes it the same
                 if free in row:
@@ -355,7 +369,7 @@ def _merged_findings(
     return rows
 
 
-def _worse(one: int, other: int) -> int:
+def _undone_in_either(one: int, other: int) -> int:
     """Return what became of a row in either copy: taken back, if it was so in one."""
     return TAKEN_BACK if TAKEN_BACK in (one, other) else max(one, other)
 
@@ -376,7 +390,7 @@ def _given_out(*both: sqlite3.Connection) -> dict[Hashable, list[str]]:
     told: dict[Hashable, set[str]] = {}
     for db in both:
         for one in season_log.given_out(db):
-            told.setdefault((one.date, person(one.who), one.digest), set()).add(one.at)
+            told.setdefault((one.date, person_key(one.who), one.digest), set()).add(one.at)
     return {key: sorted(at) for key, at in told.items()}
 
 
@@ -395,7 +409,7 @@ def _write_routes(
             stops.setdefault(stop["route"], []).append(stop)
         given: Counter[Hashable] = Counter()
         for route in copied["routes"]:
-            route["person"] = person(route["who"])
+            route["person"] = person_key(route["who"])
             given[_key(route, known_by[:-1])] += 1
             route["again"] = given[_key(route, known_by[:-1])]
         before = ""
@@ -524,6 +538,53 @@ def _differing(copies: list[dict[str, list[Row]]], merged: list[Row]) -> tuple[s
                 f"counts: {here if now[name] == values[0] else there}."
             )
     return tuple(said)
+
+
+#: what a label may fill in, in words
+_FILLED = dict(zip(treatments.FILLED, ("waiting days", "re-entry hours", "group"), strict=True))
+
+
+def _alike_but_for_labels(
+    treated: list[Row], held: list[set[tuple[str | None, int | None]]]
+) -> Iterator[str]:
+    """Yield a sentence for each two treatments that say the same but for what a label may add.
+
+    One is of each copy: `held` are digests and batches of those that each had. Where people said
+    the same the second stands back for the first; else nobody knows, and both count.
+    """
+    alike: dict[str, list[Row]] = {}
+    for row in treated:
+        if row["undone"] != TAKEN_BACK and row["digest"] is not None:
+            alike.setdefault(treatments.but_for_labels(row), []).append(row)
+    for one, other in (pair for rows in alike.values() for pair in combinations(rows, 2)):
+        of = [[(row["digest"], row["batch"]) in had for had in held] for row in (one, other)]
+        names = [name for name in treatments.FILLED if one[name] != other[name]]
+        if sorted(of) != [[False, True], [True, False]] or not names:
+            continue
+        here, there = (one, other) if of[0][0] else (other, one)
+        differ = ", ".join(
+            f"{_FILLED[name]} {_or_none(here[name])} here, {_or_none(there[name])} there"
+            for name in names
+        )
+        named = f"{one['product'] or 'a product that nobody named'} on {one['date']}"
+        counts = [row["undone"] for row in (one, other)].count(COUNTS)
+        if counts == 1 and treatments.known_by(one) & treatments.known_by(other):
+            yield (
+                f"The treatment with {named} was recorded in both, and labels added different "
+                f"values: {differ}. It counts once; the longer waits and all groups hold."
+            )
+        elif counts == 2:
+            old = any(row["by_label"] is None and row[name] is not None
+                      for row in (one, other) for name in names)  # fmt: skip
+            why = " (an earlier version did not note whether a label added that)" if old else ""
+            yield (
+                f"Treatments with {named}, batches {one['batch']} and {other['batch']}, say the "
+                f"same but for {differ}{why}. Both count; if they are one, undo a batch."
+            )
+
+
+def _or_none(value: object) -> str:
+    return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _apart(ours: str, theirs: str) -> tuple[str, str]:

@@ -69,7 +69,7 @@ def _records_come(db: sqlite3.Connection) -> None:
 
 
 def _applications_say_all(db: sqlite3.Connection) -> None:
-    """Version 8 did not ask for the active ingredient and the weather of a treatment."""
+    """Version 8 did not ask for active ingredient and weather, 11 not what came from a label."""
     for column in schema.APPLIED:
         add_column(db, "treatments", column)
 
@@ -86,4 +86,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     8: _applications_say_all,
     9: _long_seasons_come,
     10: _corrections_keep_what_was,
+    11: _applications_say_all,
 }

@@ -24,7 +24,7 @@ from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.ranges import DAYS
-from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
+from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.forecast import NIGHTS, forecast
 from fieldmon.infestation.observations import Observations
@@ -272,9 +272,7 @@ class Monitor:
         sure
             How likely the answer must be to be right.
         """
-        told = self._told
-        asked = AskedVerdict.on(told, level, sure, self._left)
-        return map_verdict(self.plot.grid, told.chance, asked, told.pair_chance)
+        return verdict_of(self.plot.grid, self._told, level, sure, self._left)
 
     @checked
     def forecast(self, nights: int = NIGHTS) -> Forecast:

@@ -134,7 +134,7 @@ class OpenSeason:
         self._written: SeasonContents | None = None
         self._prior: _Prior | None = None
         self._aisles: dict[tuple[float, float], Aisles] = {}
-        self._gone_then: dict[int, set[str]] = {}
+        self._unused_then: dict[int, set[str]] = {}
         self._planned_as_now: date | None = None
         self._enters = False
         self._waits: tuple[FileRevision, tuple[EntryWait, ...]] | None = None
@@ -521,11 +521,11 @@ class OpenSeason:
             since = now.mornings.last_until(newest_day(db))
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
         self._keep_mornings(db, now.mornings, newest)
-        qgis_project.keep(db, self.path.name, lambda day: self._gone(db, now, day, since))
+        qgis_project.keep(db, self.path.name, lambda day: self._unused_routes(db, now, day, since))
         self._last = None  # the transaction may yet fail
         self._written = replace(now, revision=now.revision.once_kept(db))
 
-    def _gone(
+    def _unused_routes(
         self,
         db: sqlite3.Connection,  # noqa: ARG002 - as where there are plans
         contents: SeasonContents,  # noqa: ARG002

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fieldmon.monitoring.open_season import settings_of
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     import sqlite3
@@ -17,7 +17,7 @@ _RECORDED = "SELECT who FROM batches ORDER BY fid"
 
 
 def names_written(db: sqlite3.Connection) -> dict[str, str]:
-    """Return how a season writes its people, by `person`: as its team, codes, routes, records."""
+    """Return how a season writes its people, by `person_key`: its team, codes, routes, records."""
     known: dict[str, str] = {}
     for one in settings_of(db).team:
         as_written(known, one.name)
@@ -38,4 +38,4 @@ def written_in(db: sqlite3.Connection, name: str) -> str:
 
 def as_written(known: dict[str, str], name: str) -> str:
     """Return a name as it is known; one that is not is known as it is from now on."""
-    return known.setdefault(person(name), name.strip())
+    return known.setdefault(person_key(name), name.strip())

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.monitoring import replaced
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, insert, touch
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     import sqlite3
@@ -134,7 +134,7 @@ _STANDARD = "http://docs.opengeospatial.org/is/18-000/18-000.html"
 def n_sent(db: sqlite3.Connection, table: GeoPackageTable, who: str, since: str) -> int:
     """Return how many findings or photos somebody sent since a moment."""
     sent = f"SELECT scout, count(*) FROM {table.name} WHERE received > ? GROUP BY scout"  # noqa: S608 - ours
-    return sum(n for name, n in db.execute(sent, (since,)) if person(name) == person(who))
+    return sum(n for name, n in db.execute(sent, (since,)) if person_key(name) == person_key(who))
 
 
 def phones_come(db: sqlite3.Connection) -> None:
@@ -212,7 +212,7 @@ def bring_together(db: sqlite3.Connection, copies: list[dict[str, Rows]]) -> lis
         db.execute(f"DELETE FROM {table.name}")  # noqa: S608 - names of ours
         insert(db, table, made)
         touch(db, table.name)
-    back = take_back(db)
+    back = undo_as_told(db)
     pointed = [(_inspection_of(db, made), one) for one, made in told.items() if len(made) > 1]
     db.executemany("UPDATE tellings SET inspection = ? WHERE id = ?", pointed)
     return back
@@ -242,7 +242,7 @@ def _inspection_of(db: sqlite3.Connection, told: set[tuple[str, ...]]) -> int | 
     return int(next(others, found[0][1]))
 
 
-def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
+def undo_as_told(db: sqlite3.Connection) -> list[tuple[int, int]]:
     """Mark as undone what a finding of the same person takes back, whichever came first.
 
     A finding that came to two copies of a season is taken back in both.
@@ -253,12 +253,10 @@ def take_back(db: sqlite3.Connection) -> list[tuple[int, int]]:
         "ON f.id = u.undoes JOIN inspections i ON i.fid = f.inspection "
         "WHERE u.undoes NOTNULL AND i.undone <> 1"
     ).fetchall()
-    rows = [row[:3] for row in rows if person(row[3]) == person(row[4])]
+    rows = [row[:3] for row in rows if person_key(row[3]) == person_key(row[4])]
     db.executemany("UPDATE inspections SET undone = 1 WHERE fid = ?", [row[:1] for row in rows])
     others = [
-        (batch, day)
-        for inspection, _, day in rows
-        for batch in replaced.take_back_others(db, inspection)
+        (batch, day) for inspection, _, day in rows for batch in replaced.undo_same(db, inspection)
     ]
     return others + [(batch, day) for _, batch, day in rows]
 

@@ -74,7 +74,7 @@ def keep(season: Season, key: str, photo: Photo) -> bool:
         If it is no picture, or another photo has its id.
     """
     with season.store.writing() as db:
-        return keep_of(db, scouts.who_in(db, season, key).name, photo)
+        return keep_of(db, scouts.key_owner_in(db, season, key).name, photo)
 
 
 def keep_of(db: sqlite3.Connection, who: str, photo: Photo) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
-from fieldmon.monitoring.inspection_table import clock
+from fieldmon.monitoring.inspection_table import time_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -177,7 +177,7 @@ def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
 
 def _told(inspections: Inspections) -> Iterator[tuple[Key, int, str | None]]:
     """Yield plant and day, result and time of each, as files have them."""
-    times = map(clock, inspections.second.tolist())
+    times = map(time_text, inspections.second.tolist())
     yield from zip(_keys(inspections), inspections.result.tolist(), times, strict=True)
 
 

@@ -19,22 +19,20 @@ if TYPE_CHECKING:
 COUNTS, TAKEN_BACK, STANDS_BACK = 0, 1, 2
 
 
-def count_again(db: sqlite3.Connection, table: str = "inspections") -> list[int]:
-    """Let rows count again where none stands for them any more; return their batches."""
+def count_again(db: sqlite3.Connection) -> list[int]:
+    """Let inspections count again where none stands for them any more; return their batches."""
     found = db.execute(
-        f"SELECT digest, fid, batch FROM {table} AS one WHERE undone = ? AND NOT EXISTS "  # noqa: S608 - ours
-        f"(SELECT 1 FROM {table} WHERE digest = one.digest AND undone = 0) "
+        "SELECT digest, fid, batch FROM inspections AS one WHERE undone = ? AND NOT EXISTS "
+        "(SELECT 1 FROM inspections WHERE digest = one.digest AND undone = 0) "
         "ORDER BY batch DESC, fid DESC",
         (STANDS_BACK,),
     ).fetchall()
-    gone = corrected(_corrections(db)) if found and table == "inspections" else set()
+    gone = corrected(_corrections(db)) if found else set()
     first = {mark: (fid, batch) for mark, fid, batch in found if mark not in gone}
     db.executemany(
-        f"UPDATE {table} SET undone = 0 WHERE fid = ?",  # noqa: S608 - ours
-        [(fid,) for fid, _ in first.values()],
+        "UPDATE inspections SET undone = 0 WHERE fid = ?", [(fid,) for fid, _ in first.values()]
     )
-    if table == "inspections":
-        _point_findings(db, found, {mark: fid for mark, (fid, _) in first.items()})
+    _point_findings(db, found, {mark: fid for mark, (fid, _) in first.items()})
     return sorted({batch for _, batch in first.values()})
 
 
@@ -112,8 +110,8 @@ def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None)
                 db.execute("UPDATE inspections SET fid = ? WHERE fid = ?", (there, here))
 
 
-def take_back_others(db: sqlite3.Connection, inspection: int) -> list[int]:
-    """Take back all that say the same as an inspection that was; return their batches."""
+def undo_same(db: sqlite3.Connection, inspection: int) -> list[int]:
+    """Mark as undone all that say the same as an inspection that is; return their batches."""
     found = db.execute(
         "SELECT fid, batch FROM inspections WHERE undone <> ? AND digest = "
         "(SELECT digest FROM inspections WHERE fid = ?)",
@@ -131,11 +129,11 @@ def n_counting(db: sqlite3.Connection, mark: str) -> int:
     return int(n)
 
 
-def n_elsewhere(db: sqlite3.Connection, batch: int, table: str = "inspections") -> int:
-    """Return how many rows of a batch do not count, but another one that says the same does."""
+def n_elsewhere(db: sqlite3.Connection, batch: int) -> int:
+    """Return how many inspections of a batch do not count, but another that says the same does."""
     (n,) = db.execute(
-        f"SELECT count(*) FROM {table} AS one WHERE batch = ? AND undone <> 0 AND EXISTS "  # noqa: S608 - ours
-        f"(SELECT 1 FROM {table} WHERE digest = one.digest AND undone = 0)",
+        "SELECT count(*) FROM inspections AS one WHERE batch = ? AND undone <> 0 AND EXISTS "
+        "(SELECT 1 FROM inspections WHERE digest = one.digest AND undone = 0)",
         (batch,),
     ).fetchone()
     return int(n)

@@ -12,7 +12,7 @@ from shapely import LineString
 from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def keep(
     assert notes is not None  # noqa: S101 - whoever planned said
     assert notes.start is not None  # noqa: S101 - when it begins
     begin = notes.start
-    mark, last = _digest(today), kept_last(db, day).get(person(who))
+    mark, last = _digest(today), kept_last(db, day).get(person_key(who))
     if last is not None and last.digest == mark:
         return False
     line = route.line_lonlat()
@@ -106,7 +106,7 @@ def in_words(settings: MonitoringSettings, today: DayPlan) -> dict[str, Any]:
 
 def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
     """Tell whether a day's route, of one of a team, is the one kept last."""
-    last = kept_last(db, today.scene.day).get(person(who))
+    last = kept_last(db, today.scene.day).get(person_key(who))
     return last is not None and last.digest == _digest(today)
 
 
@@ -135,15 +135,15 @@ class KeptRoute(NamedTuple):
 
 
 def kept_last(db: sqlite3.Connection, day: int) -> dict[str, KeptRoute]:
-    """Return the route kept last for a day of each who has one, by `person`."""
+    """Return the route kept last for a day of each who has one, by `person_key`."""
     last: dict[str, KeptRoute] = {}
     wanted = (
         "SELECT who, fid, revision, digest, at_plant, starts FROM routes WHERE day = ? ORDER BY fid"
     )
     for who, number, revision, mark, at, starts in db.execute(wanted, (day,)):
         # older files may write a name in two ways, and count each
-        before = last.get(person(who), KeptRoute(0, 0, ""))
-        last[person(who)] = KeptRoute(
+        before = last.get(person_key(who), KeptRoute(0, 0, ""))
+        last[person_key(who)] = KeptRoute(
             number, max(revision, before.revision), mark, GATE if at is None else at,
             datetime.fromisoformat(starts),
         )  # fmt: skip
@@ -164,7 +164,7 @@ class KeptPlans:
     Parameters
     ----------
     who
-        As by `person`; empty where one works.
+        As by `person_key`; empty where one works.
     last, of_all
         Plants of the plan kept last, and of all of them.
     begins, ends
@@ -200,13 +200,15 @@ def of_day(db: sqlite3.Connection, day: int) -> list[KeptPlans]:
     ).fetchall()
     made = []
     for who, last in kept_last(db, day).items():
-        own = [(datetime.fromisoformat(t), s, at) for name, t, s, at in rows if person(name) == who]
+        own = [
+            (datetime.fromisoformat(t), s, at) for name, t, s, at in rows if person_key(name) == who
+        ]
         # files of before do not say where a plan begins
         same = [t for t, _, at in own if at is not None and at == own[0][2] and t <= own[-1][0]]
         begins = same[-1] if same else own[0][0]
         ends = own[-1][0] + timedelta(seconds=own[-1][1])
         first, newest = (GATE if at is None else at for _, _, at in (own[0], own[-1]))
-        every = {plant for name, plant in stops if person(name) == who}
+        every = {plant for name, plant in stops if person_key(name) == who}
         of_all = np.array(sorted(every), np.int32)
         made.append(KeptPlans(who, plants(db, last), of_all, begins, ends, (first, newest)))
     return made

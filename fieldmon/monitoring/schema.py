@@ -11,7 +11,7 @@ from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, 
 if TYPE_CHECKING:
     import sqlite3
 
-VERSION = 11
+VERSION = 12
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -127,7 +127,8 @@ INSPECTIONS = GeoPackageTable(
     "POINT",
     "What was found at which plant: clean, found or skipped.",
 )
-#: what is kept of an application since version 7
+#: what is kept of an application since version 7; by_label, since version 12: which of these a
+#: label filled in, as "waiting_days+irac_groups" (nothing: nobody knows, or there is nothing to)
 APPLIED = (
     "dose REAL",
     "unit TEXT",
@@ -148,6 +149,7 @@ APPLIED = (
     "of_plants BLOB",
     "active_ingredient TEXT",
     "weather TEXT",
+    "by_label TEXT",
 )
 TREATMENTS = GeoPackageTable(
     "treatments",

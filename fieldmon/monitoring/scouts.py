@@ -18,7 +18,7 @@ from fieldmon.monitoring import phone_tables, season_log
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import written_in
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def overlapping(
     return [
         other
         for other in scouts
-        if person(other.name) != person(scout.name) and settings.named(other.name) is None
+        if person_key(other.name) != person_key(scout.name) and settings.named(other.name) is None
         and (span := other.rows or lines) != rows and span[0] <= high and low <= span[1]
     ]  # fmt: skip
 
@@ -167,7 +167,7 @@ def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def take_back(season: OpenSeason, name: str) -> None:
+def withdraw_key(season: OpenSeason, name: str) -> None:
     """End the key of somebody, at once; raise `SettingError` if nobody of that name has one."""
     with season.store.writing() as db:
         if not _end(db, name):
@@ -202,13 +202,13 @@ def scouts_on(
     rows = db.execute(f"SELECT {_COLUMNS} FROM scouts ORDER BY made, fid")  # noqa: S608 - ours
     had = [one for one in map(_scout, rows) if not one.ended or _date(clock, one.ended) > on]
     if is_over and any(_date(clock, one.made) > on for one in had):
-        given = {(person(one.who), one.at) for one in season_log.given_out(db)
+        given = {(person_key(one.who), one.at) for one in season_log.given_out(db)
                  if one.date == str(on)}  # fmt: skip
         had = [
             one
             for one in had
             if _date(clock, one.made) <= on
-            or any(who == person(one.name) and at >= one.made for who, at in given)
+            or any(who == person_key(one.name) and at >= one.made for who, at in given)
         ]
     return _last(had)
 
@@ -219,17 +219,17 @@ def _date(clock: LocalClock, moment: str) -> date:
 
 def _last(scouts: Iterable[Scout]) -> tuple[Scout, ...]:
     """Return the last of each person, given them in order."""
-    last = {person(one.name): one for one in scouts}
+    last = {person_key(one.name): one for one in scouts}
     return tuple(sorted(last.values(), key=lambda one: one.made))
 
 
-def who(season: OpenSeason, key: str) -> Scout:
+def key_owner(season: OpenSeason, key: str) -> Scout:
     """Return whose key it is; raise `AccessError` unless it holds on this season."""
     with season.store.reading() as db:
-        return who_in(db, season, key)
+        return key_owner_in(db, season, key)
 
 
-def who_in(db: sqlite3.Connection, season: OpenSeason, key: str) -> Scout:
+def key_owner_in(db: sqlite3.Connection, season: OpenSeason, key: str) -> Scout:
     """Return whose key it is, within a transaction: who is taken back writes nothing more."""
     row = db.execute(
         f"SELECT {_COLUMNS} FROM scouts WHERE key_digest = ? AND ended IS NULL",  # noqa: S608 - ours
@@ -242,8 +242,8 @@ def who_in(db: sqlite3.Connection, season: OpenSeason, key: str) -> Scout:
                 "leads the season for a new one."
             )
         )
-    named = person(row[0])
-    return next(one for one in scouts_in(db) if person(one.name) == named)
+    named = person_key(row[0])
+    return next(one for one in scouts_in(db) if person_key(one.name) == named)
 
 
 _COLUMNS = "name, first_row, last_row, made, ended"
@@ -257,7 +257,7 @@ def _scout(row: tuple[str, int | None, int | None, str, str | None]) -> Scout:
 
 def _end(db: sqlite3.Connection, name: str) -> int:
     holding = db.execute("SELECT DISTINCT name FROM scouts WHERE ended IS NULL").fetchall()
-    names = [(utc_text(), one) for (one,) in holding if person(one) == person(name)]
+    names = [(utc_text(), one) for (one,) in holding if person_key(one) == person_key(name)]
     ended = "UPDATE scouts SET ended = ? WHERE name = ? AND ended IS NULL"
     return db.executemany(ended, names).rowcount if names else 0
 

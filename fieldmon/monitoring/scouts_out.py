@@ -14,7 +14,7 @@ from fieldmon.monitoring.day_ahead import DayAhead, Part
 from fieldmon.monitoring.findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import overlapping, scouts_on
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
@@ -86,19 +86,19 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     Of a day that is over it is who was out then.
     """
     ahead, done = DayAhead.of(season, on), season.history.inspections.on(on)
-    holding = {person(one.name) for one in ahead.scouts}
+    holding = {person_key(one.name) for one in ahead.scouts}
     is_earlier, day = season.is_earlier(on), ahead.settings.day(on)
     with season.store.reading() as db:
         if is_earlier:  # as its plan is counted, see `Season.planned_and_done`
             then = scouts_on(db, local_clock(season.plot.field), on)
             ahead = replace(ahead, scouts=then, settings=season.planned_by(on))
-        sent = {person(who): (at, clock) for who, at, clock in db.execute(_LAST_SENT)}
-        photos = {person(who): at for who, at in db.execute(_LAST_PHOTO)}
+        sent = {person_key(who): (at, clock) for who, at, clock in db.execute(_LAST_SENT)}
+        photos = {person_key(who): at for who, at in db.execute(_LAST_PHOTO)}
         given = {one.digest: one.at for one in season_log.given_out(db) if one.date == str(on)}
         finds = _finds_since(db, min(given.values(), default=""), day) if given else []
     codes = ahead.scouts, ahead.settings, int(season.label.line.max())
-    coded = {person(one.name): one for one in ahead.scouts}
-    team = {person(one.name): one.name for one in ahead.settings.team}
+    coded = {person_key(one.name): one for one in ahead.scouts}
+    team = {person_key(one.name): one.name for one in ahead.settings.team}
     out = []
     for who in dict.fromkeys([*coded, *team]):
         code = coded.get(who)
@@ -106,8 +106,9 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
         heard = max(filter(None, (sent.get(who, ("",))[0], photos.get(who, ""))), default="")
         out.append(
             ScoutOut(
-                part.name, ahead.rows(part), None if code is None else _at(code.made), _at(heard),
-                _fast(*sent[who]) if who in sent else timedelta(),
+                part.name, ahead.rows(part),
+                None if code is None else _moment(code.made), _moment(heard),
+                _phone_ahead(*sent[who]) if who in sent else timedelta(),
                 len(np.unique(made_by(done, who).plant)),
                 int((~np.isin(ahead.given(part), done.plant)).sum()),
                 ahead.plan_of(part), () if ahead.member(part) else ahead.others(part),
@@ -135,12 +136,12 @@ def _n_newer(finds: list[Find], given: str | None, who: str, day: int) -> int:
     if given is None:
         return 0
     return len({plant for at, plant, of, by in finds
-                if at > given and (of < day or person(by) != who)})  # fmt: skip
+                if at > given and (of < day or person_key(by) != who)})  # fmt: skip
 
 
-def _at(text: str) -> datetime | None:
+def _moment(text: str) -> datetime | None:
     return datetime.fromisoformat(text) if text else None
 
 
-def _fast(received: str, sent: str) -> timedelta:
+def _phone_ahead(received: str, sent: str) -> timedelta:
     return datetime.fromisoformat(sent) - datetime.fromisoformat(received)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
-from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
+from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.decisions.sequential import LEAVE
 from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
@@ -100,10 +100,7 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.in_hindsight(morning, day)
         found = contents.history.found_and_left(evening, day)
-        asked = AskedVerdict.on(evening, level, sure, found)
-        return map_verdict(
-            contents.history.grid, evening.chance, asked, evening.pair_chance, plants=plants
-        )
+        return verdict_of(contents.history.grid, evening, level, sure, found, plants=plants)
 
     def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:
         """Return whether to treat after a day's work, where, and how many looks decide.
@@ -196,7 +193,7 @@ class SeasonEstimates(OpenSeason):
                 )
             )
         settings, plot = contents.settings, self.plot
-        told = settings.robot.detects if settings.team else contents.history.told(day)
+        told = settings.robot.detects if settings.team else contents.history.mean_detection(day)
         believed = settings.belief.believed(plot.grid, settings.pest, told)
         return EarlierSeason.of(evening, believed, plot.field.name, on)
 

@@ -18,7 +18,7 @@ from fieldmon.monitoring.history import Besides, made_by
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.monitoring.settings import seconds
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
@@ -166,7 +166,7 @@ class SeasonPlans(OpenSeason):
             settings = self._planned_by(self._read(db), on, db)
             named = settings.at_work(who)
             last = routes.kept_last(db, settings.day(on))
-            return routes.plants(db, last.get(person(who if named is None else named.name)))
+            return routes.plants(db, last.get(person_key(who if named is None else named.name)))
 
     def closed_to_kept(
         self, on: date, who: str = "", kept_as: str | None = None
@@ -181,7 +181,7 @@ class SeasonPlans(OpenSeason):
             settings = self._planned_by(contents, on, db)
             shift, name = self._shift(settings, who)
             own = str(name or "") if kept_as is None else kept_as
-            kept = routes.kept_last(db, settings.day(on)).get(person(own))
+            kept = routes.kept_last(db, settings.day(on)).get(person_key(own))
             begun = len(made_by(contents.history.inspections.on(on), name))
             now = local_clock(self.plot.field).now()
             begins = None if kept is None else kept.begins
@@ -221,15 +221,15 @@ class SeasonPlans(OpenSeason):
         known = scouts.scouts_on(db, local_clock(self.plot.field), on, is_over=is_over)
         return {one.name: one.rows for one in known}
 
-    def _out(self, db: sqlite3.Connection, contents: SeasonContents, on: date) -> set[str]:
-        """Return who is out, by `person`, of those whose routes are kept of a day."""
+    def _people_out(self, db: sqlite3.Connection, contents: SeasonContents, on: date) -> set[str]:
+        """Return who is out, by `person_key`, of those whose routes are kept of a day."""
         last = routes.kept_last(db, contents.settings.day(on))
         if len(last) < 2:
             return {*last}
         codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
         return _out(last, codes, self._planned_by(contents, on, db))
 
-    def _gone(
+    def _unused_routes(
         self, db: sqlite3.Connection, contents: SeasonContents, day: int, since: int
     ) -> set[str]:
         wanted = "SELECT DISTINCT who FROM routes WHERE day = ?"
@@ -237,14 +237,14 @@ class SeasonPlans(OpenSeason):
         if all(contents.settings.named(who) for who in names):
             return set()
         if day >= since:
-            self._gone_then.pop(day, None)
-        elif day in self._gone_then:  # to look it up takes reading all of the log
-            return self._gone_then[day]
+            self._unused_then.pop(day, None)
+        elif day in self._unused_then:  # to look it up takes reading all of the log
+            return self._unused_then[day]
         on = contents.settings.date(day)
-        out = self._out(db, contents, on)
-        gone = {who for who in names if person(who) not in out}
+        out = self._people_out(db, contents, on)
+        gone = {who for who in names if person_key(who) not in out}
         if day < since and self._is_earlier(contents, on):
-            self._gone_then[day] = gone
+            self._unused_then[day] = gone
         return gone
 
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
@@ -257,7 +257,7 @@ class SeasonPlans(OpenSeason):
             contents = self._read(db)
             day, done = contents.settings.day(on), contents.history.inspections.on(on)
             kept = routes.of_day(db, day)
-            out = self._out(db, contents, on) if who is None else {person(who)}
+            out = self._people_out(db, contents, on) if who is None else {person_key(who)}
             codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
         if who is not None:
             kept = [one for one in kept if one.who in out]
@@ -355,7 +355,7 @@ class SeasonPlans(OpenSeason):
         with self.store.reading() as db:
             last = routes.kept_last(db, day)
             for k, who in enumerate(names):
-                given[aisle[routes.plants(db, last.get(person(who)))]] = k
+                given[aisle[routes.plants(db, last.get(person_key(who)))]] = k
         return given if (given >= 0).any() else None
 
 
@@ -363,12 +363,12 @@ def _out(
     last: dict[str, KeptRoute], codes: dict[str, tuple[int, int] | None],
     settings: MonitoringSettings,
 ) -> set[str]:  # fmt: skip
-    """Return who is out, by `person`, of those whose routes are kept of a day.
+    """Return who is out, by `person_key`, of those whose routes are kept of a day.
 
     They are of the team or have a code. The season's own route is that of who is alone, and counts
     where none was given to anybody.
     """
-    out = {*last} & ({person(one.name) for one in settings.team} | {*map(person, codes)})
+    out = {*last} & ({person_key(one.name) for one in settings.team} | {*map(person_key, codes)})
     if not settings.team and [*codes.values()] == [None] and "" in last:
         return {max(out | {""}, key=lambda who: last[who].number)}
     return out or ({""} if "" in last else {*last})

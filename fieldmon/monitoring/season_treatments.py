@@ -95,14 +95,15 @@ class SeasonTreatments(OpenSeason):
         with self._writing() as db:
             before = self._read(db)
             day = settings_of(db).day(on)
-            said = replace(said, operator=written_in(db, said.operator))
-            said = said.by_label(
+            entered = replace(said, operator=written_in(db, said.operator))
+            said = entered.by_label(
                 label_for(label_table.read(db), said.product, said.crop, said.pest)
             )
+            filled = [n for n in treatments.FILLED if getattr(said, n) != getattr(entered, n)]
             treatment = Treatment(day, place.plants, works)  # or raise
             batch = batches.begin(db, "treatment", said.product, said.operator)
             new = treatments.store(
-                db, treatment, (place, on, said), batch, local_clock(self.plot.field)
+                db, treatment, (place, on, said), batch, local_clock(self.plot.field), filled
             )
             batches.end(db, batch, new)
             if new:

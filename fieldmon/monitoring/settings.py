@@ -21,7 +21,7 @@ from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json
-from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person
+from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person_key
 from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
 from fieldmon.samplers.answers import must_detect
@@ -166,7 +166,7 @@ class MonitoringSettings:
 
     def named(self, who: str) -> TeamMember | None:
         """Return the one of the team whose name is `who`; None if there is none."""
-        names = (one for one in self.team if person(one.name) == person(who))
+        names = (one for one in self.team if person_key(one.name) == person_key(who))
         return next(names, None)
 
     def at_work(self, who: str) -> TeamMember | None:

@@ -17,7 +17,7 @@ import numpy as np
 from fieldmon.monitoring import inspection_lots, season_log, settings_log
 from fieldmon.monitoring.pest_json import pest_of_json
 from fieldmon.monitoring.settings import told_to_detect
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     import sqlite3
@@ -42,7 +42,7 @@ class ToldDetection(NamedTuple):
     usual
         By whoever is in no team.
     of
-        By those of a team, by `person`.
+        By those of a team, by `person_key`.
     """
 
     usual: float
@@ -57,14 +57,14 @@ class ToldDetection(NamedTuple):
         members = json.loads(parts.get("team", "{}")).get("members", ())
         return cls(
             told_to_detect(json.loads(parts["robot"]), pest),
-            {person(one["name"]): told_to_detect(one["robot"], pest) for one in members},
+            {person_key(one["name"]): told_to_detect(one["robot"], pest) for one in members},
         )
 
     def by(self, who: NDArray[np.object_]) -> Floats:
         """Return it of inspections by these people, ``(k,)``."""
         if not self.of:
             return np.full(len(who), self.usual)
-        known = {name: self.of.get(person(str(name)), self.usual) for name in set(who)}
+        known = {name: self.of.get(person_key(str(name)), self.usual) for name in set(who)}
         return np.array([known[name] for name in who], np.float64)
 
 
@@ -140,7 +140,7 @@ def _which(db: sqlite3.Connection, inspections: Inspections, begins: date, told:
     unclear: dict[int, tuple[slice, _OfDay]] = {}
     ends = pairwise([*first.tolist(), len(inspections)])
     for on, (low, high) in zip(dates, ends, strict=True):
-        day = _of(str(on), said)
+        day = _told_of(str(on), said)
         counted = {*day.counted(day.seen, told)}
         if len(counted) == 1:
             which[low:high] = counted.pop()
@@ -164,7 +164,7 @@ def _said(db: sqlite3.Connection, told: _Told) -> list[tuple[PlannedOrSeen, int]
     return said
 
 
-def _of(on: str, said: Iterable[tuple[PlannedOrSeen, int]]) -> _OfDay:
+def _told_of(on: str, said: Iterable[tuple[PlannedOrSeen, int]]) -> _OfDay:
     """Return what was said of a day."""
     of_day = [(one, k) for one, k in said if one.low <= on <= one.high]
     planned = [(one.at, k) for one, k in of_day if one.kind == "planned"]

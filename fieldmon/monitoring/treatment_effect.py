@@ -176,7 +176,7 @@ def _effect(
     ill = here & (before == FOUND)
     still = int(np.count_nonzero(ill & (after == FOUND)))
     n = int(np.count_nonzero(ill))
-    efficacy, low, high = _posterior(one.efficacy, still, n, history.told(on))
+    efficacy, low, high = _posterior(one.efficacy, still, n, history.mean_detection(on))
     return TreatmentEffect(
         one.batch, one.application.product, units.day(one.on),
         _share(before, here), _share(after, here), (_share(before, there), _share(after, there)),

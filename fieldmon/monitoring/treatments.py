@@ -16,12 +16,13 @@ from fieldmon.monitoring import schema
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.geopackage import blob, geometry, touch
 from fieldmon.monitoring.history import Treatment
+from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.monitoring.waiting_periods import WaitingPeriod, end_of
 from fieldmon.plot.local_clock import LocalClock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     import shapely
     from numpy.typing import NDArray
@@ -34,6 +35,10 @@ _TEXTS = (
     *("operator", "reason", "machinery", "crop", "pest", "authorised_by"),
     *("active_ingredient", "weather"),
 )
+#: what a label may fill in, by the names of its columns
+FILLED = ("waiting_days", "reentry_hours", "irac_groups")
+#: a row by the names of its columns, its number (fid) among them
+Row = dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,21 +113,27 @@ def store(
     said: tuple[TreatedPlace, date, Application],
     batch: int,
     clock: LocalClock,
+    by_label: Sequence[str] = (),
 ) -> int:
     """Keep a treatment that is not there yet; return how many were new, 1 or 0.
 
-    `said` is its place, its date and what was applied; `clock` that of the plot.
+    `said` is its place, its date and what was applied; `clock` that of the plot; `by_label` names
+    what of `FILLED` a label filled in.
     """
     place = said[0]
     row = _row(treatment, said, clock)
-    row |= {"batch": batch, "digest": digest_of(row), "undone": 0}
-    cursor = db.execute(
-        f"INSERT OR IGNORE INTO treatments ({', '.join(row)}) "  # noqa: S608 - names of ours
+    if any(row[name] is not None for name in FILLED):
+        row["by_label"] = "+".join(by_label)
+    row |= {"batch": batch, "digest": digest_of(row), "undone": COUNTS}
+    if any(known_by(row) & marks for marks in counting(db)):
+        return 0
+    db.execute(
+        f"INSERT INTO treatments ({', '.join(row)}) "  # noqa: S608 - names of ours
         f"VALUES ({', '.join('?' * len(row))})",
         tuple(row.values()),
     )
     touch(db, schema.TREATMENTS.name, place.area.bounds)
-    return cursor.rowcount
+    return 1
 
 
 def _row(
@@ -150,6 +161,7 @@ def _row(
         "zone": clock.zone or None,
         **{name: getattr(application, name) or None for name in _TEXTS},
         "of_plants": zlib.compress(np.packbits(place.plants).tobytes()) if place.by_plant else None,
+        "by_label": None,
     }
 
 
@@ -175,12 +187,71 @@ def digest_of(row: Mapping[str, Any]) -> str:
     """
     values = tuple(row[name] for name in ("day", "date", "efficacy", "product", "plants"))
     # how large it is and in which zone follows from the rest; plants stand in the outline
-    more = ("dose", "unit", "water_l_ha", "waiting_days", "reentry_hours", "irac_groups")
+    more = ("dose", "unit", "water_l_ha", *FILLED, "by_label")
     told = {name: row[name] for name in (*more, "began", "ended", *_TEXTS) if row[name] is not None}
     parts: tuple[object, ...] = (values, row["geom"])
     if told:
         parts = (*parts, tuple(sorted(told.items())))
     return digest(parts, length=24, end=b"")
+
+
+def known_by(row: Mapping[str, Any]) -> frozenset[str]:
+    """Return the digests by which a treatment is known again, whatever a label added to it.
+
+    One is of all values, whoever said them, and one of what people said. Rows that share one are
+    the same treatment. Where an earlier version did not note what a label added, all values count.
+    """
+    if row["by_label"] is None:
+        return frozenset({row["digest"]})
+    values = {**row, "by_label": None}
+    said = values | dict.fromkeys(row["by_label"].split("+"))
+    return frozenset({digest_of(values), digest_of(said)})
+
+
+def but_for_labels(row: Mapping[str, Any]) -> str:
+    """Return the digest of all that a treatment says but what a label may have filled in."""
+    return digest_of({**row, **dict.fromkeys((*FILLED, "by_label"))})
+
+
+def counting(db: sqlite3.Connection) -> list[frozenset[str]]:
+    """Return what each treatment that counts is known by."""
+    return [known_by(row) for row in _rows(db, "undone = 0")]
+
+
+def settle(rows: Iterable[Row]) -> None:
+    """Let the first of rows that are the same treatment count, and the others stand back for it."""
+    counted: set[str] = set()
+    for row in rows:
+        if row["undone"] != TAKEN_BACK and row["digest"] is not None:
+            marks = known_by(row)
+            row["undone"] = STANDS_BACK if marks & counted else COUNTS
+            counted |= marks if row["undone"] == COUNTS else set()
+
+
+def count_again(db: sqlite3.Connection) -> list[int]:
+    """Let treatments count again where none stands for them any more; return their batches."""
+    rows = _rows(db, "1", "batch, fid")
+    before = [row["undone"] for row in rows]
+    settle(rows)
+    changed = [row for row, was in zip(rows, before, strict=True) if row["undone"] != was]
+    db.executemany(
+        "UPDATE treatments SET undone = ? WHERE fid = ?",
+        sorted(((row["undone"], row["fid"]) for row in changed), reverse=True),
+    )
+    return sorted({row["batch"] for row in changed})
+
+
+def n_elsewhere(db: sqlite3.Connection, batch: int) -> int:
+    """Return how many treatments of a batch do not count, but another row of the same does."""
+    counted = frozenset().union(*counting(db))
+    gone = _rows(db, f"batch = {batch:d} AND undone <> {COUNTS}")
+    return sum(bool(known_by(row) & counted) for row in gone)
+
+
+def _rows(db: sqlite3.Connection, which: str, order: str = "fid") -> list[Row]:
+    names = ("fid", *schema.TREATMENTS.names)
+    wanted = f"SELECT {', '.join(names)} FROM treatments WHERE {which} ORDER BY {order}"  # noqa: S608 - ours
+    return [dict(zip(names, row, strict=True)) for row in db.execute(wanted)]
 
 
 def in_words(place: TreatedPlace, application: Application) -> str:
@@ -195,10 +266,8 @@ def in_words(place: TreatedPlace, application: Application) -> str:
 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:
     """Return rows whose digest is not that of what they say."""
-    names = ("fid", *schema.TREATMENTS.names)
     found = []
-    for values in db.execute(f"SELECT {', '.join(names)} FROM treatments ORDER BY fid"):  # noqa: S608
-        row = dict(zip(names, values, strict=True))
+    for row in _rows(db, "1"):
         # a library that was told 1 and not 1.0 once kept the digest of 1
         whole = row | {"efficacy": int(row["efficacy"])}
         if row["digest"] not in {digest_of(row), digest_of(whole)}:
@@ -209,12 +278,28 @@ def not_what_they_say(db: sqlite3.Connection) -> list[int]:
 def kept(db: sqlite3.Connection, inside: Inside, clock: LocalClock) -> tuple[KeptTreatment, ...]:
     """Return the treatments that count, in the order in which they ended.
 
-    `inside` tells which plants stand in an area.
+    `inside` tells which plants stand in an area. Where labels added different values to rows of the
+    same treatment, the longer waits and all groups hold.
     """
-    names = ("fid", *schema.TREATMENTS.names)
-    rows = db.execute(f"SELECT {', '.join(names)} FROM treatments WHERE undone = 0 ORDER BY fid")  # noqa: S608 - ours
-    made = [_kept(dict(zip(names, row, strict=True)), inside, clock) for row in rows]
+    behind = [(known_by(row), row) for row in _rows(db, f"undone = {STANDS_BACK}")]
+    rows = (_strictest(row, behind) for row in _rows(db, f"undone = {COUNTS}"))
+    made = [_kept(row, inside, clock) for row in rows]
     return tuple(sorted(made, key=lambda one: (one.ended, one.number)))
+
+
+def _strictest(row: Row, behind: list[tuple[frozenset[str], Row]]) -> Row:
+    """Return a row with the strictest of what labels added to it and to those that stand back.
+
+    What people said is the same in all of them.
+    """
+    own = known_by(row) if behind else frozenset()
+    same = [row, *(one for marks, one in behind if marks & own)]
+    waits = {
+        name: max((one[name] for one in same if one[name] is not None), default=None)
+        for name in ("waiting_days", "reentry_hours")
+    }
+    groups = "+".join(one["irac_groups"] for one in same if one["irac_groups"])
+    return {**row, **waits, "irac_groups": groups}
 
 
 def load(db: sqlite3.Connection, inside: Inside) -> tuple[Treatment, ...]:

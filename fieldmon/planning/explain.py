@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, joined, worded
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def _told_finds(
     for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
         line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
         words: dict[str, Any] = {
-            "plants": counted(around, "plant"), "row": line, "number": number,
+            "plants": counted(around, "plant"), "row": scene.grid.row_signs[line], "number": number,
         }  # fmt: skip
         if not scene.grid.in_rows:
             sentence = worded("{plants} around the find at plant {number}.", **words)
@@ -103,9 +103,11 @@ def _blocks(scene: Scene, plants: NDArray[np.int32], recorded: NDArray[np.bool_]
     if not len(plants):
         return []
     line = row_label(scene.grid, plants).line
-    rows = np.unique(line)
-    block_of_row = np.cumsum(np.diff(rows, prepend=rows[0]) > _GAP)
-    block = block_of_row[np.searchsorted(rows, line)]
+    # as they lie on the ground, whatever their numbers
+    place = scene.grid.row_line[scene.grid.row[plants]]
+    places = np.unique(place)
+    block_of_place = np.cumsum(np.diff(places, prepend=places[0]) > _GAP)
+    block = block_of_place[np.searchsorted(places, place)]
     order = list(dict.fromkeys(block.tolist()))
     if len(order) > _BLOCKS:
         order, block = [0], np.zeros_like(block)
@@ -118,7 +120,7 @@ def _block(
     line: NDArray[np.int64],
     recorded: NDArray[np.bool_],
 ) -> str:
-    low, high = int(line.min()), int(line.max())
+    low, high = row_ends(scene.grid, line)
     plants_said = counted(len(plants), "plant")
     where = worded("in rows {low} to {high}", low=low, high=high)
     if not scene.grid.in_rows:

@@ -128,12 +128,12 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
     return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
 
 
-def person(name: str) -> str:
+def person_key(name: str) -> str:
     """Return what tells people apart: a name without its capitals and the spaces around it.
 
     Examples
     --------
-    >>> person("Ann ") == person("ann")
+    >>> person_key("Ann ") == person_key("ann")
     True
     """
     return name.strip().casefold()
@@ -141,7 +141,7 @@ def person(name: str) -> str:
 
 def must_differ(members: Sequence[TeamMember]) -> None:
     """Refuse a team of none, or one in which two share a name."""
-    names = [person(member.name) for member in members]
+    names = [person_key(member.name) for member in members]
     if not names or len(set(names)) < len(names):
         raise SettingError(
             worded(

@@ -342,8 +342,8 @@ class _TeamDay:
         """Have the sampler plan the rest of a worker's day in its section."""
         scene = worker.scene
         chance, pairs, traces = self.news.believed_by(worker, now_s)
-        shut = self.news.closed(now_s) | (self.sections.owner[self.corridor] != worker.k)
-        last = np.where(shut, scene.day, scene.last_inspected).astype(np.int32)
+        left_out = self.news.taken(now_s) | (self.sections.owner[self.corridor] != worker.k)
+        last = np.where(left_out, scene.day, scene.last_inspected).astype(np.int32)
         scene = replace(
             scene,
             chance=chance,

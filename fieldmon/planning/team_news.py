@@ -47,7 +47,7 @@ class TeamNews:
     def __init__(self, workers: Sequence[TeamWorker], learn: Learn | None) -> None:
         first = workers[0].scene
         self._workers, self._learn = workers, learn
-        self._closed: NDArray[np.bool_] = first.last_inspected == first.day
+        self._taken: NDArray[np.bool_] = first.last_inspected == first.day
         self.known: list[StopTold] = []
         self.believed: Believed = first.chance, first.pair_chance, first.traces
 
@@ -70,16 +70,16 @@ class TeamNews:
         own = self._untold(worker, now_s) if self.heard else []
         return self._after(sorted([*self.known, *own])) if own else self.believed
 
-    def closed(self, now_s: float) -> NDArray[np.bool_]:
+    def taken(self, now_s: float) -> NDArray[np.bool_]:
         """Return ``(n,)`` the plants inspected today, and those that somebody drives to.
 
         Stops that others are yet to make in their aisles hang on what they will find.
         """
         for worker in self._workers:
             n = worker.under_way(now_s)
-            self._closed[[stop.plant for stop in worker.done[worker.begun : n]]] = True
+            self._taken[[stop.plant for stop in worker.done[worker.begun : n]]] = True
             worker.begun = max(worker.begun, n)
-        return self._closed
+        return self._taken
 
     def _untold(self, worker: TeamWorker, now_s: float) -> list[StopTold]:
         """Return the stops that a worker has made and not told of."""

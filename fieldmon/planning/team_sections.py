@@ -103,7 +103,7 @@ class TeamSections:
         key = now_s, len(self._news.known)
         if self._valued is None or self._valued[0] != key:
             robots = [worker.scene.robot for worker in self._workers]
-            chance = np.where(self._news.closed(now_s), 0.0, self._news.believed[0])
+            chance = np.where(self._news.taken(now_s), 0.0, self._news.believed[0])
             self._valued = key, aisle_worth(self._workers[0].scene.aisles, robots, chance)
         return self._valued[1]
 

@@ -127,12 +127,12 @@ def bends_of(
     place: Int,
     at_m: Float,
     gate: tuple[int, int, float] | None,
-    shut: Mask | None = None,
+    too_narrow: Mask | None = None,
 ) -> Bends:
     """Return the stretches between neighbouring nodes on each aisle; a gate may be one too.
 
     `place` numbers the nodes of `row_end_places`; `gate` is its node, aisle and place. The lanes
-    of rows that are `shut` ``(r,)`` are no lanes.
+    of rows that are `too_narrow` ``(r,)`` are no lanes.
     """
     aisles, own, side = _known(grid)
     right = np.where(side < 0, own - 1, own)
@@ -145,7 +145,7 @@ def bends_of(
     next_ = np.flatnonzero((aisle[1:] == aisle[:-1]) & (node[1:] != node[:-1]))
     ends = np.stack([at[next_], at[next_ + 1]], axis=1)
     pair = np.stack([node[next_], node[next_ + 1]], axis=1)
-    lanes = np.ones(len(own), np.bool_) if shut is None else ~shut
+    lanes = np.ones(len(own), np.bool_) if too_narrow is None else ~too_narrow
     in_lane = _in_lanes(grid.lane_x_m[lanes], own[lanes], aisle[next_], ends)
     return Bends(pair, aisle[next_], ends, in_lane, aisles)
 

@@ -48,18 +48,18 @@ class Clearance(NamedTuple):
         beside_m = half_canopy_m(grid) + STRAY_M
         return cls(robot.width_m / 2 + beside_m, robot.turning_m / 2 + beside_m)
 
-    def shut(self, grid: PlantGrid) -> Mask:
+    def too_narrow(self, grid: PlantGrid) -> Mask:
         """Tell of each row ``(r,)`` whether it cannot be inspected: its aisle is too narrow.
 
         Or there is no room to turn at either end. Rows that are inspected from the same stretch
-        of aisle are shut together. Raise `PlotError` if all are.
+        of aisle are too narrow together. Raise `PlotError` if all are.
         """
         room_m = lane_room_m(grid)
-        narrow = np.zeros(int(grid.corridor.max()) + 1, np.bool_)
-        closed = (room_m < self.way_m) | self.tight_ends(grid).all(axis=1)
-        narrow[grid.corridor[closed]] = True
-        shut: Mask = narrow[grid.corridor]
-        if shut.all() and (room_m >= self.way_m).any():
+        corridors = np.zeros(int(grid.corridor.max()) + 1, np.bool_)
+        alone = (room_m < self.way_m) | self.tight_ends(grid).all(axis=1)
+        corridors[grid.corridor[alone]] = True
+        rows: Mask = corridors[grid.corridor]
+        if rows.all() and (room_m >= self.way_m).any():
             raise PlotError(
                 worded(
                     "A robot must have room to turn at the ends of rows: {need_m:.2f} m around it, "
@@ -68,7 +68,7 @@ class Clearance(NamedTuple):
                     need_m=self.turn_m,
                 )
             )
-        if shut.all():
+        if rows.all():
             raise PlotError(
                 worded(
                     "A robot's aisles must be as wide as it is, with plants' canopies and 0.1 m on "
@@ -79,7 +79,7 @@ class Clearance(NamedTuple):
                     room_m=2 * float(room_m.max()),
                 )
             )
-        return shut
+        return rows
 
     def tight_ends(self, grid: PlantGrid) -> Mask:
         """Tell of each lane end ``(r, 2)`` whether there is no room to turn on the spot."""
@@ -102,15 +102,15 @@ def lane_room_m(grid: PlantGrid) -> Float:
     return room
 
 
-def shut_sentence(shut: Mask, grid: PlantGrid, needs: Clearance) -> str:
+def narrow_sentence(rows: Mask, grid: PlantGrid, needs: Clearance) -> str:
     """Return for people which rows ``(r,)`` a robot that needs so much cannot enter."""
     return worded(
         "{rows} of {all} cannot be inspected: in their aisles the robot needs {need_m:.2f} m from "
         "plant to plant, and there is less. Their {plants} are not visited.",
-        rows=counted(int(np.count_nonzero(shut)), "row"),
-        all=len(shut),
+        rows=counted(int(np.count_nonzero(rows)), "row"),
+        all=len(rows),
         need_m=2 * needs.way_m,
-        plants=counted(int(np.diff(grid.row_start)[shut].sum()), "plant"),
+        plants=counted(int(np.diff(grid.row_start)[rows].sum()), "plant"),
     )
 
 

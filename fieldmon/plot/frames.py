@@ -25,15 +25,18 @@ def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> G
     """Return the given plants ``(k,)``, or all, as points in EPSG:4326.
 
     Columns ``plant`` (number in the grid, from 0), ``block`` where there are several, ``row`` and
-    ``number`` (from 1; in no rows there is no ``row``), and ``face`` (1 or 2) where both faces
-    are inspected.
+    ``number`` (from 1; in no rows there is no ``row``), ``row_name`` where the plot's file has
+    names of rows that say more than their numbers, and ``face`` (1 or 2) where both faces are
+    inspected.
     """
     import geopandas  # noqa: PLC0415 - half a second to import
 
     chosen = np.arange(len(grid)) if plants is None else np.asarray(plants, np.int64)
     label = row_label(grid, chosen)
     block = {"block": block_label(grid, chosen)} if grid.n_blocks > 1 else {}
-    row = {"row": label.line} if grid.in_rows else {}
+    row: dict[str, object] = {"row": label.line} if grid.in_rows else {}
+    if row and grid.row_names:
+        row["row_name"] = [grid.row_names.get(line, "") for line in label.line.tolist()]
     columns = {"plant": chosen, **block, **row, "number": label.number}
     twin = grid.twin[chosen]
     if (grid.twin >= 0).any():

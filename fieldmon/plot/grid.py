@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -204,16 +205,36 @@ class PlantGrid:
         called = self.line_called
         return called is None or bool((called[:, 0] != called[:, 1]).any())
 
-    @property
-    def line_signs(self) -> list[str]:
-        """Return what stands at each line on maps: its number, and its name if that says more."""
-        numbers = [f"{number}" for number in self.line_number.tolist()]
-        if self.line_called is not None or self.line_named is None:
-            return numbers
-        own = zip(numbers, self.line_named.tolist(), strict=True)
-        return [
-            number if "\n" in name or not name else f"{number} · {name}" for number, name in own
-        ]
+    @cached_property
+    def line_odd(self) -> NDArray[np.bool_]:
+        """Return which lines have a number that is not the one of their name, ``(lines,)``."""
+        if self.line_called is None or self.line_named is None:
+            return np.full(len(self.line_number), self.line_called is None)
+        own = zip(self.line_named.tolist(), self.line_called[:, 1].tolist(), strict=True)
+        return np.array([not any(_ends_in(one, k) for one in name.splitlines()) for name, k in own])
+
+    @cached_property
+    def rows_beyond(self) -> frozenset[int]:
+        """Return the numbers of lines whose names have none, while others keep theirs."""
+        odd = self.line_number[self.line_odd] if self.line_called is not None else np.empty(0, int)
+        return frozenset(odd.tolist())
+
+    @cached_property
+    def row_names(self) -> dict[int, str]:
+        """Return the names of lines that say more than their numbers, by these."""
+        if self.line_named is None:
+            return {}
+        own = zip(self.line_number.tolist(), self.line_named.tolist(), self.line_odd, strict=True)
+        return {k: name for k, name, odd in own if odd and name and "\n" not in name}
+
+    @cached_property
+    def row_signs(self) -> dict[int, str]:
+        """Return how each line is shown to people, by its number: that, and a name that says more.
+
+        All lines, in their order on the ground.
+        """
+        names = self.row_names
+        return {k: f"{k} · {names[k]}" if k in names else f"{k}" for k in self.line_number.tolist()}
 
     @property
     def row_number(self) -> NDArray[np.int64]:
@@ -374,6 +395,32 @@ def nearest_plants(
     plant = np.where(plant == len(grid), -1, plant)
     first_face = (plant >= 0) & (grid.twin[plant] >= 0) & (grid.twin[plant] < plant)
     return np.where(first_face, grid.twin[plant], plant), distance_m
+
+
+def row_ends(grid: PlantGrid, line: NDArray[np.integer]) -> tuple[str, str]:
+    """Return how the first and the last of some lines are shown, the same where it is one.
+
+    Those without a number of their own have no place among the others, and stand behind the last.
+    """
+    rows = np.unique(line).tolist()
+    beyond = [k for k in rows if k in grid.rows_beyond]
+    own = [k for k in rows if k not in beyond] or beyond[:1]
+    last = [*own[1:][-1:], *(k for k in beyond if k != own[0])] or own
+    return grid.row_signs[own[0]], ", ".join(grid.row_signs[k] for k in last)
+
+
+def rows_listed(grid: PlantGrid, line: NDArray[np.integer]) -> str:
+    """Return which lines these are: ``1–12, 101 · 5A``."""
+    rows = np.unique(line).tolist()
+    if len(rows) == 1:
+        return grid.row_signs[rows[0]]
+    own = runs(k for k in rows if k not in grid.rows_beyond)
+    return ", ".join([own] * bool(own) + [grid.row_signs[k] for k in rows if k in grid.rows_beyond])
+
+
+def _ends_in(name: str, number: int) -> bool:
+    """Tell whether a whole number stands at the end of a name."""
+    return re.search(rf"(?<!\d)0*{number}(\.0+)?\s*$", name) is not None
 
 
 def _line_faces(grid: PlantGrid) -> NDArray[np.int64]:

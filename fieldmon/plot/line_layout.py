@@ -16,7 +16,7 @@ from fieldmon.errors import PlotError
 from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.line_sorting import sorted_rows
 from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.row_lines import Blocked, RowLines, row_aisles, shut_stretches
+from fieldmon.plot.row_lines import Blocked, RowLines, blocked_stretches, row_aisles
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -160,11 +160,11 @@ def _outside(
     area = shapely.buffer(area, _EDGE_M)
     shapely.prepare(area)
 
-    def shut(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
+    def is_blocked(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
         out: NDArray[np.bool_] = ~np.asarray(shapely.covers(area, shapes))
         return out
 
-    return shut_stretches(rows, aisles, planting, shut, whole=whole)
+    return blocked_stretches(rows, aisles, planting, is_blocked, whole=whole)
 
 
 def _filled(lines: Polylines, blocked: Blocked, planting: Planting) -> tuple[Float, Int]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import first_few, runs, worded
 from fieldmon.errors import SettingError
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.grid import block_label, plant_at, row_label
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,6 +46,7 @@ def _ends(called: CalledRows, part: str, rows: str) -> list[int]:
     for cut in cuts:
         first, last = map(called.number, cut)
         if first is not None and last is not None:
+            _refuse_beyond(called, cut, (first, last))
             return sorted((first, last))
     for named in (*cuts, (part,)):
         if all(one.isdecimal() for one in named):
@@ -65,13 +66,70 @@ def _ends(called: CalledRows, part: str, rows: str) -> list[int]:
     )
 
 
-def row_meant(grid: PlantGrid, said: int) -> int:
-    """Return the number of the row that somebody typed as a number; itself where there is none.
+def plant_meant(grid: PlantGrid, row: str, plant: int) -> int:
+    """Return the plant that somebody typed by its row, a number or a name, and its number.
 
-    Raise `SettingError` where it may be the name of another row.
+    Raise `FieldmonError` where there is none, or where several may be meant.
     """
-    meant = CalledRows(grid).number(f"{said}")
-    return said if meant is None else meant
+    line = row_meant(grid, row)
+    meant = CalledPlants(grid).meant(line, f"{plant}")
+    if len(meant) > 1:
+        raise SettingError(
+            worded(
+                "A plant must be one, but {name} may be any of plants {some} of row {row} here, by "
+                "their numbers or by their names in the file of plants. Tap the plant on the map.",
+                name=plant,
+                some=runs(meant),
+                row=grid.row_signs[line],
+            )
+        )
+    return plant_at(grid, line, next(iter(meant), plant))
+
+
+def rows_meant(grid: PlantGrid, first: str | None, last: str | None) -> tuple[int, int]:
+    """Return the numbers of the first and the last row that somebody typed; None is the plot's.
+
+    Raise `SettingError` where there is no such row, or several may be meant.
+    """
+    called = CalledRows(grid)
+    low = min(called.numbers) if first is None else row_meant(grid, first)
+    high = max(called.numbers) if last is None else row_meant(grid, last)
+    _refuse_beyond(called, (first, last), (low, high))
+    return low, high
+
+
+def _refuse_beyond(
+    called: CalledRows, ends: tuple[str | None, str | None], numbers: tuple[int, int]
+) -> None:
+    """Refuse rows from or to one that has no number of its own: where it lies is not told."""
+    said = [end for end, number in zip(ends, numbers, strict=True) if number in called.beyond]
+    name = next((end for end in said if end is not None), None)
+    if name is not None and numbers[0] != numbers[1]:
+        raise SettingError(
+            worded(
+                "Rows from one to another must have numbers of their own, but {name} has none in "
+                "the file of plants. Write that row by itself.",
+                name=name.strip(),
+            )
+        )
+
+
+def row_meant(grid: PlantGrid, said: str) -> int:
+    """Return the number of the row that somebody typed, by its number or its name.
+
+    Raise `SettingError` where there is none, or where several may be meant.
+    """
+    called = CalledRows(grid)
+    meant = called.number(said)
+    if meant is None:
+        raise SettingError(
+            worded(
+                "A row must be one of {some} on this plot, but it is {line}.",
+                some=called.listed(),
+                line=said,
+            )
+        )
+    return meant
 
 
 class CalledRows:
@@ -81,6 +139,7 @@ class CalledRows:
         self.numbers = grid.line_number.tolist()
         self._known, self._names = set(self.numbers), list[str]()
         self._counts_on = grid.n_blocks > 1 and grid.counts_on
+        self.beyond = grid.rows_beyond
         self._named: dict[str, list[tuple[int, int]]] = defaultdict(list)
         if grid.line_named is not None:
             first = grid.row_start[np.unique(grid.row_line, return_index=True)[1]]
@@ -89,7 +148,7 @@ class CalledRows:
             for names, number, of in zip(*columns, strict=True):
                 for name in names.splitlines():
                     self._named[key(name)].append((number, of))
-                    self._names.append(name)
+                    self._names += [] if key(name) == f"{number}" else [name]
 
     def listed(self) -> str:
         """Return the numbers of all rows, and some of the names that are others than these."""
@@ -148,12 +207,12 @@ class CalledPlants:
             self._in_row[line, key(name)].add(number)
             self._alone[key(name)].add(plant)
 
-    def number(self, line: int, said: str) -> int | None:
-        """Return the number in its row of the plant that is meant; None: none, or several."""
+    def meant(self, line: int, said: str) -> set[int]:
+        """Return the numbers in their row of the plants that may be meant."""
         meant = self._in_row.get((line, key(said)), set())
         if said.strip().isdecimal() and (line, int(said)) in self._known:
             meant = meant | {int(said)}
-        return next(iter(meant)) if len(meant) == 1 else None
+        return meant
 
     def plant(self, said: str) -> int | None:
         """Return the plant whose name nobody else on the plot has; None: there is none."""

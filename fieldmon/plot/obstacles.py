@@ -59,7 +59,7 @@ class Obstacles:
         How far ways keep off such steps.
     drivable_m
         Where driving is fine.
-    shut_m
+    off_limits_m
         Its holes, and where driving is never fine.
     no_go_m
         Where driving is never fine.
@@ -69,7 +69,7 @@ class Obstacles:
     row_step_m: Float | None
     clearance_m: float
     drivable_m: shapely.Geometry
-    shut_m: shapely.Geometry
+    off_limits_m: shapely.Geometry
     no_go_m: shapely.Geometry
 
     def __repr__(self) -> str:
@@ -114,7 +114,7 @@ class Obstacles:
         if where is Where.INSIDE:
             good[kept] = shapely.covers(self.drivable_m, lines)
         else:
-            good[kept] = ~np.asarray(shapely.intersects(self._shut_to(where), lines))
+            good[kept] = ~np.asarray(shapely.intersects(self._off_limits(where), lines))
         return good
 
     def corners(self, where: Where) -> Float:
@@ -122,7 +122,7 @@ class Obstacles:
         if where is Where.INSIDE:
             area, sign = self.drivable_m, -1.0
         else:  # on the brink of what must not even be touched
-            area, sign = self._shut_to(where), 1.0
+            area, sign = self._off_limits(where), 1.0
             area = shapely.buffer(area, _EDGE_M, join_style="mitre")
         coarse_m, corners = _EDGE_M, _bends(area, _EDGE_M, sign)
         while len(corners) > MOST_CORNERS:
@@ -130,8 +130,8 @@ class Obstacles:
             corners = _bends(area, coarse_m, sign)
         return corners
 
-    def _shut_to(self, where: Where) -> shapely.Geometry:
-        return self.shut_m if where is Where.OUTSIDE else self.no_go_m
+    def _off_limits(self, where: Where) -> shapely.Geometry:
+        return self.off_limits_m if where is Where.OUTSIDE else self.no_go_m
 
 
 def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 _NAMED = 12
 # a whole number at the end of a name: 7, 07, 7.0, ROW07, ROW01VINE07; not 2.07
 _NUMBER = re.compile(r"^(?!-?\d+[.,]\d*[1-9]\d*$)(?:.*\D)??0*(\d{1,6})(?:\.0+)?$")
+# a name that is nothing else, and any number in a name
+_PLAIN = re.compile(r"\s*\d+(?:\.0+)?\s*$")
+_DIGITS = re.compile(r"(?<!\d)0*(\d{1,6})(?!\d)")
 
 
 class PlantNames(NamedTuple):
@@ -51,9 +54,10 @@ class PlantNames(NamedTuple):
 def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) -> PlantGrid:
     """Return a grid of plants measured at ``(n, 2)`` with their names, and the numbers in these.
 
-    A number is one at the end of a name. Rows keep theirs if these tell all rows apart, or those
-    of each block, and then count on from block to block; plants, if theirs tell all plants of each
-    row apart. Else they count from 1. Names that are just their numbers are not kept.
+    A number is one at the end of a name. Where half of the rows have one, and no two the same,
+    rows keep theirs; where no two of a block have the same, too, and count on from block to block.
+    Rows without one then get one beyond all others. Plants keep theirs if these tell all plants of
+    each row apart. Else they count from 1. Names that are just their numbers are not kept.
     """
     if not grid.in_rows or all(one is None for one in names):
         return grid
@@ -93,24 +97,42 @@ def _numbers(names: NDArray[np.str_]) -> Int:
 
 
 def _lines_called(grid: PlantGrid, names: NDArray[np.str_]) -> Int | None:
-    """Return the number of each line, and that in its block, from its names ``(lines,)``."""
-    own = [set(_numbers(np.array(name.splitlines() or [""])).tolist()) for name in names.tolist()]
-    if any(len(one) > 1 or -1 in one for one in own):
-        return None
-    called = np.array([one.pop() for one in own], np.int64)
-    first = np.unique(grid.row_line[grid.row], return_index=True)[1]
-    if len(np.unique(called)) == len(called):
-        return np.stack([called, called], axis=1)
-    if (called < 1).any():  # counted on, a row 0 would have the number of one before
-        return None
-    block = np.zeros(len(called), np.int64) if grid.block is None else grid.block[grid.row[first]]
-    on = called.copy()
-    for k in range(int(block[-1]) + 1):
-        mine = block == k
-        if len(np.unique(called[mine])) < np.count_nonzero(mine):
+    """Return the number of each line, and that in its block, from its names ``(lines,)``.
+
+    Lines without a number of their own get one beyond all in the names, which nobody means.
+    """
+    own = [name.splitlines() for name in names.tolist()]
+    numbers = [set(_numbers(np.array(one or [""])).tolist()) for one in own]
+    called = np.array([one.pop() if len(one) == 1 else -1 for one in numbers], np.int64)
+    on, kept = called.copy(), called[called >= 0]
+    if len(np.unique(kept)) < len(kept):
+        if grid.n_blocks > 1 and not kept.all():  # counted on, 0 would be a number of before
             return None
-        on[mine] += on[block < k].max(initial=0)
+        plain = np.array([all(map(_PLAIN.match, one)) for one in own])
+        first = np.unique(grid.row_line[grid.row], return_index=True)[1]
+        block = block_label(grid, first)
+        for k in range(1, grid.n_blocks + 1):
+            mine = block == k
+            called[mine] = _plainest(called[mine], plain[mine])
+            kept = called[mine & (called >= 0)]
+            if len(np.unique(kept)) < len(kept):
+                return None
+            before = on[block < k].max(initial=0)
+            on[mine] = np.where(called[mine] < 0, -1, called[mine] + before)
+    odd = called < 0
+    if 2 * np.count_nonzero(odd) > len(odd):
+        return None
+    seen = [*map(int, _DIGITS.findall("\n".join(names.tolist()))), int(on.max())]
+    beyond = 10 ** max(len(f"{max(seen)}"), 2) + 1
+    on[odd] = called[odd] = beyond + np.arange(np.count_nonzero(odd))
     return np.stack([on, called], axis=1)
+
+
+def _plainest(called: Int, plain: NDArray[np.bool_]) -> Int:
+    """Return numbers ``(k,)``, -1 where one of the same is the only one that is all of its name."""
+    same = called[:, None] == called
+    given_up = ~plain & ((same & plain).sum(axis=1) == 1)
+    return np.where(given_up, -1, called)
 
 
 def _lines_named(line: NDArray[np.integer], rows: NDArray[np.str_]) -> NDArray[np.str_]:
@@ -157,17 +179,34 @@ def said_of_numbers(grid: PlantGrid) -> list[str]:
             )
         )
     elif grid.line_named is not None:
-        own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+        own = list(zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True))
         some = [
             worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
             for name, n in own
+            if name and n not in grid.rows_beyond
+        ]
+        if grid.line_called is None:
+            said.append(
+                worded(
+                    "Rows count from 1, since no numbers in their names tell them apart: {some}.",
+                    some=first_few(some, _NAMED),
+                )
+            )
+        elif any(f"{n}" != name for name, n in own if n not in grid.rows_beyond):
+            said.append(
+                worded("Rows have the numbers in their names: {some}.", some=first_few(some, 2))
+            )
+    if grid.rows_beyond and grid.line_named is not None:
+        some = [
+            worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
             if name
+            else worded("a row without a name is row {number}", number=n)
+            for name, n in zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+            if n in grid.rows_beyond
         ]
         said.append(
-            worded("Rows have the numbers in their names: {some}.", some=first_few(some, 2))
-            if grid.line_called is not None
-            else worded(
-                "Rows count from 1, since no numbers in their names tell them apart: {some}.",
+            worded(
+                "Rows whose names have no number of their own get one beyond all others: {some}.",
                 some=first_few(some, _NAMED),
             )
         )
@@ -189,7 +228,7 @@ def said_of_numbers(grid: PlantGrid) -> list[str]:
 
 def doubts_of_numbers(grid: PlantGrid) -> list[str]:
     """Return what is to be said of rows whose names are numbers of other rows."""
-    if grid.line_named is None or grid.line_called is not None:
+    if grid.line_named is None or (grid.line_called is not None and grid.counts_on):
         return []
     own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
     here = set(grid.line_number.tolist())
@@ -204,7 +243,7 @@ def doubts_of_numbers(grid: PlantGrid) -> list[str]:
     return [
         worded(
             "Rows are called {some} in the file, which are numbers of other rows here: such a row "
-            "is refused wherever rows are written. Number them from 1 in the file.",
+            "is refused wherever rows are written. Give each row a number of its own in the file.",
             some=first_few(list(dict.fromkeys(both)), _NAMED),
         )
     ]

@@ -83,11 +83,10 @@ def find_roads(
     straight line touches no row and stays in the drivable area, from node to node. Where that
     leaves parts of the plot apart, they are joined by the shortest ways outside, which lead from
     part to part and are no short cuts between places of one; never over `no_go_m`. Without a gate,
-    work starts at the low-x lane end of the first row that is not shut.
+    work starts at the low-x lane end of the first row that is not too narrow.
 
-    With a `clearance`, ways keep so far off plants, rows whose aisles are too narrow are shut:
-    nothing leads along them, and nobody need reach them.
-    Raise `PlotError` if some row cannot be reached.
+    With a `clearance`, ways keep so far off plants, nothing leads along aisles that are too narrow,
+    and nobody need reach their rows. Raise `PlotError` if some row cannot be reached.
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m, clearance)
     if not grid.in_rows:
@@ -98,16 +97,16 @@ def find_roads(
     xy_m, place = _merged(_row_end_places(grid))
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
     turns = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
-    trusted = np.concatenate([beside[~narrow.shut], turns[narrow.passed.ravel()]])
+    trusted = np.concatenate([beside[~narrow.rows], turns[narrow.passed.ravel()]])
     tried = np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m), _jumps(grid, place)])
     tried = each_once(tried[~np.isin(tried, beside[narrow.tight]).any(axis=1)])
     good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
     net = Net(xy_m, np.concatenate([trusted, tried[good]]))
-    gate = int(beside[np.argmin(narrow.shut), 0])
+    gate = int(beside[np.argmin(narrow.rows), 0])
     if gate_xy_m is not None:
         gate = len(net.xy_m)
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
-    needed = np.append(beside[~narrow.shut].ravel(), gate)
+    needed = np.append(beside[~narrow.rows].ravel(), gate)
     net = without_repeats(joined_inside(net, needed, obstacles))
     net = joined_outside(net, needed, obstacles)
     return _sorted(net, beside, gate)
@@ -133,13 +132,13 @@ def _find_from_tree_to_tree(
 
 
 class _Narrow(NamedTuple):
-    """What a robot's size shuts.
+    """What is too narrow for a robot's size.
 
     Rows that cannot be inspected ``(r,)``, lane ends with no room to turn, and row ends that are
     passed clear of their plants, ``(r, 2)``.
     """
 
-    shut: Mask
+    rows: Mask
     tight: Mask
     passed: Mask
 
@@ -150,7 +149,7 @@ class _Narrow(NamedTuple):
             return cls(none[:, 0], none, ~none)
         beyond_m = np.abs(grid.lane_x_m - grid.along_m[end_plants(grid)])
         tight = clearance.tight_ends(grid)
-        return cls(clearance.shut(grid), tight, (beyond_m >= clearance.way_m) & ~tight)
+        return cls(clearance.too_narrow(grid), tight, (beyond_m >= clearance.way_m) & ~tight)
 
 
 def _find_bent(
@@ -164,11 +163,11 @@ def _find_bent(
     xy_m, place = _merged(places)
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
     lane = None if gate_xy_m is None else _lane_at(grid, np.array([gate_xy_m]))
-    gate = int(beside[np.argmin(narrow.shut), 0]) if gate_xy_m is None else len(xy_m)
+    gate = int(beside[np.argmin(narrow.rows), 0]) if gate_xy_m is None else len(xy_m)
     if lane is not None:
         xy_m = np.concatenate([xy_m, lane[0]])
     at_gate = None if lane is None else (gate, *lane[1:])
-    bends = bends_of(grid, place, at_m, at_gate, narrow.shut)
+    bends = bends_of(grid, place, at_m, at_gate, narrow.rows)
     bends = bends.where(_driveable(bends, obstacles))
     across = place.reshape(-1, 3)
     turns = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
@@ -180,7 +179,7 @@ def _find_bent(
     net = Net(xy_m, np.concatenate([trusted, bends.pair, pairs[good]]))
     if gate_xy_m is not None and lane is None:
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
-    needed = np.append(beside[~narrow.shut].ravel(), gate)
+    needed = np.append(beside[~narrow.rows].ravel(), gate)
     net = joined_outside(joined_inside(net, needed, obstacles), needed, obstacles)
     return _sorted(net, beside, gate, bends)
 
@@ -300,7 +299,7 @@ def _sorted(net: Net, end: Index, gate: int, bends: Bends | None = None) -> Road
     xy_m = net.xy_m[kept]
     start = np.searchsorted(from_to[:, 0], np.arange(len(kept) + 1))
     length_m = Net(xy_m, from_to).length_m()
-    # ends of a row that is shut may be out of reach: nobody goes there
+    # ends of a row that is too narrow may be out of reach: nobody goes there
     ends = np.where(place[end] < 0, place[gate], place[end])
     via_start, via_m = np.zeros(len(from_to) + 1, np.int64), np.empty((0, 2))
     if bends is not None:

@@ -114,24 +114,24 @@ def blocked_by(
     if shapely.is_empty(obstacles):
         return Blocked.nowhere()
 
-    def shut(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
+    def is_blocked(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
         met: NDArray[np.bool_] = shapely.intersects(obstacles, shapes)
         return met
 
-    return shut_stretches(rows, aisles, planting, shut)
+    return blocked_stretches(rows, aisles, planting, is_blocked)
 
 
-def shut_stretches(
+def blocked_stretches(
     rows: RowLines,
     aisles: RowAisles,
     planting: Planting,
-    shut: Callable[[NDArray[np.object_]], NDArray[np.bool_]],
+    is_blocked: Callable[[NDArray[np.object_]], NDArray[np.bool_]],
     *,
     whole: bool = False,
 ) -> Blocked:
-    """Return the stretches of rows whose strip to the aisle is shut, headlands included.
+    """Return the stretches of rows whose strip to the aisle is blocked, headlands included.
 
-    `shut` tells of shapes ``(k,)`` whether they are; it is asked of long strips first, and of
+    `is_blocked` tells of shapes ``(k,)`` whether they are; it is asked of long strips first, and of
     fine ones where these are. The `whole` strip reaches to both aisles, whichever is needed.
     """
     sides = _BOTH if whole or planting.faces == 2 else _ONE
@@ -142,14 +142,14 @@ def shut_stretches(
     k, row = runs(np.zeros(len(n), np.int64), n)
     from_m = np.asarray(k * coarse_m - far_m, np.float64)
     to_m: Float = np.minimum(from_m + coarse_m, rows.lines.length_m[row] + far_m)
-    hit = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m))))
+    hit = np.flatnonzero(is_blocked(_strips(rows, aisles, sides, (row, from_m, to_m))))
     m = int(np.ceil(coarse_m / (_FINE * plant_m)))
     j, of = runs(np.zeros(len(hit), np.int64), np.full(len(hit), m))
     row, step = row[hit][of], ((to_m - from_m)[hit] / m)[of]
     from_m = from_m[hit][of] + j * step
     to_m = from_m + step
-    shut_ones = np.flatnonzero(shut(_strips(rows, aisles, sides, (row, from_m, to_m))))
-    row, from_m, to_m = row[shut_ones], from_m[shut_ones], to_m[shut_ones]
+    blocked = np.flatnonzero(is_blocked(_strips(rows, aisles, sides, (row, from_m, to_m))))
+    row, from_m, to_m = row[blocked], from_m[blocked], to_m[blocked]
     if not len(row):
         return Blocked.nowhere()
     new = np.append(True, (np.diff(row) > 0) | (from_m[1:] > to_m[:-1] + 1e-6))

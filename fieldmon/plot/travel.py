@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted
-from fieldmon.plot.clearance import Clearance, shut_sentence
+from fieldmon.plot.clearance import Clearance, narrow_sentence
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.road_network import RoadNetwork, find_roads
 from fieldmon.plot.travel_table import TravelTable
@@ -125,17 +125,17 @@ class Aisles:
         return {}
 
     @cached_property
-    def shut(self) -> NDArray[np.bool_]:
+    def too_narrow(self) -> NDArray[np.bool_]:
         """Whether each plant ``(n,)`` stands in a row whose aisle is too narrow to enter."""
         if self.clearance is None:
             return read_only(np.zeros(len(self.grid), np.bool_))
-        return read_only(self.clearance.shut(self.grid)[self.grid.row])
+        return read_only(self.clearance.too_narrow(self.grid)[self.grid.row])
 
-    def shut_sentence(self) -> str:
+    def narrow_sentence(self) -> str:
         """Return for people which rows the robot cannot enter, in a sentence; "" if none."""
-        if self.clearance is None or not self.shut.any():
+        if self.clearance is None or not self.too_narrow.any():
             return ""
-        return shut_sentence(self.shut[self.grid.row_start[:-1]], self.grid, self.clearance)
+        return narrow_sentence(self.too_narrow[self.grid.row_start[:-1]], self.grid, self.clearance)
 
     def __repr__(self) -> str:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"

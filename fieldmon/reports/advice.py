@@ -9,7 +9,7 @@ import numpy as np
 from fieldmon.compute.wording import estimate, figure, litres_figure, share_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.reports import words
 from fieldmon.reports.content import (
     Block,
@@ -87,11 +87,11 @@ def _zones(advice: Advice) -> Table:
     rows = []
     for k, verdict in enumerate(advice.said.zones):
         mine = advice.zones.zone == k
-        line, number = label.line[mine], label.number[mine]
+        number, (start, end) = label.number[mine], row_ends(advice.grid, label.line[mine])
         rows.append(
             (
                 f"{k + 1}",
-                worded(words.FROM_TO, start=line.min(), end=line.max()),
+                worded(words.FROM_TO, start=start, end=end),
                 worded(words.FROM_TO, start=number.min(), end=number.max()),
                 figure(int(np.count_nonzero(mine)), ","),
                 figure(verdict.share, ".0%"),

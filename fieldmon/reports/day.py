@@ -15,7 +15,7 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import left_off_in_words
-from fieldmon.planning.members import person
+from fieldmon.planning.members import person_key
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
@@ -176,7 +176,7 @@ def who_came(season: Season, on: date, team: tuple[str, ...] = ()) -> tuple[str,
     Whoever is named nowhere is one of several.
     """
     who = season.history.inspections.on(on).inspected.who
-    came = {person(str(name)): str(name) for name in who}
+    came = {person_key(str(name)): str(name) for name in who}
     if not team and len(came) < 2:
         return ()
     named = sorted(name for name in came.values() if name)
@@ -310,14 +310,15 @@ def legend_block(
 
 def _stops(facts: DayFacts) -> Table:
     """Return the rows in the order in which they are come to, with their plants."""
-    label = row_label(facts.route.aisles.grid, facts.route.plant)
+    grid = facts.route.aisles.grid
+    label = row_label(grid, facts.route.plant)
     lines, first = np.unique(label.line, return_index=True)
     rows, flow = [], 2 if len(lines) <= _MOST_WIDE else 3
     for line, k in sorted(zip(lines.tolist(), first.tolist(), strict=True), key=lambda one: one[1]):
         own = label.number[label.line == line].tolist()
         rows.append(
             (
-                f"{line}" if facts.route.aisles.grid.in_rows else NO_ROW,
+                grid.row_signs[line] if grid.in_rows else NO_ROW,
                 _clock(facts, facts.route.arrive_s[k]),
                 f"{len(own)}",
                 which(own, _WHICH[flow]),
@@ -365,7 +366,7 @@ def _found(facts: DayFacts) -> Table:
     label = row_label(grid, facts.found)
     rows = tuple(
         (
-            f"{line}" if grid.in_rows else NO_ROW,
+            grid.row_signs[line] if grid.in_rows else NO_ROW,
             runs(label.number[label.line == line].tolist()),
         )
         for line in np.unique(label.line).tolist()
@@ -378,7 +379,7 @@ def _found(facts: DayFacts) -> Table:
 
 def _every_stop(facts: DayFacts) -> TickList:
     """Return every stop with a box to tick or, once the day is over, with its result."""
-    route = facts.route
+    route, signs = facts.route, facts.route.aisles.grid.row_signs
     label = row_label(route.aisles.grid, route.plant)
     said = [
         words.RESULTS[facts.results.get(plant, -1)] if facts.worked else "☐"
@@ -391,7 +392,7 @@ def _every_stop(facts: DayFacts) -> TickList:
     return TickList(
         words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),
         tuple(
-            (f"{k}", _clock(facts, s, "%H:%M:%S"), f"{line}", f"{number}", f"{chance:.1f}", end)
+            (f"{k}", _clock(facts, s, "%H:%M:%S"), signs[line], f"{number}", f"{chance:.1f}", end)
             for k, s, line, number, chance, end in rows
         ),
     )  # fmt: skip

@@ -13,7 +13,7 @@ from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.cautions import label_of, waits
-from fieldmon.monitoring.inspection_table import clock
+from fieldmon.monitoring.inspection_table import time_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -90,7 +90,7 @@ def inspections_table(season: Season) -> Table:
     return {
         "plot": [plot] * len(done),
         "date": dates,
-        "time": _each(done.second, clock),
+        "time": _each(done.second, time_text),
         "row": label.line[done.plant].tolist(),
         # no column "plant": in route files that is the number on the plot, from 0
         "number": label.number[done.plant].tolist(),

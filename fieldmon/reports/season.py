@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, estimate, figure, joined, runs, worded
+from fieldmon.compute.wording import counted, estimate, figure, joined, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.day_figures import flagged_said, found_pct
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import row_label, rows_listed
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
 from fieldmon.reports.charts import DayChart
@@ -207,7 +207,7 @@ def _rows_seen(facts: _Facts) -> Iterator[str]:
     never, late = lines[np.isinf(days)], lines[np.isfinite(days) & (days >= _LATE_DAYS)]
     for said, rows in ((words.ROWS_UNSEEN, never), (words.ROWS_LATE, late)):
         if len(rows):
-            numbers = runs(rows.tolist())
+            numbers = rows_listed(facts.season.plot.grid, rows)
             listed = worded(words.ROWS_NAMED if len(rows) > 1 else words.ROW, low=numbers)
             long = len(listed) > _ROWS_LONG
             yield worded(said, rows=counted(len(rows), "row") if long else listed)
@@ -294,7 +294,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     rows = []
     for line in np.unique(label.line).tolist():
         own = label.number[label.line == line].tolist()
-        row = f"{line}" if grid.in_rows else NO_ROW
+        row = grid.row_signs[line] if grid.in_rows else NO_ROW
         rows.append((row, f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.wording import Worded, counted, estimate, hours_figure, joined, worded
 from fieldmon.infestation.observations import PRESENT
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.reports import words
 
 if TYPE_CHECKING:
@@ -26,11 +26,11 @@ def headline(route: Route, day: str) -> str:
     if not len(route):
         return worded(words.HEADLINE_NONE, day=day)
     line = row_label(route.aisles.grid, route.plant).line
-    low, high = int(line.min()), int(line.max())
+    low, high = row_ends(route.aisles.grid, line)
     rows, finds = worded(words.ROW, low=low), route.expected_found
     if not route.aisles.grid.in_rows:
         rows = worded(words.NO_ROWS)
-    elif low < high:
+    elif low != high:
         rows = worded(words.ROWS, low=low, high=high)
     return worded(
         words.HEADLINE, plants=counted(len(route), "plant"), rows=rows, day=day,
@@ -80,7 +80,7 @@ def _brought(grid: PlantGrid, spots: HotSpots, own: NDArray[np.int8] | None) -> 
 def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:
     """Return which rows and which of their plants these are, in words."""
     label = row_label(grid, plants)
-    first, last = int(label.line.min()), int(label.line.max())
+    first, last = row_ends(grid, label.line)
     low, high = int(label.number.min()), int(label.number.max())
     if not grid.in_rows:
         return worded(words.HOT_PLANTS, low=low, high=high)

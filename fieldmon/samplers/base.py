@@ -145,8 +145,8 @@ class Scene:
             object.__setattr__(self, "robot", robot)
         # whoever makes a scene need not think of it: its ways are those that its robot can drive
         aisles = self.aisles.for_robot(self.robot)
-        if aisles.shut.any():
-            seen = np.where(aisles.shut, np.int32(self.day), self.last_inspected)
+        if aisles.too_narrow.any():
+            seen = np.where(aisles.too_narrow, np.int32(self.day), self.last_inspected)
             object.__setattr__(self, "last_inspected", seen)
         object.__setattr__(self, "aisles", aisles)
 

@@ -59,10 +59,9 @@ class _Open(NamedTuple):
 class Dynamic(Sampler):
     """Drive to the nearest plant of an open list until the day is over.
 
-    The open list starts with the suspicious plants. An inspected plant moves to the closed list;
-    after a find the plants next to it, along and across the rows, join the open list unless they
-    are closed. When the open list is empty it is refilled with suspicious plants not yet visited
-    today.
+    The open list starts with the suspicious plants. An inspected plant leaves it; after a find the
+    plants next to it, along and across the rows, join it unless they were inspected today. When it
+    is empty it is refilled with suspicious plants not yet visited today.
 
     The thesis does not say who is suspicious. Here it is every plant whose chance of infestation
     is at least half that of the most suspicious one not yet visited today, but no more plants
@@ -112,12 +111,12 @@ def _walk(
 ) -> int:
     at, steps, at_once = start
     adjacent, onward_m, chance_bits, would_find = plants
-    closed, opened = lists
+    inspected, opened = lists
     now_s, k, left = 0.0, 0, 0
     while k < stops.plant.size:
         if left == 0:
             room = int(at_once * ((clock.seconds_left - now_s) // clock.visit_s))
-            left = _refill(travel, opened, (closed, chance_bits), (max(room, 1), steps))
+            left = _refill(travel, opened, (inspected, chance_bits), (max(room, 1), steps))
             if left == 0:
                 break
         plant, way_s = _nearest(travel, clock, opened, onward_m, at)
@@ -128,20 +127,20 @@ def _walk(
         now_s += clock.visit_s
         k += 1
         at = plant
-        closed[plant] = True
+        inspected[plant] = True
         opened.flag[plant] = False
         opened.n_open[travel.row[plant]] -= 1
         left -= 1
         if would_find[plant]:
             for e in range(adjacent.start[plant], adjacent.start[plant + 1]):
-                left += _open(travel, opened, closed, adjacent.plant[e])
+                left += _open(travel, opened, inspected, adjacent.plant[e])
     return k
 
 
 @inlined
-def _open(travel: TravelTable, opened: _Open, closed: NDArray[np.bool_], plant: int) -> int:
+def _open(travel: TravelTable, opened: _Open, inspected: NDArray[np.bool_], plant: int) -> int:
     """Put a plant on the open list; return how many joined it (0 or 1)."""
-    if closed[plant] or opened.flag[plant]:
+    if inspected[plant] or opened.flag[plant]:
         return 0
     row = travel.row[plant]
     opened.flag[plant] = True
@@ -158,22 +157,22 @@ def _refill(
     plants: tuple[NDArray[np.bool_], NDArray[np.int64]],
     limits: tuple[int, int],
 ) -> int:
-    """Open the suspicious plants that are not closed, `room` at most; return how many.
+    """Open the suspicious plants not yet inspected today, `room` at most; return how many.
 
     Called when none is open.
     """
-    closed, chance_bits = plants
+    inspected, chance_bits = plants
     room, steps = limits
     most = np.int64(0)
-    for plant in range(closed.size):
-        bits = np.int64(0) if closed[plant] else chance_bits[plant]
+    for plant in range(inspected.size):
+        bits = np.int64(0) if inspected[plant] else chance_bits[plant]
         most = bits if bits > most else most  # noqa: FURB136 - max is slower
     top = most >> _LEVEL_BITS
     n = 0
-    for plant in range(closed.size):
+    for plant in range(inspected.size):
         # written either way: to foresee which ones come into question is what costs
         opened.asked[n] = plant
-        n += (top - (chance_bits[plant] >> _LEVEL_BITS) <= steps) & (not closed[plant])
+        n += (top - (chance_bits[plant] >> _LEVEL_BITS) <= steps) & (not inspected[plant])
     least, even = steps + 1, 0
     if n > room:
         least, even = _least_of(opened, chance_bits, (n, room), (top, steps))

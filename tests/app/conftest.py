@@ -120,10 +120,14 @@ def season(seasons_folder):
 
 @pytest.fixture
 def season_named(seasons_folder):
-    """Return a season of rows 1 to 4 that their file calls 5a, 4, 2, 3."""
+    """Return a season of rows 1 to 4 that their file calls 5a, C, 2, D.
+
+    Of the plants of row 1 the third has the name of the fourth.
+    """
     row, plant = np.divmod(np.arange(80), 20)
     lonlat = Frame(35.0, 30.0, 90.0).lonlat(np.stack([2.0 * plant, 3.0 * row], axis=1))
-    names = PlantNames(np.array(["5a", "4", "2", "3"])[row], None, (plant + 1).astype(np.str_))
+    called = np.where((row == 0) & (plant == 2), 4, plant + 1)
+    names = PlantNames(np.array(["5a", "C", "2", "D"])[row], None, called.astype(np.str_))
     plot = Plot.around("own", lonlat, names=names)
     settings = MonitoringSettings(date(2026, 11, 16), robot=Robot(hours=1.0))
     return Season.create(seasons_folder / "Own 2026.gpkg", plot, Observations.none(), settings)

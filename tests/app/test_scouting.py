@@ -328,7 +328,7 @@ def test_a_phone_handed_over_and_taken_to_another_plot_mixes_nothing(season, lin
     page.locator(SENT).wait_for()
     window.set_offline(True)
     first = told_now(page, "clean")
-    scouts.take_back(season, "Noa")
+    scouts.withdraw_key(season, "Noa")
     window.set_offline(False)
     page.goto("about:blank")
     invited(phone, line, season, "Gil")
@@ -455,7 +455,7 @@ def _in_the_field(phone, line, season):
     assert [row[2] for row in rows] == ["found"]
     _brings_a_photo_asked_for(page, season)
     # the key is taken back: nothing goes in, nothing is lost
-    scouts.take_back(season, "Ben")
+    scouts.withdraw_key(season, "Ben")
     told_now(page, "clean")
     page.locator("#sync[data-state=ended][data-left='1']").wait_for(timeout=180_000)
     assert key not in page.url

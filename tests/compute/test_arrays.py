@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.compute.arrays import as_compiled, offsets, read_only, runs
+from fieldmon.compute.arrays import as_compiled, offsets, read_only, run_ends, runs
 
 COUNTS = st.lists(st.integers(0, 9), max_size=30)
 
@@ -27,6 +27,13 @@ def test_runs_are_the_whole_numbers_from_each_first_one(runs_of):
     numbers, run = runs(first, count)
     wanted = [(i, start + k) for i, (start, n) in enumerate(runs_of) for k in range(n)]
     assert list(zip(run.tolist(), numbers.tolist(), strict=True)) == wanted
+
+
+@given(numbers=st.sets(st.integers(0, 40)).map(sorted))
+def test_the_ends_of_runs_are_numbers_without_the_one_before_or_after_them(numbers):
+    first, last = run_ends(np.array(numbers, np.int64)).T.tolist()
+    assert first == [k for k in numbers if k - 1 not in numbers]
+    assert last == [k for k in numbers if k + 1 not in numbers]
 
 
 def test_what_is_read_only_is_the_same_array_and_cannot_be_written_to():

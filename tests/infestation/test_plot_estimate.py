@@ -1,6 +1,7 @@
 """How many are still infested, and is the plot clean."""
 
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -120,7 +121,8 @@ def test_of_a_pest_that_is_named_the_doubt_is_not_itself_in_doubt():
     assert named.high / named.low < wide.high / wide.low
     halves = [estimate_plot(grid, chance, sure=0.5, doubt=0.4, named=n) for n in (False, True)]
     assert halves[0].high - halves[0].low == pytest.approx(halves[1].high - halves[1].low, rel=0.25)
-    ends = [level_range(chance, 0.4, named=each) for each in (False, True)]
+    of = {"chance": chance, "doubt": 0.4, "since_inspected": None}
+    ends = [level_range(SimpleNamespace(**of, pest=each)) for each in (None, "a pest")]
     assert ends[1].low < 1.0 < ends[1].high
     assert ends[1].high / ends[1].low < ends[0].high / ends[0].low
 

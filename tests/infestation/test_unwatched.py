@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict, zone_verdicts
+from fieldmon.decisions.map_verdict import AskedVerdict, verdict_of, zone_verdicts
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.forecast import forecast
 from fieldmon.infestation.plot_estimate import estimate_of
@@ -155,8 +155,7 @@ def test_while_nobody_inspects_the_plot_becomes_no_cleaner(evening):
 
 
 def verdict(belief, level=0.5):
-    asked = AskedVerdict.on(belief, level)
-    return map_verdict(GRID, belief.chance, asked, belief.pair_chance)
+    return verdict_of(GRID, belief, level)
 
 
 @pytest.mark.parametrize("idle", [2, 7, 30])

@@ -11,7 +11,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted
-from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
+from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
@@ -125,8 +125,7 @@ def test_one_look_less_would_not_decide(season):
     for looks, found, verdict in ((more.if_clean, False, LEAVE), (more.if_found, True, TREAT)):
         for k in (looks - 1, looks):
             after = evening.learn(order[:k], np.full(k, found), learning)
-            question = AskedVerdict.on(after, level, asked.sure)
-            said = map_verdict(scene.grid, after.chance, question, after.pair_chance)
+            said = verdict_of(scene.grid, after, level, asked.sure)
             assert (said.verdict == verdict) == (k == looks)
 
 

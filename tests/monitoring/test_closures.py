@@ -11,7 +11,7 @@ from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.closures import any_closed, closed_on, entry_waits, left_off_in_words
+from fieldmon.monitoring.closures import closed_on, closed_plants, entry_waits, left_off_in_words
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.planning.members import team_of
 from fieldmon.plot.local_clock import local_clock
@@ -54,7 +54,7 @@ def test_a_label_counts_and_what_begins_after_the_hours_closes_nothing():
 
 def test_what_is_left_off_is_said_once_with_its_last_time(season):
     n, rows = len(season.plot.grid), (season.plot.grid, season.label)
-    assert not any_closed((), n).any()
+    assert not closed_plants((), n).any()
     for wait, lines in ((24, [1, 2, 3, 7]), (72, [3, 4])):
         sprayed(season, lines, wait, product="Acarol" if wait == 24 else "")
     first, second = left_off_in_words(season.closed(ON), rows, Units())
@@ -79,7 +79,7 @@ def test_a_plan_leaves_closed_plants_out_until_their_time(season):
     assert plants[given].any()
     assert len(left.route)
     assert not plants[left.route.plant].any()
-    assert any_closed(season.closed(ON), len(plants)).tolist() == plants.tolist()
+    assert closed_plants(season.closed(ON), len(plants)).tolist() == plants.tolist()
     assert plants[season.plan(ON, time(6, 30), keep=False).route.plant].any()
     assert plants[season.plan(BEGINS + timedelta(2), keep=False).route.plant].any()
     with season.entering_treated():
@@ -163,7 +163,7 @@ def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part,
 def test_east_and_west_are_closed_each_until_their_time():
     done = [treated(0, EAST, reentry_hours=24.0), treated(0, WEST, reentry_hours=48.0)]
     closed = closed_on(entry_waits(done, (), TREES), date(2026, 4, 7), 9 * 3600, 12 * 3600)
-    assert any_closed(closed, 20).tolist() == WEST.tolist()
+    assert closed_plants(closed, 20).tolist() == WEST.tolist()
 
 
 def test_one_row_is_a_row(season):

@@ -183,7 +183,7 @@ def test_who_is_left_alone_keeps_what_was_given_and_who_comes_back_takes_nothing
     route_ahead(fresh, BEGINS, dan)
     shared = route_ahead(fresh, BEGINS, ann).plant.tolist()
     assert shared != alone
-    scouts.take_back(fresh, "Dan")
+    scouts.withdraw_key(fresh, "Dan")
     assert route_ahead(fresh, BEGINS, ann).plant.tolist() == shared
     rest = planned_again(fresh, BEGINS, ann).plant
     assert route_ahead(fresh, BEGINS, ann).plant.tolist() == rest.tolist()

@@ -149,7 +149,7 @@ def test_what_is_meant_for_another_day_has_no_time(season, key):
 
 
 def test_a_key_that_was_taken_back_writes_nothing(season, key):
-    scouts.take_back(season, "Ann")
+    scouts.withdraw_key(season, "Ann")
     with pytest.raises(AccessError):
         take(season, key, [a_finding(3)], NOW)
     assert told(season) == ([], [])

@@ -135,7 +135,7 @@ def _undo_treatment(season):
 def _take_back_key(season):
     scouts.let_in(season, "Ann")
     yield
-    scouts.take_back(season, "Ann")
+    scouts.withdraw_key(season, "Ann")
 
 
 def _draft(season):

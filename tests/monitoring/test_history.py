@@ -208,9 +208,9 @@ def test_each_inspection_is_learnt_from_by_what_it_was_told_to_find():
     looked = done.plant[[0, 1, 3]]
     known = MORNING.learn(looked, np.zeros(3, bool), Learning(told[[0, 1, 3]]))
     assert history.evening(MORNING, 0).chance.tolist() == known.chance.tolist()
-    assert history.told(0) == pytest.approx((0.9 + 0.5 + 0.9) / 3)
+    assert history.mean_detection(0) == pytest.approx((0.9 + 0.5 + 0.9) / 3)
 
 
 def test_inspections_that_are_told_to_find_alike_are_told_exactly_that():
-    assert History(PLOT.grid, BEGINS, MORNING, DONE, detection=0.7).told(5) == 0.7
-    assert History(PLOT.grid, BEGINS, MORNING, detection=0.7).told(0) == 0.7
+    assert History(PLOT.grid, BEGINS, MORNING, DONE, detection=0.7).mean_detection(5) == 0.7
+    assert History(PLOT.grid, BEGINS, MORNING, detection=0.7).mean_detection(0) == 0.7

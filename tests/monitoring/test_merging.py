@@ -8,6 +8,7 @@ from collections import Counter
 from contextlib import closing
 from dataclasses import replace
 from datetime import UTC, datetime, time, timedelta
+from itertools import combinations, permutations
 from types import SimpleNamespace
 from unittest import mock
 
@@ -29,12 +30,16 @@ from fieldmon.monitoring import (
     schema,
     season_log,
     settings_log,
+    treatments,
 )
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.day_ahead import WHOLE, DayAhead
 from fieldmon.monitoring.findings import Finding, _SentFindings
+from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.photos import Photo
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json
+from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot import local_clock
 from fieldmon.plot.grid import row_label
 from tests.monitoring.phone import JPEG
@@ -429,7 +434,7 @@ def test_a_batch_is_the_same_in_both_copies_where_each_of_its_rows_is(seed):
             db.executemany(f"{into} VALUES ({batch}, ?, ?, ?, ?)", written)
         alike = rows == others and not any(None in row for row in rows)
         answers.append(alike)
-        assert merging._same(both, batch, n) == alike
+        assert merging._is_same_batch(both, batch, n) == alike
     assert {*answers} == {True, False}
     for db in both:
         db.close()
@@ -440,7 +445,7 @@ def test_a_batch_in_which_something_stands_twice_is_no_batch_that_stays():
     schema.lay_out(db)
     into = "INSERT INTO inspections (batch, digest, undone, who, notes)"
     db.executemany(f"{into} VALUES (1, ?, ?, 'Ann', '')", [("a", 1), ("a", 0)])
-    assert not merging._same((db, db), 1, 2)
+    assert not merging._is_same_batch((db, db), 1, 2)
     db.close()
 
 
@@ -545,6 +550,171 @@ def test_labels_that_were_replaced_do_not_come_back(path, other, both):
     assert theirs.merge(ours).contradictions == ()
     assert theirs.labels() == (last,)
     assert ours.verify() == ()
+
+
+SPRAYED = Application("Acarol", operator="Ann", began=time(7))
+
+
+@pytest.mark.parametrize("first", ["here", "there"])
+@pytest.mark.parametrize("way", ["here", "there"])
+def test_a_spraying_that_both_recorded_counts_once_with_the_stricter_of_what_labels_added(
+    path, other, tmp_path, first, way
+):
+    third = Season(shutil.copy(path, tmp_path / "third.gpkg"))  # nothing but what was said
+    here, there = Season(path), Season(other)
+    here.keep_labels([ProductLabel("Acarol", waiting_days=7, reentry_hours=24.0)])
+    there.keep_labels(
+        [ProductLabel("Acarol", waiting_days=14, reentry_hours=12.0, irac_groups=("6",))]
+    )
+    for one in (here, there) if first == "here" else (there, here):
+        one.treat(BEGINS, 0.5, application=SPRAYED)
+    third.treat(BEGINS, 0.5, application=SPRAYED)
+    third.treat(BEGINS, 0.5, application=replace(SPRAYED, operator="Ben"))
+    season, copy = (here, there) if way == "here" else (there, here)
+    evening = season.evening(BEGINS)
+    done = season.merge(copy)
+    waits, hours = ((7, 14), (24, 12)) if way == "here" else ((14, 7), (12, 24))
+    group = "none here, 6 there" if way == "here" else "6 here, none there"
+    assert done.treatments == 0
+    said = (
+        f"The treatment with Acarol on {BEGINS} was recorded in both, and labels added different "
+        f"values: waiting days {waits[0]} here, {waits[1]} there, re-entry hours {hours[0]} here, "
+        f"{hours[1]} there, group {group}. It counts once; the longer waits and all groups hold."
+    )
+    assert done.contradictions[1:] == (said,)
+    np.testing.assert_array_equal(season.evening(BEGINS), evening)
+    strictest = replace(SPRAYED, waiting_days=14, reentry_hours=24.0, irac_groups=("6",))
+    assert [one.application for one in season.treatments()] == [strictest]
+    n = len(season.log())
+    again = season.merge(copy)
+    assert (again.contradictions, again.treatments, len(season.log())) == ((), 0, n)
+    copy.merge(season)
+    assert [one.application for one in copy.treatments()] == [strictest]
+    assert season.merge(third).treatments == 1
+    bens = replace(SPRAYED, operator="Ben")
+    assert [one.application for one in season.treatments()] == [strictest, bens]
+    assert (season.verify(), copy.verify()) == ((), ())
+    left = [replace(SPRAYED, waiting_days=7, reentry_hours=24.0),
+            replace(SPRAYED, waiting_days=14, reentry_hours=12.0, irac_groups=("6",))]  # fmt: skip
+    assert "still" in copy.undo(copy.treatments()[0].batch)
+    assert [one.application for one in copy.treatments()] == left[first == "here" :][:1]
+    assert "still" not in copy.undo(copy.treatments()[0].batch)
+    assert copy.treatments() == ()
+    assert copy.verify() == ()
+
+
+FIRST = datetime(2026, 4, 10, 9, tzinfo=UTC)
+
+
+def sprayed(db, at, said, filled, *, noted=True):
+    """Record a spraying of which a label filled in something; earlier versions noted none of it."""
+    now = FIRST + timedelta(minutes=at)
+    with mock.patch.object(local_clock, "utc_now", return_value=now):
+        batch = batches.begin(db, "treatment", said.product, said.operator)
+    place = TreatedPlace(PLOT.field.boundary, np.ones(len(GRID), bool), 0.5)
+    whole = place, BEGINS, replace(said, **filled)
+    treatment = Treatment(0, place.plants, 0.5)
+    new = treatments.store(db, treatment, whole, batch, local_clock.LocalClock("UTC"), filled)
+    batches.end(db, batch, new)
+    if new and not noted:
+        row = treatments._rows(db, f"batch = {batch}")[0] | {"by_label": None}
+        undone = "UPDATE treatments SET by_label = NULL, digest = ? WHERE batch = ?"
+        db.execute(undone, (treatments.digest_of(row), batch))
+
+
+def copies_of(n):
+    """Return so many copies, in memory, of a season in which nothing was done."""
+    one = sqlite3.connect(":memory:", isolation_level=None)
+    schema.lay_out(one)
+    settings_log.write(one, as_json(SETTINGS))
+    season_log.begin(one, "a new season")
+    return [one, *(copied(one) for _ in range(n - 1))]
+
+
+def counting(db):
+    return db.execute("SELECT batch, waiting_days FROM treatments WHERE undone = 0").fetchall()
+
+
+@pytest.mark.parametrize("said", [None, 3])
+@pytest.mark.parametrize("noted", [True, False])
+def test_sprayings_of_which_nobody_knows_whether_they_are_one_both_count_and_are_listed(
+    said, noted
+):
+    one, other = copies_of(2)
+    sprayed(one, 0, SPRAYED, {"waiting_days": 7}, noted=noted)
+    if said is None:
+        sprayed(other, 1, SPRAYED, {"waiting_days": 14})
+    else:
+        sprayed(other, 1, replace(SPRAYED, waiting_days=said), {})
+    ours = copied(one)
+    done = merging.merge(ours, other)
+    if noted and said is None:
+        assert "It counts once" in done.differing[0]
+        assert counting(ours) == [(1, 7)]
+        return
+    why = "" if noted else " (an earlier version did not note whether a label added that)"
+    doubt = (
+        f"Treatments with Acarol on {BEGINS}, batches 1 and 2, say the same but for waiting days "
+        f"7 here, {said or 14} there{why}. Both count; if they are one, undo a batch."
+    )
+    assert done.differing == (doubt,)
+    assert done.treatments == 1
+    assert counting(ours) == [(1, 7), (2, said or 14)]
+    assert merging.merge(ours, other).differing == ()
+
+
+def test_what_an_earlier_version_recorded_is_known_by_all_its_values():
+    one, other = copies_of(2)
+    sprayed(one, 0, SPRAYED, {"waiting_days": 7}, noted=False)
+    sprayed(other, 1, SPRAYED, {"waiting_days": 7})
+    assert merging.merge(one, other).differing == ()
+    assert counting(one) == [(1, 7)]
+
+
+@pytest.mark.parametrize("first", range(0, PAIRS, 20))
+def test_treatments_of_three_copies_come_out_the_same_in_every_order(first):
+    """500 times three with FIELDMON_MERGES=500."""
+    for seed in range(first, min(first + 20, PAIRS)):
+        rng = random.Random(seed)
+        copies = copies_of(3)
+        moments = iter(rng.sample(range(100), 12))
+        for db in copies:
+            for _ in range(rng.randrange(1, 4)):
+                said = replace(SPRAYED, waiting_days=rng.choice((None, None, None, 7)))
+                filled = {} if said.waiting_days else {"waiting_days": rng.choice((7, 14))}
+                filled |= rng.choice(({}, {"reentry_hours": 12.0}))
+                sprayed(db, next(moments), said, filled, noted=rng.random() < 0.8)
+            if rng.random() < 0.3:
+                batches.undo(db, None)
+        outcomes = []
+        for order in permutations(copies):
+            ours = copied(order[0])
+            for each in order[1:]:
+                before = treatments.counting(ours)
+                n_new = merge(ours, each).treatments
+                known = frozenset().union(*before)
+                assert n_new == sum(not marks & known for marks in treatments.counting(ours))
+            rows = content(ours)["treatments"]
+            for each in order:
+                assert merge(ours, each).differing == ()
+            assert content(ours)["treatments"] == rows
+            marks = treatments.counting(ours)
+            assert not any(a & b for a, b in combinations(marks, 2))
+            live = treatments._rows(ours, "undone <> 1")
+            assert all(any(treatments.known_by(row) & one for one in marks) for row in live)
+            assert treatments.not_what_they_say(ours) == []
+            # undoing leaves what merging would leave
+            number = live[0]["batch"] if live else None
+            if number is not None:
+                batches.undo(ours, number)
+                undone = content(ours)["treatments"]
+                merge(ours, order[0])
+                assert content(ours)["treatments"] == undone
+            outcomes.append(rows)
+            ours.close()
+        assert all(rows == outcomes[0] for rows in outcomes)
+        for db in copies:
+            db.close()
 
 
 def test_what_was_taken_back_and_recorded_again_at_once_counts_in_the_merged_season(path, other):

@@ -15,8 +15,8 @@ def test_a_person_is_written_as_at_first_whoever_types_it(path):
     first = scouts.let_in(season, "Ann")
     second = scouts.let_in(season, "ann ")
     with pytest.raises(AccessError):
-        scouts.who(season, first)
-    assert scouts.who(season, second).name == "Ann"
+        scouts.key_owner(season, first)
+    assert scouts.key_owner(season, second).name == "Ann"
     season.record(three_results(), "f", "ANN")
     theirs = np.array(["Ben", "BEN", "aNN"], object)
     season.record(replace(three_results(on=1), who=theirs), "g")
@@ -34,15 +34,17 @@ def test_a_person_is_written_as_at_first_whoever_types_it(path):
     season.record_instead(otherwise, "h", "ANN")
     assert {*season.history.inspections.who.tolist()[-3:]} <= {"Ann", "Ben"}
     assert {entry.who for entry in season.log()[-6:]} == {"Ann", "Ben"}
-    scouts.take_back(season, "ANN")
-    assert scouts.who(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"
+    scouts.withdraw_key(season, "ANN")
+    assert scouts.key_owner(season, scouts.let_in(season, "ben", (1, 2))).name == "Ben"
 
 
 def test_a_name_with_a_comma_is_one(path):
     season = Season(path)
     scouts.let_in(season, "COHEN, Uri", (1, 2))
     scouts.let_in(season, "uri", (3, 4))
-    assert scouts.who(season, scouts.let_in(season, "Cohen, uri", (1, 2))).name == "COHEN, Uri"
+    assert (
+        scouts.key_owner(season, scouts.let_in(season, "Cohen, uri", (1, 2))).name == "COHEN, Uri"
+    )
     assert [one.name for one in scouts.scouts_of(season)] == ["uri", "COHEN, Uri"]
     season.record(three_results(), "f", "Levi, Dan")
-    assert scouts.who(season, scouts.let_in(season, "levi, dan", (5, 6))).name == "Levi, Dan"
+    assert scouts.key_owner(season, scouts.let_in(season, "levi, dan", (5, 6))).name == "Levi, Dan"

@@ -78,7 +78,7 @@ def test_photos_have_a_limit_in_number_and_need_a_key(season, key, monkeypatch):
     keep(season, key, a_photo("x"))
     with pytest.raises(LimitError, match="1 photos a day"):
         keep(season, key, a_photo("x", "two"))
-    scouts.take_back(season, "Ann")
+    scouts.withdraw_key(season, "Ann")
     with pytest.raises(AccessError):
         keep(season, key, a_photo("x", "three"))
 

@@ -19,7 +19,7 @@ def season(path):
 
 def test_a_key_says_whose_it_is_and_of_which_rows(season):
     key = scouts.let_in(season, " Ann ", (1, 3))
-    scout = scouts.who(season, key)
+    scout = scouts.key_owner(season, key)
     assert (scout.name, scout.rows) == ("Ann", (1, 3))
     assert [one.name for one in scouts.scouts_of(season)] == ["Ann"]
 
@@ -34,27 +34,27 @@ def test_the_file_holds_no_key(season):
 def test_no_key_opens_nothing(season, key):
     scouts.let_in(season, "Ann")
     with pytest.raises(AccessError):
-        scouts.who(season, key)
+        scouts.key_owner(season, key)
 
 
 def test_a_key_of_one_season_opens_no_copy_of_it(season, tmp_path):
     key = scouts.let_in(season, "Ann")
     with pytest.raises(AccessError):
-        scouts.who(Season(shutil.copy(season.path, tmp_path / "copy.gpkg")), key)
+        scouts.key_owner(Season(shutil.copy(season.path, tmp_path / "copy.gpkg")), key)
 
 
 def test_a_key_taken_back_ends_and_a_new_one_of_that_name_ends_the_old(season):
     first = scouts.let_in(season, "Ann")
     second = scouts.let_in(season, "Ann")
     with pytest.raises(AccessError):
-        scouts.who(season, first)
-    assert scouts.who(season, second).name == "Ann"
-    scouts.take_back(season, "Ann")
+        scouts.key_owner(season, first)
+    assert scouts.key_owner(season, second).name == "Ann"
+    scouts.withdraw_key(season, "Ann")
     with pytest.raises(AccessError):
-        scouts.who(season, second)
+        scouts.key_owner(season, second)
     assert scouts.scouts_of(season) == ()
     with pytest.raises(SettingError, match="Ann must have a key"):
-        scouts.take_back(season, "Ann")
+        scouts.withdraw_key(season, "Ann")
 
 
 def test_who_got_a_key_in_each_of_two_copies_is_one_person_and_both_keys_hold(season, tmp_path):
@@ -66,11 +66,11 @@ def test_who_got_a_key_in_each_of_two_copies_is_one_person_and_both_keys_hold(se
     assert (done.codes, done.overlaps) == (1, ())
     (one,) = scouts.scouts_of(season)
     assert one.rows == (5, 12)
-    assert [scouts.who(season, key) for key in (first, last)] == [one, one]
-    scouts.take_back(season, "Ann")
+    assert [scouts.key_owner(season, key) for key in (first, last)] == [one, one]
+    scouts.withdraw_key(season, "Ann")
     for key in (first, last):
         with pytest.raises(AccessError):
-            scouts.who(season, key)
+            scouts.key_owner(season, key)
 
 
 @pytest.mark.parametrize("name", ["", "  ", "n" * 61])
@@ -115,10 +115,10 @@ def test_a_name_of_the_team_is_written_as_there_and_any_other_needs_rows(season)
     with pytest.raises(SettingError, match=r"must be one of the team \(robot-1, robot-2\)"):
         scouts.let_in(season, "robot-3")
     first = scouts.let_in(season, "Robot-1")
-    assert scouts.who(season, first).name == "robot-1"
+    assert scouts.key_owner(season, first).name == "robot-1"
     scouts.let_in(season, "ROBOT-1")
     with pytest.raises(AccessError):
-        scouts.who(season, first)
+        scouts.key_owner(season, first)
     scouts.let_in(season, "Anna", (1, 2))
     assert [one.name for one in scouts.scouts_of(season)] == ["robot-1", "Anna"]
     with pytest.raises(SettingError, match="robot-2 is of it: the team's plan"):
@@ -131,7 +131,7 @@ def test_parts_are_of_the_rows_that_the_file_of_plants_names(tmp_path):
     grid = replace(plot.grid, line_called=np.stack([called, called], axis=1))
     plot = replace(plot, aisles=replace(plot.aisles, grid=grid))
     season, last = a_season(tmp_path / "own.gpkg", plot), int(called[-1])
-    assert scouts.who(season, scouts.let_in(season, "Ann", (103, 105))).rows == (103, 105)
-    assert scouts.who(season, scouts.let_in(season, "Ann", (101, last))).rows is None
+    assert scouts.key_owner(season, scouts.let_in(season, "Ann", (103, 105))).rows == (103, 105)
+    assert scouts.key_owner(season, scouts.let_in(season, "Ann", (101, last))).rows is None
     with pytest.raises(SettingError, match=f"rows from 101 to {last} on this plot"):
         scouts.let_in(season, "Ann", (1, 3))

@@ -15,9 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.compute.wording import estimate
+from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND
-from fieldmon.monitoring import Application, Season, schema, season_log
+from fieldmon.monitoring import Application, Season, schema, season_log, treatments
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.scouts import let_in
 from fieldmon.plot.local_clock import LocalClock
@@ -169,6 +170,27 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
 def test_a_file_that_says_otherwise_than_its_log_is_found(path, change, said):
     by_hand(path, change)
     assert any(said in one for one in Season(path).held_to_log())
+
+
+@pytest.mark.parametrize(
+    "other", [{"waiting_days": 3}, {"by_label": ""}, {"by_label": None}, {"irac_groups": None}]
+)
+@pytest.mark.parametrize("row", [0, 1])
+def test_what_labels_added_and_that_they_did_is_held_to_the_log(path, tmp_path, other, row):
+    """Also if who changes it gives the row its new digest, and of a row that stands back."""
+    season, theirs = Season(path), Season(shutil.copy(path, tmp_path / "other.gpkg"))
+    for one, days in ((season, 7), (theirs, 14)):
+        one.keep_labels([ProductLabel("Acarol", waiting_days=days, irac_groups=("6",))])
+        one.treat(BEGINS, 0.5, application=Application("Acarol"))
+    season.merge(theirs)
+    assert season.held_to_log() == ()
+    with season.store.reading() as db:
+        changed = treatments._rows(db, "1")[row] | other
+    (column, value), mark = *other.items(), treatments.digest_of(changed)
+    sets = f"{column} = {'NULL' if value is None else repr(value)}, digest = '{mark}'"
+    by_hand(path, f"UPDATE treatments SET {sets} WHERE fid = {row + 1}")  # noqa: S608 - ours
+    said = f"The batch {changed['batch']} of the file is not what entry"
+    assert any(one.startswith(said) for one in Season(path).held_to_log())
 
 
 def test_what_phones_tell_and_take_back_is_in_the_log(path):

@@ -13,7 +13,7 @@ from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.planning.members import person, team_of
+from fieldmon.planning.members import person_key, team_of
 from fieldmon.plot.local_clock import local_clock
 from tests.monitoring.seasons import (
     BEGINS,
@@ -149,7 +149,7 @@ def test_a_day_that_is_planned_again_keeps_the_team_it_was_worked_with(season, m
     assert np.isin(again[1].route.plant, days[1].route.plant).any()
     assert season.kept_route(on(0), "mia").tolist() == again[1].route.plant.tolist()
     with season.reading() as (db, _):
-        assert {*kept_last(db, 0)} == {*map(person, names)}
+        assert {*kept_last(db, 0)} == {*map(person_key, names)}
     assert season.planned_by(on(1)).team == later
 
 
@@ -249,7 +249,7 @@ def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
     assert held.hours == pytest.approx((ann.end_s + dan.end_s) / 3600, abs=0.01)
     done = Inspections.of(dan.plant[:3], np.zeros(3, np.int8), np.datetime64(today))
     season.record(done, "f", "Dan")
-    scouts.take_back(season, "Dan")
+    scouts.withdraw_key(season, "Dan")
     held = season.planned_and_done(today)
     assert (held.planned, held.done, held.people) == (len(ann) + 3, 3, 1)
 
@@ -261,7 +261,7 @@ def test_a_code_taken_back_on_a_later_day_changes_no_day_before(tmp_path):
         scouts.let_in(season, part.name)
     route_ahead(season, BEGINS, parts[0])
     before = season.planned_and_done(BEGINS)
-    scouts.take_back(season, "Dan")
+    scouts.withdraw_key(season, "Dan")
     assert season.planned_and_done(BEGINS) == before
 
 

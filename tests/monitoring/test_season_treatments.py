@@ -106,7 +106,7 @@ def test_each_field_of_a_treatment_is_read_by_a_gis_as_it_was_said(season):
         "irac_groups": "6+28", "began": "2026-04-08T22:30:00+03:00",
         "ended": "2026-04-09T01:15:00+03:00", "zone": "Asia/Jerusalem", "machinery": "knapsack",
         "crop": "vine", "pest": "mite", "authorised_by": "Dr Bo", "active_ingredient": "abc",
-        "weather": "2 m/s",
+        "weather": "2 m/s", "by_label": "waiting_days+reentry_hours+irac_groups",
     }  # fmt: skip
     (kept,) = season.treatments()
     assert kept.application == replace(
@@ -129,6 +129,23 @@ def test_each_field_of_a_treatment_is_read_by_a_gis_as_it_was_said(season):
     assert (again.batch, again.new, again.known) == (None, 0, 1)
     assert season.log()[-1] == entry
     assert len(season.batches()) == 1
+
+
+def test_what_is_recorded_again_is_known_whatever_the_label_says_by_then(season):
+    said = Application("Acarol", operator="Ann")
+    assert season.treat(BEGINS, 0.5, application=said).new == 1
+    for days in (7, 14):
+        season.keep_labels([ProductLabel("Acarol", waiting_days=days)])
+        assert season.treat(BEGINS, 0.5, application=said).known == 1
+    season.undo()
+    season.treat(BEGINS, 0.5, application=said)
+    (kept,) = season.treatments()
+    assert kept.application.waiting_days == 14
+    assert season.treat(BEGINS, 0.5, application=kept.application).known == 1
+    season.keep_labels([])
+    for other in (replace(said, waiting_days=7), replace(said, operator="Ben")):
+        assert season.treat(BEGINS, 0.5, application=other).new == 1
+    assert season.held_to_log() == ()
 
 
 def test_the_same_plants_are_the_same_area_whichever_way_they_were_named(season):

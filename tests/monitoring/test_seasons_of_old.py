@@ -152,6 +152,23 @@ def test_a_season_of_format_8_keeps_its_treatment_and_can_say_more_of_the_next(t
     _only_the_map_differs(season, "2026-04-07")
 
 
+def test_a_season_of_format_11_holds_and_knows_its_treatments_again(tmp_path):
+    """Made before it was noted what a label adds: to Acarol 7 days; of soap 3 were said."""
+    season = Season(shutil.copy(FOLDER / "of_format_11.gpkg", tmp_path))
+    assert (tmp_path / "of_format_11.gpkg.format-11").is_file()
+    assert season.verify() == ()
+    acarol, soap = season.treatments()
+    assert (acarol.application.waiting_days, soap.application.waiting_days) == (7, 3)
+    plain = replace(acarol.application, waiting_days=None, reentry_hours=None)
+    for one, said in ((acarol, plain), (acarol, acarol.application), (soap, soap.application)):
+        assert season.treat(one.on, one.efficacy, application=said).known == 1
+    assert season.treat(LAST, 0.8, application=plain).new == 1
+    with season.store.reading() as db:
+        noted = db.execute("SELECT by_label FROM treatments ORDER BY fid").fetchall()
+    assert noted == [(None,), (None,), ("waiting_days+reentry_hours",)]
+    assert season.verify() == ()
+
+
 def _only_the_map_differs(season, day):
     """Hold that a map that learns comes out as it learns now, that this is said, and no more."""
     (said,) = season.verify()

@@ -115,7 +115,7 @@ def test_each_of_a_team_of_then_is_read_by_its_own(season):
     season.record(seen(0, 2, day=1, who="Ben"))
     assert told(season) == [0.9, 0.9, 0.3, 0.3, SHARP, SHARP, 0.6, 0.6]
     history = season.history
-    assert history.told(0) == pytest.approx((0.9 + 0.3 + SHARP) / 3)
+    assert history.mean_detection(0) == pytest.approx((0.9 + 0.3 + SHARP) / 3)
 
 
 def test_a_pest_that_is_named_later_was_looked_for_from_the_first_day_on(season):

@@ -95,6 +95,7 @@ def test_plants_treated_one_by_one_are_those_whatever_stands_in_the_outline(db):
     [
         ("dose", 9.0), ("waiting_days", 1), ("irac_groups", "6"), ("reason", "none"),
         ("ended", "2026-04-08T01:15:00+03:00"), ("efficacy", 0.1), ("product", "other"),
+        ("by_label", "waiting_days"), ("by_label", None),
     ],
 )  # fmt: skip
 def test_a_row_that_says_otherwise_than_its_digest_is_named(db, column, other):

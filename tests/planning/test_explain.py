@@ -79,6 +79,21 @@ def test_up_to_six_blocks_of_rows_are_told_each_and_more_as_one():
         assert said[0].split(": ")[0].endswith(f"in rows {low} to {high}")
 
 
+def test_rows_beside_each_other_are_one_block_whatever_they_are_called():
+    called = np.arange(40) + 1
+    called[[5, 6]] = 101, 30
+    names = np.where(called > 100, "5A", called.astype(np.str_))
+    grid = replace(GRID, line_called=np.stack([called, called], axis=1), line_named=names)
+    plants = np.array([30 * 4 + 3, 30 * 5 + 3, 30 * 6 + 3], np.int32)
+    work = Workday(
+        plants, 60.0 * np.arange(3), np.zeros(3, np.bool_), np.full(3, 40.0), np.ones(3), 0.0
+    )
+    scene = day()
+    scene = replace(scene, aisles=replace(scene.aisles, grid=grid))
+    (said,) = explain(scene, work)
+    assert said.split(": ")[0].endswith("in rows 5 to 30, 101 · 5A")
+
+
 def test_a_day_without_stops_says_so():
     scene = day(hours=0.001)
     assert explain(scene, plan_work(scene, Adaptive())) == [

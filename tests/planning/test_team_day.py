@@ -650,7 +650,7 @@ def two_who_swap(order=(1, 0)):
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 def test_two_who_want_each_other_s_aisle_swap_and_each_has_the_one_that_it_is_in(order):
-    """Else an aisle would stay shut for the day once it is left."""
+    """Else an aisle would stay taken for the day once it is left."""
     team = two_who_swap(order)
     assert team.waiting == []
     for worker in team.workers:
@@ -780,8 +780,8 @@ def test_who_plans_anew_is_asked_in_the_scene_that_it_stands_in():
     assert told.chance == pytest.approx(believed.chance)
     assert told.pair_chance == pytest.approx(believed.pair_chance)
     assert told.traces is believed.traces or told.traces == believed.traces
-    shut = (team.sections.owner[team.corridor] != 1) | np.isin(np.arange(48), [9, 30])
-    assert told.last_inspected.tolist() == np.where(shut, 7, seen).tolist()
+    left_out = (team.sections.owner[team.corridor] != 1) | np.isin(np.arange(48), [9, 30])
+    assert told.last_inspected.tolist() == np.where(left_out, 7, seen).tolist()
     assert (told.at, told.day, told.key) == (30, 7, scene.key)
     assert told.seconds_left == 50.0 + 3600.0 - 400.0
     assert would_find is finds

@@ -69,7 +69,7 @@ def test_without_contact_nobody_believes_anything_else_than_in_the_morning():
     assert (news.believed_by(workers[0], 100.0)[0] == BELIEF.chance).all()
 
 
-def test_plants_inspected_today_and_those_driven_to_are_closed():
+def test_plants_inspected_today_and_those_driven_to_are_taken():
     workers = a_team((30, 100.0, True), (5, 100.0, False))
     workers[0].done += [StopMade(31, 110.0, 150.0, False, 0.9, 0.0),
                         StopMade(32, 160.0, 200.0, False, 0.9, 0.0)]  # fmt: skip
@@ -78,6 +78,6 @@ def test_plants_inspected_today_and_those_driven_to_are_closed():
     scene = replace(workers[0].scene, last_inspected=last)
     workers[0].post = Posted(scene, 0.0, np.zeros(N, bool))
     news = TeamNews(workers, learn)
-    assert np.flatnonzero(news.closed(0.0)).tolist() == [5, 30, 40]
-    assert np.flatnonzero(news.closed(100.0)).tolist() == [5, 30, 31, 40]
-    assert np.flatnonzero(news.closed(200.0)).tolist() == [5, 30, 31, 32, 40]
+    assert np.flatnonzero(news.taken(0.0)).tolist() == [5, 30, 40]
+    assert np.flatnonzero(news.taken(100.0)).tolist() == [5, 30, 31, 40]
+    assert np.flatnonzero(news.taken(200.0)).tolist() == [5, 30, 31, 32, 40]

@@ -39,15 +39,15 @@ def near_m(grid, line):
 def test_without_a_width_nothing_changes():
     aisles = Aisles.of(rectangle(4, 6))
     assert aisles.for_robot(Robot()) is aisles
-    assert not aisles.shut.any()
-    assert aisles.shut_sentence() == ""
+    assert not aisles.too_narrow.any()
+    assert aisles.narrow_sentence() == ""
 
 
 def test_of_a_robot_with_room_everywhere_nothing_is_said():
     aisles = Aisles.of(rectangle(4, 6, Planting(row_spacing_m=4.0))).for_robot(Robot(width_m=0.5))
     assert aisles.clearance is not None
-    assert not aisles.shut.any()
-    assert aisles.shut_sentence() == ""
+    assert not aisles.too_narrow.any()
+    assert aisles.narrow_sentence() == ""
 
 
 def test_half_the_width_the_canopy_and_a_little_are_kept_off_plants():
@@ -69,7 +69,7 @@ def test_no_way_comes_nearer_to_a_plant_than_the_robot_can(grids, data):
         aisles = Aisles.of(grid).for_robot(Robot(width_m=width_m))
     except PlotError:
         assume(False)  # too narrow a plot, and said so
-    open_ = np.flatnonzero(~aisles.shut)
+    open_ = np.flatnonzero(~aisles.too_narrow)
     some = data.draw(st.lists(st.sampled_from(open_.tolist()), min_size=2, max_size=6))
     for a, b in zip([GATE, *some], [*some, GATE], strict=True):
         line = aisles.path(a, b)
@@ -91,7 +91,7 @@ def test_a_headland_is_passed_further_out_by_a_wider_robot():
 def test_a_plot_too_narrow_is_said_so_with_the_metres():
     with pytest.raises(PlotError, match=r"1\.64 m between.*widest here is 1\.20 m"):
         Aisles.of(rectangle(4, 6, NARROW)).for_robot(Robot(width_m=0.94))
-    assert not Aisles.of(rectangle(4, 6, NARROW)).for_robot(Robot(width_m=0.4)).shut.any()
+    assert not Aisles.of(rectangle(4, 6, NARROW)).for_robot(Robot(width_m=0.4)).too_narrow.any()
 
 
 @pytest.mark.parametrize("name", SAMPLERS)
@@ -104,19 +104,19 @@ def test_nobody_is_sent_into_an_aisle_that_is_too_narrow(name):
     stops = sampler(name).walk(scene, np.zeros(len(grid), np.bool_))
     assert len(stops.plant) > 10
     assert 3 not in grid.row[stops.plant]
-    assert "1 row of 8 cannot be inspected" in scene.aisles.shut_sentence()
-    assert "12 plants are not visited" in scene.aisles.shut_sentence()
+    assert "1 row of 8 cannot be inspected" in scene.aisles.narrow_sentence()
+    assert "12 plants are not visited" in scene.aisles.narrow_sentence()
 
 
 def test_a_canopy_that_was_said_opens_or_shuts_aisles():
     robot = Robot(width_m=0.6)
-    assert not Aisles.of(narrow_in_the_middle(0.1)).for_robot(robot).shut.any()
-    assert Aisles.of(narrow_in_the_middle(0.2)).for_robot(robot).shut.sum() == 12
+    assert not Aisles.of(narrow_in_the_middle(0.1)).for_robot(robot).too_narrow.any()
+    assert Aisles.of(narrow_in_the_middle(0.2)).for_robot(robot).too_narrow.sum() == 12
 
 
 def test_a_long_robot_does_not_turn_where_it_would_sweep_over_plants():
     grid = rectangle(4, 6, Planting(row_spacing_m=1.6, headland_m=1.6))
-    assert not Aisles.of(grid).for_robot(Robot(width_m=0.6)).shut.any()
+    assert not Aisles.of(grid).for_robot(Robot(width_m=0.6)).too_narrow.any()
     with pytest.raises(PlotError, match=r"room to turn.*1\.20 m"):
         Aisles.of(grid).for_robot(Robot(width_m=0.6, length_m=1.6))
 

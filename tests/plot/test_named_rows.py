@@ -75,5 +75,10 @@ def test_whoever_names_no_row_hears_what_rows_are_called():
     ):
         with pytest.raises(SettingError, match=re.escape(says)):
             plants_in_rows(named, "Malbec")
+    called = np.array([1, 2, 101, 3, 4])
+    names = np.array(["1", "2", "5A", "03", "4"])
+    odd = replace(rectangle(5, 4), line_named=names, line_called=np.stack([called, called], axis=1))
+    with pytest.raises(SettingError, match=r"are 1–4, 101 \(in the file of plants: 5A\)\."):
+        plants_in_rows(odd, "Malbec")
     with pytest.raises(SettingError, match=r"Rows of this plot are 1–5\."):
         plants_in_rows(rectangle(5, 4), "Malbec")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.plot.grid import plant_at, row_in_block, row_label
-from fieldmon.plot.named_rows import plants_in_rows
+from fieldmon.plot.grid import plant_at, row_in_block, row_label, rows_listed
+from fieldmon.plot.named_rows import plant_meant, plants_in_rows, rows_meant
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, said_of_numbers
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
@@ -28,6 +28,11 @@ def labels(plot):
     label = row_label(plot.grid)
     found = plot.grid.tree.query(plot.grid.frame.xy_m(FRAME.lonlat(XY_M)))[1]
     return label.line[found].tolist(), label.number[found].tolist()
+
+
+def signs(plot):
+    """Return what stands at each row of a plot on maps."""
+    return list(plot.grid.row_signs.values())
 
 
 def test_names_say_of_how_many_plants_they_are():
@@ -65,12 +70,72 @@ def test_a_number_is_one_at_the_end_of_a_name(name):
 
 
 @pytest.mark.parametrize("names", ["FEDCBA", ["2.1", "2.2", "2.3", "2.4", "2.5", "2.6"],
-                                   ["1", "2", "3", "4", "5", "5a"],
+                                   ["A1", "B1", "A2", "B2", "A3", "B3"],
+                                   ["1", "2", "A", "B", "C", "D"],
                                    [f"{10**7 + k}" for k in range(6)]])  # fmt: skip
 def test_rows_that_their_names_do_not_number_count_from_one(names):
     row, plant = labels(named([names[k] for k in ROW], 10 - PLANT))
     assert row == labels(named(None))[0]
     assert plant == (10 - PLANT).tolist()
+
+
+@pytest.mark.parametrize(
+    ("names", "numbers"),
+    [(["1", "2", "5A", "3", "Top", "4"], [1, 2, 101, 3, 102, 4]),
+     (["7", "Top 5", "6", "5", "4", "3"], [7, 101, 6, 5, 4, 3]),
+     (["1", "2", "", "3", "101A", "120"], [1, 2, 1001, 3, 1002, 120])],
+)  # fmt: skip
+def test_a_row_without_a_number_of_its_own_leaves_the_others_theirs(names, numbers):
+    plot = named([names[k] for k in ROW], 10 - PLANT)
+    assert labels(plot)[0] == [numbers[k] for k in ROW]
+    for name, number in zip(names, numbers, strict=True):
+        if name:
+            for said in (name, f"{number}"):
+                meant = row_label(plot.grid).line[plants_in_rows(plot.grid, said)]
+                assert set(meant.tolist()) == {number}
+
+
+def test_a_row_without_a_number_of_its_own_is_beyond_those_of_all_blocks():
+    block = np.where(ROW < 3, "east", "west")
+    plot = named([["1", "2", "5A", "2", "1", "Top"][k] for k in ROW], None, block)
+    assert labels(plot)[0] == [[1, 2, 101, 4, 3, 102][k] for k in ROW]
+    assert list(plot.grid.row_signs.values()) == ["1", "2", "101 · 5A", "4", "3", "102 · Top"]
+    assert "5A is row 101, Top is row 102" in said_of_numbers(plot.grid)[-1]
+
+
+def test_rows_up_to_one_without_a_number_of_its_own_are_refused():
+    grid = named([["1", "2", "5A", "3", "4", "5"][k] for k in ROW]).grid
+    with pytest.raises(SettingError, match="but 5A has none in the file of plants"):
+        plants_in_rows(grid, "5 - 5A")
+    with pytest.raises(SettingError, match="but 101 has none"):
+        plants_in_rows(grid, "5-101")
+    assert set(row_label(grid).line[plants_in_rows(grid, "4-5,5a")].tolist()) == {4, 5, 101}
+
+
+def test_rows_are_listed_with_those_without_a_number_of_their_own_by_name():
+    grid = named([["1", "2", "5A", "3", "4", "Top"][k] for k in ROW]).grid
+    assert rows_listed(grid, np.array([1, 2, 3, 101])) == "1–3, 101 · 5A"
+    assert [rows_listed(grid, np.array(one)) for one in ([4, 4], [102])] == ["4", "102 · Top"]
+
+
+def test_rows_typed_from_one_to_another_have_numbers_of_their_own_or_are_one():
+    grid = named([["1", "2", "5A", "3", "4", "5"][k] for k in ROW]).grid
+    typed = [(None, None), ("2", None), ("5a", "5A"), (None, "4")]
+    assert [rows_meant(grid, *both) for both in typed] == [(1, 101), (2, 101), (101, 101), (1, 4)]
+    for both in (("5A", "5"), (None, "5A"), ("1", "101")):
+        with pytest.raises(SettingError, match="has none in the file of plants"):
+            rows_meant(grid, *both)
+    with pytest.raises(SettingError, match=r"of 1–5, 101 \(in .*: 5A\) on this plot, but it is 6"):
+        rows_meant(grid, "6", None)
+
+
+def test_a_plant_typed_by_a_number_that_is_the_name_of_another_is_refused():
+    grid = named(ROW + 1, np.where((PLANT == 3) & (ROW == 1), 3, PLANT + 1)).grid
+    assert plant_meant(grid, "1", 4) == plant_at(grid, 1, 4)
+    with pytest.raises(SettingError, match="3 may be any of plants 3–4 of row 2 here"):
+        plant_meant(grid, "2", 3)
+    with pytest.raises(PlotError, match="but it is 11"):
+        plant_meant(grid, "2", 11)
 
 
 def test_plants_of_a_row_that_have_one_name_count_from_one():
@@ -116,16 +181,18 @@ def test_what_rows_and_plants_are_called_here_is_said_where_it_is_no_number():
 
 
 def test_rows_that_are_called_by_numbers_of_other_rows_are_doubted():
-    (doubt,) = doubts_of_numbers(named(np.array(["5a", "5", "4", "3", "2", "1"])[ROW]).grid)
-    assert "Rows are called 5, 4, 3, 2, 1 in the file, which are numbers of other rows" in doubt
+    (doubt,) = doubts_of_numbers(named(np.array(["2", "1", "A", "B", "C", "D"])[ROW]).grid)
+    assert "Rows are called 2, 1 in the file, which are numbers of other rows" in doubt
     for rows in (ROW, ROW + 1, 6 - ROW, np.array(list("FEDCBA"))[ROW], None):
         assert doubts_of_numbers(named(rows).grid) == []
 
 
 def test_what_stands_at_rows_on_maps_has_their_names_where_these_are_no_numbers():
-    assert named(6 - ROW).grid.line_signs == ["6", "5", "4", "3", "2", "1"]
-    assert named([f"R{6 - k}" for k in ROW]).grid.line_signs == ["6", "5", "4", "3", "2", "1"]
-    assert named(np.array(list("FEDCBA"))[ROW]).grid.line_signs[:2] == ["1 · F", "2 · E"]
+    assert signs(named(6 - ROW)) == ["6", "5", "4", "3", "2", "1"]
+    assert signs(named([f"R{6 - k}" for k in ROW])) == ["6", "5", "4", "3", "2", "1"]
+    assert signs(named(np.array(list("FEDCBA"))[ROW]))[:2] == ["1 · F", "2 · E"]
+    odd = named([["R1", "R2", "5A", "R03", "Top", "R4"][k] for k in ROW])
+    assert signs(odd) == ["1", "2", "101 · 5A", "3", "102 · Top", "4"]
 
 
 def test_names_that_are_not_those_of_rows_are_kept_and_never_taken_for_other_rows():
@@ -134,7 +201,7 @@ def test_names_that_are_not_those_of_rows_are_kept_and_never_taken_for_other_row
     for row in ("1", "6", "9"):
         with pytest.raises(SettingError, match="may be any of rows 1–6 here"):
             plants_in_rows(across.grid, row)
-    assert across.grid.line_signs == ["1", "2", "3", "4", "5", "6"]
+    assert signs(across) == ["1", "2", "3", "4", "5", "6"]
     assert "Rows are called 2, 3, 4, 5, 6, 1 in the file" in doubts_of_numbers(across.grid)[0]
     assert "1, 10, 2, ... is row 1, 1, 10, 2, ... is row 2" in said_of_numbers(across.grid)[0]
 
@@ -145,6 +212,6 @@ def test_plants_whose_row_nobody_named_are_of_the_row_they_stand_in():
     assert labels(named(rows, 10 - PLANT)) == ((6 - ROW).tolist(), (10 - PLANT).tolist())
     rows[ROW == 2] = ""
     plot = named(rows)
-    assert plot.grid.line_signs == ["1 · 6", "2 · 5", "3", "4 · 3", "5 · 2", "6 · 1"]
-    with pytest.raises(SettingError, match="6 may be any of rows 1, 6 here"):
-        plants_in_rows(plot.grid, "6")
+    assert signs(plot) == ["6", "5", "101", "3", "2", "1"]
+    assert "a row without a name is row 101" in said_of_numbers(plot.grid)[-1]
+    assert set(row_label(plot.grid).line[plants_in_rows(plot.grid, "6")].tolist()) == {6}

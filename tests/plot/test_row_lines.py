@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.row_lines import Blocked, RowLines, blocked_by, row_aisles, shut_stretches
+from fieldmon.plot.row_lines import Blocked, RowLines, blocked_by, blocked_stretches, row_aisles
 
 PLANTING = Planting(row_spacing_m=3.0, plant_spacing_m=2.0, headland_m=2.0)
 
@@ -43,11 +43,11 @@ def test_a_strip_reaches_to_both_aisles_where_it_is_asked_whole():
     aisles = row_aisles(rows, PLANTING)
     below = shapely.box(10.0, 1.8, 11.0, 2.0)  # below the middle row, above the first
 
-    def shut(shapes):
+    def is_blocked(shapes):
         return shapely.intersects(shapes, below)
 
-    assert shut_stretches(rows, aisles, PLANTING, shut).row.tolist() == []
-    assert shut_stretches(rows, aisles, PLANTING, shut, whole=True).row.tolist() == [1]
+    assert blocked_stretches(rows, aisles, PLANTING, is_blocked).row.tolist() == []
+    assert blocked_stretches(rows, aisles, PLANTING, is_blocked, whole=True).row.tolist() == [1]
 
 
 def test_spacings_are_those_of_the_planting_where_blocks_say_none():

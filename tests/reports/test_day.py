@@ -143,6 +143,20 @@ def test_every_stop_stands_in_its_row_in_the_order_of_the_rows(ahead, of_day):
     assert [row[1] for row in rows] == sorted(row[1] for row in rows)
 
 
+def test_rows_without_a_number_of_their_own_are_shown_by_name(ahead):
+    grid = ahead.route.aisles.grid
+    called = np.arange(len(grid.line_number)) + 101
+    names = np.array([f"{k}A" for k in called])
+    odd = replace(grid, line_called=np.stack([called, called], axis=1), line_named=names)
+    route = replace(ahead.route, aisles=replace(ahead.route.aisles, grid=odd))
+    report = day_report(replace(ahead, route=route), Units())
+    assert " in row" in paragraphs(report)[0]
+    for rows in ([row[0] for row in table(report, "Stops by row, in order").rows],
+                 [row[2] for row in one(report, TickList).rows]):  # fmt: skip
+        assert rows
+        assert all(row == f"{row[:3]} · {row[:3]}A" for row in rows)
+
+
 def test_every_stop_is_on_the_list_to_tick(ahead, of_day):
     ticks = one(of_day, TickList).rows
     label = row_label(ahead.route.aisles.grid, ahead.route.plant)

@@ -10,7 +10,7 @@ from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import rectangle
 from fieldmon.reports.sentences import headline
 from fieldmon.reports.sentences import hot_spot_meanings as meanings
-from tests.io.writers.handed import empty, usual
+from tests.io.writers.handed import empty, usual, with_names
 
 GRID = rectangle(8, 30)
 
@@ -47,6 +47,22 @@ def test_rows_and_plants_are_those_of_its_corners():
 def test_a_hot_spot_in_one_row_names_that_row():
     (said,) = meanings(GRID, spots(at((5, 2), (5, 4))))
     assert said.startswith("Row 5, plants 2 to 4:")
+
+
+def test_rows_without_a_number_of_their_own_are_said_by_name_behind_the_others():
+    grid = with_names(rectangle(6, 9))
+    for rows, said in (
+        ((101,), "Row 101 · 5A, plants"),
+        ((2, 101), "Rows 2 to 101 · 5A, plants"),
+        ((1, 2, 101, 102), "Rows 1 to 2, 101 · 5A, 102 · =<Top> 7/8, plants"),
+        ((101, 102), "Rows 101 · 5A to 102 · =<Top> 7/8, plants"),
+    ):
+        found = [plant_at(grid, row, 3) for row in rows]
+        of_plant = np.full(len(grid), -1)
+        of_plant[found] = 0
+        one = spots(found)
+        one.of_plant = of_plant
+        assert meanings(grid, one)[0].startswith(said)
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ export function laidOut(document, digest) {
   const plot = {
     digest, name: document.name, zone: document.zone, lon0, lat0, kx, ky, x, y,
     number: Int32Array.from(number), start: Int32Array.from(document.rows.start),
-    row: Int32Array.from(document.rows.row), aisle: Int32Array.from(document.rows.aisle), side: Int8Array.from(document.rows.side),
+    row: Int32Array.from(document.rows.row), sign: document.rows.sign, aisle: Int32Array.from(document.rows.aisle), side: Int8Array.from(document.rows.side),
     rowSpacing: document.row_spacing_m, plantSpacing: document.plant_spacing_m,
   };
   plot.gate = document.gate && metres(plot, document.gate);
@@ -46,6 +46,25 @@ export function pieceOf(plot, plant) {
 }
 
 export const rowOf = (plot, plant) => plot.row[pieceOf(plot, plant)];
+
+/** How the row of a plant is shown; a plot kept by an earlier version has numbers alone. */
+export const signOf = (plot, plant) => signAt(plot, pieceOf(plot, plant));
+const signAt = (plot, k) => plot.sign?.[k] ?? `${plot.row[k]}`;
+
+/** How rows from one number to another are shown. */
+export const shownEnds = (plot, ends) => ends.map((row) => { const k = plot.row.indexOf(row); return k < 0 ? row : signAt(plot, k); });
+
+/** Whether a row of the plot has a name that says more than its number. */
+export const hasNames = (plot) => Boolean(plot.sign?.some((sign) => /\D/.test(sign)));
+
+// capitals and zeros in front do not matter
+const key = (name) => name.trim().toLowerCase().replace(/0*(\d+)/g, "$1");
+
+/** The numbers of the rows that somebody may mean, by their number or by their name. */
+export function rowsCalled(plot, said) {
+  const called = (row, k) => [`${row}`, signAt(plot, k).slice(`${row} · `.length)];
+  return [...new Set(plot.row.filter((row, k) => called(row, k).some((one) => one && key(one) === key(said))))];
+}
 
 const lines = new WeakMap();
 /** The line of each piece of a row, in their order on the ground: what rows are called says nothing of it. */

@@ -1,6 +1,6 @@
 // What is seen and touched: the map, the next plant, large buttons, and a menu.
 
-import { plantAt, rowOf } from "./geo.js";
+import { hasNames, plantAt, rowsCalled, shownEnds, signOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
 import { Held, KeyEnded, NotNow } from "./sync.js";
@@ -214,7 +214,7 @@ export class Page {
     this.last.hidden = !one;
     if (!one) return this.last.replaceChildren();
     const isKept = one.state !== "writing", { plot } = this.field;
-    const what = `${say("place", { row: rowOf(plot, one.plant), plant: plot.number[one.plant] })}: ${say(one.result)}`;
+    const what = `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${say(one.result)}`;
     Object.assign(this.last.dataset, { plant: one.plant, kept: isKept });
     this.last.textContent = say(isKept ? "kept" : "keeping", { what });
   }
@@ -227,7 +227,7 @@ export class Page {
 
   /** Where nobody may be yet, and how many plants are not on the route for it. */
   #closed() {
-    const said = ({ rows: [low, high], until, own: n }) => [say("closed_rows", { low, high, until: this.#time(until) }), n && say("closed_plants", { n })];
+    const said = ({ rows, until, own: n }, [low, high] = shownEnds(this.field.plot, rows)) => [say("closed_rows", { low, high, until: this.#time(until) }), n && say("closed_plants", { n })];
     return (this.field.day ? this.field.closed() : []).map((one) => h("p", { class: "bad" }, said(one).filter(Boolean).join(" ")));
   }
 
@@ -241,7 +241,7 @@ export class Page {
     const { field, place } = this;
     if (!place || field.plant < 0 || !field.day) return;
     const { plot, plant } = field, away = field.metresAway();
-    const values = { row: rowOf(plot, plant), plant: plot.number[plant] };
+    const values = { row: signOf(plot, plant), plant: plot.number[plant] };
     const where = away == null ? say("no_position") : field.isThere() ? say("there") : say("away", { m: Math.round(away) });
     place.replaceChildren(
       h("h1", {}, say("place", values)),
@@ -345,7 +345,7 @@ export class Page {
       this.menu.close();
       this.#act(() => field.goTo(one.plant));
       this.map.look(one.plant, true);
-    } }, `${say("place", { row: rowOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}${one.note ? `: ${own(one.note)}` : ""}`);
+    } }, `${say("place", { row: signOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}${one.note ? `: ${own(one.note)}` : ""}`);
     const title = say("asked", { n: field.asked().length });
     this.#show(h("div", {}, h("h2", {}, title), ...field.asked().map(lead),
       h("button", { type: "button", class: "wide main", onclick: () => this.menu.close() }, say("close"))), title, "asked");
@@ -359,11 +359,13 @@ export class Page {
   }
 
   #other() {
-    const field = (name) => h("input", { type: "number", inputmode: "numeric", min: "0", id: `other_${name}`, required: true });
-    const row = field("row"), plant = field("plant");
+    const { plot } = this.field, numeric = { type: "number", inputmode: "numeric", min: "0" };
+    const field = (name, kind = numeric) => h("input", { ...kind, id: `other_${name}`, required: true });
+    const row = field("row", hasNames(plot) ? { type: "text", autocapitalize: "off" } : numeric), plant = field("plant");
     this.#ask(say("other_plant"), h("div", { class: "pair" }, h("label", {}, say("row"), row), h("label", {}, say("plant"), plant)), () => {
-      const found = plantAt(this.field.plot, Number(row.value), Number(plant.value));
-      if (found < 0) this.#say(say("no_such_plant"), true);
+      const rows = rowsCalled(plot, row.value), found = rows.length === 1 ? plantAt(plot, rows[0], Number(plant.value)) : -1;
+      if (rows.length > 1) this.#say(say("several_rows", { row: row.value }), true);
+      else if (found < 0) this.#say(say("no_such_plant"), true);
       else { this.#act(() => this.field.goTo(found)); this.map.look(found, true); }
     });
     row.focus();
@@ -392,11 +394,12 @@ export class Page {
     // what could not even be read is no sentence for a person
     const why = (one) => (one.state === "refused" ? say("refused") : own(one.problem));
     const where = (one) => (one.season === field.season && one.plant >= 0 && field.plot
-      ? `${say("place", { row: rowOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}: ` : "");
+      ? `${say("place", { row: signOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}: ` : "");
+    const part = field.day?.rows && shownEnds(field.plot, field.day.rows);
     const refused = this.left.refused.map((one) => h("li", {}, `${where(one)}${why(one)}`));
     const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
-      field.day?.rows && h("p", {}, say("your_rows", { low: field.day.rows[0], high: field.day.rows[1] })),
+      part && h("p", {}, say("your_rows", { low: part[0], high: part[1] })),
       ...this.#closed(),
       // it has not everything where it did not take something
       !((refused.length || this.stranded.size) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),

@@ -1,6 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { apart, laidOut, metres, metresPerDegree, nearest, neighbours, offered, pieceOf, plantAt, rowOf, walkSeconds } from "../src/geo.js";
+import {
+  apart, hasNames, laidOut, metres, metresPerDegree, nearest, neighbours, offered, pieceOf, plantAt, rowOf, rowsCalled, shownEnds, signOf, walkSeconds,
+} from "../src/geo.js";
 import { aPlot, laid } from "./scene.mjs";
 
 const plot = laid(), robot = { speed_m_s: 1, row_change_s: 3 };
@@ -30,6 +32,18 @@ test("rows called by other numbers have the same neighbours", () => {
   const document = aPlot(), named = laidOut({ ...document, rows: { ...document.rows, row: [30, 12, 7] } }, "p2");
   for (let plant = 0; plant < 15; plant++) assert.deepEqual(neighbours(named, plant), neighbours(plot, plant));
   assert.equal(plantAt(named, 12, 3), 7);
+});
+
+test("rows are shown and called as the plot's file has them", () => {
+  const document = aPlot(), rows = { ...document.rows, row: [1, 101, 2], sign: ["1", "101 · 5A", "2"] };
+  const named = laidOut({ ...document, rows }, "p3");
+  assert.deepEqual([0, 5, 10].map((plant) => signOf(named, plant)), ["1", "101 · 5A", "2"]);
+  assert.deepEqual(["5a", " 05A", "101", "02", "5", ""].map((said) => rowsCalled(named, said)), [[101], [101], [101], [2], [], []]);
+  assert.deepEqual(shownEnds(named, [2, 101]), ["2", "101 · 5A"]);
+  const across = laidOut({ ...document, rows: { ...rows, row: [1, 2, 3], sign: ["1 · 3", "2 · 2", "3 · 1"] } }, "p4");
+  assert.deepEqual(["1", "2"].map((said) => rowsCalled(across, said)), [[1, 3], [2]]);
+  assert.deepEqual([named, plot].map(hasNames), [true, false]);
+  assert.deepEqual([signOf(plot, 7), rowsCalled(plot, "2"), shownEnds(plot, [1, 9])], ["2", [2], ["1", 9]]);
 });
 
 test("a position offers a plant only within its accuracy", () => {

@@ -64,7 +64,9 @@ def rows(grid: PlantGrid) -> list[Label]:
     places = [np.round(grid.frame.lonlat(one), 7).tolist() for one in ends_m]
     return [
         {"p": place, "away": away, "t": sign, "k": "row", "row": at + 1}
-        for at, sign, place, away in zip(line.tolist(), grid.line_signs, *places, strict=True)
+        for at, sign, place, away in zip(
+            line.tolist(), grid.row_signs.values(), *places, strict=True
+        )
     ]
 
 

@@ -49,7 +49,7 @@ class Crossing:
         return self._keeper.enter(self._name, self._needed(plant))
 
     def blocked(self, plant: int) -> bool:
-        """Tell whether the way to a plant is closed for today."""
+        """Tell whether the way to a plant is blocked for the rest of the day."""
         return self._keeper.blocked(self._name, self._needed(plant))
 
     def parted(self, line_m: Float, plant: int) -> tuple[Float, Float]:

@@ -12,6 +12,7 @@ from fieldmon.io.import_report import Imported, ImportMessage
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.known_rows import left_aside
+from fieldmon.io.readers.team import SETTINGS
 from fieldmon.plot.robot import broken_rule
 
 if TYPE_CHECKING:
@@ -22,14 +23,6 @@ _NUMBERS = {
     "hours": ("hours", "hours_per_day", "working_hours", "work_hours", "day_hours", "hours_day"),
     "speed_km_h": ("speed_km_h", "speed_kmh", "speed", "speed_km_per_h"),
     "look_s": ("look_s", "look", "look_seconds", "seconds_per_plant"),
-}
-
-
-#: settings of `Robot`, how many of a column's units make one of theirs, and its unit
-_SETTINGS = {
-    "hours": ("hours", 1.0, "h"),
-    "speed_km_h": ("speed_m_s", 3.6, "km/h"),
-    "look_s": ("look_s", 1.0, "s"),
 }
 
 
@@ -73,7 +66,7 @@ def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
         stated = np.full(len(names), np.nan) if column is None else numbers(layer.column(column))
         if column is not None:
             wrong += left_aside(column, layer.column(column), ~np.isnan(stated), names)
-            of_robot, units, unit = _SETTINGS[setting]
+            of_robot, units, unit = SETTINGS[setting]
             for k, value in enumerate(stated.tolist()):
                 if np.isnan(value):
                     aside[k] += [] if is_missing(layer.column(column)[k]) else [of_robot]

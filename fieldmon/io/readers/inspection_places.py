@@ -155,13 +155,11 @@ def by_name(
                 some=runs(meant),
             )
             continue
-        which = None
-        for one in meant:
-            which = plants.number(one, said)
-            if which is not None:
-                line[i], number[i] = one, which
-        if which is None and open_yet[i] and not (row.isdecimal() and said.isdecimal()):
-            problems[i] = _unknown(called, row, said)
+        labels = [(one, which) for one in meant for which in plants.meant(one, said)]
+        if len(labels) == 1:
+            line[i], number[i] = labels[0]
+        elif labels or (open_yet[i] and not (row.isdecimal() and said.isdecimal())):
+            problems[i] = _unknown(called, row, said, [which for _, which in labels])
     messages: tuple[ImportMessage, ...] = ()
     if alone.any():
         said_alone = worded(
@@ -173,8 +171,16 @@ def by_name(
     return replace(rows, plant=plant, line=line, number=number), problems, messages
 
 
-def _unknown(called: CalledRows, row: str, plant: str) -> str:
-    """Return why there is no such plant: its row is none of the plot, or has no plant so called."""
+def _unknown(called: CalledRows, row: str, plant: str, numbers: list[int]) -> str:
+    """Return why no one plant is meant: its row is none of the plot, or has none or several."""
+    if numbers:
+        return worded(
+            "plant {plant} may be any of plants {some} of row {row} here, by their numbers or by "
+            "their names in the file of plants",
+            plant=plant,
+            some=runs(numbers),
+            row=row,
+        )
     if called.meant(row):
         return worded("row {row} has no plant {plant} here", row=row, plant=plant)
     return worded(

@@ -15,12 +15,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 COLUMNS = ("name", "who", "hours", "speed_km_h", "look_s", "detection", "start", "lon", "lat")
-#: columns that are settings of `Robot`, and how many of their units make one of the setting's
-_SETTINGS = {
-    "hours": ("hours", 1.0),
-    "speed_km_h": ("speed_m_s", 3.6),
-    "look_s": ("look_s", 1.0),
-    "detection": ("detection", 1.0),
+#: columns that are settings of `Robot`, how many of their units make one of the setting's, and
+#: the unit
+SETTINGS = {
+    "hours": ("hours", 1.0, "h"),
+    "speed_km_h": ("speed_m_s", 3.6, "km/h"),
+    "look_s": ("look_s", 1.0, "s"),
+    "detection": ("detection", 1.0, ""),
 }
 #: columns that hold no thousands
 _MOST = {"hours": 24.0, "lon": 180.0, "lat": 90.0}
@@ -123,7 +124,7 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
             )
         )
     gate = (number.pop("lon"), number.pop("lat")) if "lon" in number else None
-    for column, (setting, units) in _SETTINGS.items():
+    for column, (setting, units, _) in SETTINGS.items():
         if column not in number:
             continue
         value = number.pop(column)

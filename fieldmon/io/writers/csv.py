@@ -31,6 +31,7 @@ def route_csv(plan: HandoffPlan) -> bytes:
     face = ("face",) if plan.has_faces else ()
     block = ("block",) if plan.has_blocks else ()
     before = _BEFORE if plan.in_rows else _BEFORE[1:]
+    before = (before[0], "row_name", *before[1:]) if plan.has_row_names else before
     table.writerow(("stop", *block, *before, *face, *TO_FILL_IN, *_AFTER))
     table.writerows(_cells(stop, plan) for stop in plan.stops)
     return text.getvalue().encode("utf-8-sig")
@@ -41,6 +42,7 @@ def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
         stop.order,
         *((stop.block,) if plan.has_blocks else ()),
         *((stop.row,) if plan.in_rows else ()),
+        *((safe_cell(stop.row_name),) if plan.has_row_names else ()),
         stop.number,
         *((stop.face,) if plan.has_faces else ()),
         *(safe_cell(plan.notes.who or "") if name == "who" else "" for name in TO_FILL_IN),

@@ -35,7 +35,8 @@ class Stop(NamedTuple):
     """One stop, in numbers and words that stand in files.
 
     ``order``, ``block``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's
-    number in the grid, from 0. ``vertex`` tells where on the driven line the robot stands.
+    number in the grid, from 0. ``row_name`` is what the plot's file calls the row, where that is
+    more than its number. ``vertex`` tells where on the driven line the robot stands.
     """
 
     order: int
@@ -51,6 +52,7 @@ class Stop(NamedTuple):
     chance: float
     vertex: int
     block: int
+    row_name: str = ""
 
     @property
     def plant_label(self) -> str:
@@ -59,8 +61,12 @@ class Stop(NamedTuple):
 
     @property
     def label(self) -> str:
-        """Return a short name that a handheld shows, and that reads back: ``012 R3/17``."""
-        row = f"R{self.row}/" if self.row else ""
+        """Return a short name that a handheld shows, and that reads back: ``012 R3/17``.
+
+        Or with the row's name: ``012 R101·5A/17``.
+        """
+        name = "_".join(self.row_name.replace("/", " ").split())
+        row = f"R{self.row}{name and f'·{name}'}/" if self.row else ""
         return f"{self.order:03d} {row}{self.plant_label}"
 
 
@@ -224,6 +230,11 @@ class HandoffPlan:
         """Return whether plants stand in rows."""
         return self.grid.in_rows
 
+    @property
+    def has_row_names(self) -> bool:
+        """Return whether the plot's file calls a row otherwise than by its number."""
+        return self.in_rows and bool(self.grid.row_names)
+
     @cached_property
     def stops(self) -> tuple[Stop, ...]:
         """Stops in order; ``face`` is 0 where plants have but one, ``row`` where there are none."""
@@ -244,6 +255,7 @@ class HandoffPlan:
             np.round(route.chance, 6).tolist(),
             route.line_stop.tolist(),
             block_label(self.grid, route.plant).tolist(),
+            [plain_text(self.grid.row_names.get(line, "")) for line in label.line.tolist()],
             strict=True,
         )
         return tuple(Stop(*values) for values in columns)

@@ -114,7 +114,9 @@ def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     ends = placed(before_rows(grid, first))
     texts = [
         Markup('<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>').format(x, y, sign)
-        for line, sign, (x, y) in zip(lines.tolist(), grid.line_signs, ends.tolist(), strict=True)
+        for line, sign, (x, y) in zip(
+            lines.tolist(), grid.row_signs.values(), ends.tolist(), strict=True
+        )
         if line == 0 or (line + 1) % every == 0
     ]
     return Markup(

@@ -106,7 +106,7 @@ def _line_feature(
 
 def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]]:
     grid = route.aisles.grid
-    label = row_label(grid, route.plant)
+    label, names = row_label(grid, route.plant), grid.row_names if grid.in_rows else {}
     columns = zip(
         route.stops_lonlat().round(DECIMALS).tolist(),
         route.plant.tolist(),
@@ -130,6 +130,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "plant": plant,
                 **({"block": block} if grid.n_blocks > 1 else {}),
                 **({"row": row} if grid.in_rows else {}),
+                **({"row_name": names.get(row, "")} if names else {}),
                 "number": number,
                 "arrive_s": round(arrive_s, 3),
                 **({} if notes.start is None else {"arrive": _clock(notes.start, arrive_s)}),

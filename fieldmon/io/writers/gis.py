@@ -135,6 +135,7 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
             ("plant", "plant", "int32"),
             *((("block", "block", "int32"),) if plan.has_blocks else ()),
             *((("row", "row", "int32"),) if plan.in_rows else ()),
+            *((("row_name", "row_name", "object"),) if plan.has_row_names else ()),
             ("number", "number", "int32"),
             *((("face", "face", "int32"),) if plan.has_faces else ()),
             ("arrive", "arrive", "object"),

@@ -70,6 +70,7 @@ def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
         "plant": stop.plant,
         **({"block": stop.block} if plan.has_blocks else {}),
         **({"row": stop.row} if plan.in_rows else {}),
+        **({"row_name": stop.row_name} if plan.has_row_names else {}),
         "number": stop.number,
         **({"face": stop.face} if plan.has_faces else {}),
         "arrive_s": stop.arrive_s,

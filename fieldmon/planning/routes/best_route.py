@@ -411,7 +411,7 @@ def _reachable(aisles: Aisles, clock: Clock) -> NDArray[np.bool_]:
     """Tell of each plant ``(n,)`` whether a day for it alone is long enough."""
     way_s = aisles.distance_m(GATE, np.arange(len(aisles.grid))) / clock.speed_m_s
     total: Float = way_s * (2.0 if clock.returns else 1.0) + clock.visit_s
-    return (total <= clock.seconds_left) & ~aisles.shut
+    return (total <= clock.seconds_left) & ~aisles.too_narrow
 
 
 def _seconds(aisles: Aisles, clock: Clock, stops: Int) -> float:

@@ -84,8 +84,8 @@ def drive_day(
     """
     linked, belief, _ = plants
     rows, tours, times, own_row = room
-    at, spares, closed = start
-    _value_finds(linked, belief, closed, spares)
+    at, spares, inspected = start
+    _value_finds(linked, belief, inspected, spares)
     work = belief, rows, tours, times, own_row
     now_s, k = 0.0, 0
     price = first_price(travel, clock, work, at)
@@ -150,7 +150,7 @@ def _fits(
 
 @part
 def _value_finds(
-    linked: Linked, belief: BeliefArrays, closed: NDArray[np.bool_], spares: float
+    linked: Linked, belief: BeliefArrays, inspected: NDArray[np.bool_], spares: float
 ) -> None:
     """Work out what a find would be worth, and where each plant's pair with the last one stands."""
     chance = belief.chance
@@ -161,7 +161,7 @@ def _value_finds(
             clean += 1.0 - chance[linked.plant[e]]
             if linked.plant[e] == i - 1:
                 belief.pair_before[i] = e
-        if not closed[i]:
+        if not inspected[i]:
             belief.worth[i] = 1.0 + spares * clean / max(end - first, 1)
 
 
@@ -173,7 +173,7 @@ def _learn(
     rows: RowTours,
     result: tuple[int, bool, float],
 ) -> None:
-    """Close a plant and learn from its inspection about those near it."""
+    """Learn from a plant's inspection about those near it: it is worth no second one."""
     i, found, detects = result
     believed = belief.chance, belief.pair_chance
     p = belief.chance[i]

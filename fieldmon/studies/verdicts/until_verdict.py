@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.decisions.map_plan import MapPlan
-from fieldmon.decisions.map_verdict import AskedVerdict, map_verdict
+from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.decisions.sequential import IwaoPlan, Verdict, WaldPlan
 from fieldmon.decisions.stopping import decided
 from fieldmon.errors import SettingError
@@ -277,8 +277,7 @@ def _map_verdicts(plot: _Plot, rng: np.random.Generator) -> tuple[Verdict, int]:
         now = slice(first, first + _LOOKS_A_CHECK)
         belief = belief.learn(plants[now], found[now], learning)
         left[plants[now][found[now]]] = True
-        asked = AskedVerdict.on(belief, plot.level, 1 - WRONG, left)
-        said = map_verdict(grid, belief.chance, asked, belief.pair_chance)
+        said = verdict_of(grid, belief, plot.level, 1 - WRONG, left)
         if said.verdict != "look on":
             return said.verdict, min(first + _LOOKS_A_CHECK, len(plants))
     return "look on", len(plants)

@@ -40,17 +40,33 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
 def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_tapped(season_named):
     app = opened(season_named.path.stem)
     go(app, "record")
-    for name, value in {"one_row": 2, "one_plant": 5, "one_result": FOUND}.items():
+    for name, value in {"one_row": "2", "one_plant": 5, "one_result": FOUND}.items():
         app.session_state[key_of(app, name)] = value
     app.run()
     send(app, "one")
     assert "2 may be any of rows 2–3 here" in app.error[0].value
     assert not len(season_named.history.inspections)
-    app.session_state[key_of(app, "one_row").replace("one_row", "one_tapped")] = (2, 5)
+    app.session_state[key_of(app, "one_row").replace("one_row", "one_tapped")] = ("2", 5)
     send(app, "one")
     assert "1 recorded" in app.success[0].value
     (plant,) = season_named.history.inspections.plant
     assert season_named.label.line[plant] == 2
+
+
+def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_is_refused(
+    season_named,
+):
+    app = opened(season_named.path.stem)
+    go(app, "record")
+    for plant, error in ((4, "4 may be any of plants 3–4 of row 1 · 5a here"), (5, None)):
+        for name, value in {"one_row": "5A", "one_plant": plant, "one_result": FOUND}.items():
+            app.session_state[key_of(app, name)] = value
+        app.run()
+        send(app, "one")
+        assert [error in one.value for one in app.error] == ([True] if error else [])
+    (plant,) = season_named.history.inspections.plant
+    label = season_named.label
+    assert (label.line[plant], label.number[plant]) == (1, 5)
 
 
 def expected(app):

@@ -28,7 +28,7 @@ from tests.monitoring.seasons import BEGINS, a_season
 
 @pytest.fixture
 def scout(served):
-    return scouts.who(served.season, served.key)
+    return scouts.key_owner(served.season, served.key)
 
 
 def test_plants_are_where_they_are_with_their_rows(served):
@@ -41,6 +41,7 @@ def test_plants_are_where_they_are_with_their_rows(served):
     assert plot["plants"]["number"] == label.number.tolist()
     start, row = plot["rows"]["start"], plot["rows"]["row"]
     assert np.repeat(row, np.diff(start)).tolist() == label.line.tolist()
+    assert plot["rows"]["sign"] == [grid.row_signs[k] for k in row]
     assert plot["zone"] == "Asia/Jerusalem"
     _tells_where_the_aisles_are(served.season, plot)
     assert plot_document(served.season) == (name, made)
@@ -75,9 +76,9 @@ def test_the_day_is_what_the_season_says(served, scout):
 
 
 def test_who_has_a_part_is_sent_to_its_rows(served):
-    scouts.take_back(served.season, "Ann")
+    scouts.withdraw_key(served.season, "Ann")
     key = scouts.let_in(served.season, "Ben", (1, 5))
-    day = json.loads(day_document(served.season, scouts.who(served.season, key), BEGINS))
+    day = json.loads(day_document(served.season, scouts.key_owner(served.season, key), BEGINS))
     label = served.season.label
     assert day["route"]["plants"]
     assert label.line[day["route"]["plants"]].max() <= 5
@@ -111,10 +112,10 @@ def test_the_board_warns_until_a_phone_has_the_plan_given_last(tmp_path):
     def loaded(scout, has=None):
         return json.loads(day_document(season, scout, BEGINS, has))["plan"]
 
-    ann = scouts.who(season, scouts.let_in(season, "Ann"))
+    ann = scouts.key_owner(season, scouts.let_in(season, "Ann"))
     alone = loaded(ann)
     assert warned() == []
-    dan = scouts.who(season, scouts.let_in(season, "Dan"))
+    dan = scouts.key_owner(season, scouts.let_in(season, "Dan"))
     loaded(dan)
     assert warned() == ["Ann"]
     assert loaded(ann, alone) != alone, "it sees what others found, and goes on by what it has"
@@ -146,7 +147,7 @@ def test_rows_that_nobody_may_enter_are_told_with_the_time_until_which(served, s
 
 def test_who_is_of_the_team_has_its_route_though_an_older_file_has_rows_for_the_code(tmp_path):
     season = a_season(tmp_path / "team.gpkg")
-    ann = scouts.who(season, scouts.let_in(season, "robot-1", (1, 4)))
+    ann = scouts.key_owner(season, scouts.let_in(season, "robot-1", (1, 4)))
     before = season.settings
     season.change(replace(before, team=team_of(2, before.robot)), before)
     day = json.loads(day_document(season, ann, BEGINS))

@@ -83,7 +83,7 @@ def test_a_stranger_reads_nothing_and_writes_nothing(served, way):
     (method, path), sent = way, WAYS[way]
     other = Season(shutil.copy(served.season.path, served.folder / "other.gpkg"))
     ended = scouts.let_in(served.season, "Ben")
-    scouts.take_back(served.season, "Ben")
+    scouts.withdraw_key(served.season, "Ben")
     before = digest(served.season.path)
     keys = {
         "none": "", "a guess": "a" * 24, "of another season": scouts.let_in(other, "Ann"),
@@ -106,7 +106,7 @@ def test_a_key_ends_at_once(served, way):
     (method, path), sent = way, WAYS[way]
     ask("PUT", of_season(f"photos/{PHOTO}"), key=served.key, body=JPEG, query=ABOUT)
     assert ask(method, of_season(path), key=served.key, **sent).status == 200
-    scouts.take_back(served.season, "Ann")
+    scouts.withdraw_key(served.season, "Ann")
     assert ask(method, of_season(path), key=served.key, **sent).status == 401
 
 

@@ -125,17 +125,25 @@ def test_a_row_never_inspected_is_told_from_one_inspected_today():
     line = np.array([1, 1, 2, 3, 4, 4])
     chart = charts.row_ages(since, line, ("row", "days"))
     seen, today, never = (rows_of(chart, k) for k in range(3))
-    assert [(row["row"], row["high"], row["said"]) for row in seen] == [
-        (1, 1.0, "1"), (3, 5.0, "5"), (4, 0.0, "today")
+    assert [(row["sign"], row["high"], row["said"]) for row in seen] == [
+        ("1", 1.0, "1"), ("3", 5.0, "5"), ("4", 0.0, "today")
     ]  # fmt: skip
-    assert [row["row"] for row in today] == [4]
-    assert [(row["row"], row["said"]) for row in never] == [(2, "never")]
+    assert [row["sign"] for row in today] == ["4"]
+    assert [(row["sign"], row["said"]) for row in never] == [("2", "never")]
     bar = spec(chart)["layer"][2]["mark"]
     assert (bar["type"], bar["filled"]) == ("bar", False)
-    scale = spec(chart)["layer"][0]["encoding"]["x"]["scale"]
-    assert (scale["domain"], scale["nice"]) == ([0.5, 4.5], False), (
-        "there is no row before the first"
-    )
+    for layer in spec(chart)["layer"]:
+        assert layer["encoding"]["x"]["scale"]["domain"] == ["1", "2", "3", "4"]
+
+
+def test_rows_that_are_numbered_with_gaps_or_named_stand_beside_each_other():
+    line = np.array([*range(1, 11), *range(21, 31), 101])
+    chart = charts.row_ages(np.ones(21), line, ("row", "days"), {101: "101 · 5A"})
+    x = spec(chart)["layer"][0]["encoding"]["x"]
+    assert x["scale"]["domain"] == [*map(str, line[:-1]), "101 · 5A"]
+    assert x["axis"]["values"] == [
+        "1", "2", "4", "6", "8", "10", "22", "24", "26", "28", "101 · 5A"
+    ]  # fmt: skip
 
 
 def test_a_plot_of_which_nothing_was_inspected_has_hollow_bars_only():

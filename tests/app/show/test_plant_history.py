@@ -11,8 +11,9 @@ from app.show import plant_history
 from app.show.map_view import MapContent
 from app.state import chosen_day
 from app.words import texts
+from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_at, row_label
 from tests.app.chosen import a_plot, chosen, in_season
 from tests.app.driving import apart
 from tests.monitoring.seasons import BEGINS, a_season
@@ -25,11 +26,12 @@ def said(session, monkeypatch):  # noqa: ARG001 - said within it
     lines = []
     monkeypatch.setattr(st, "markdown", lines.append)
     monkeypatch.setattr(st, "caption", lambda _: None)
-    monkeypatch.setattr(st, "number_input", number_input)
+    monkeypatch.setattr(st, "number_input", boxed)
+    monkeypatch.setattr(st, "text_input", boxed)
     return lines
 
 
-def number_input(_label, _least, *, key, value):  # noqa: ARG001 - as Streamlit's
+def boxed(_label, _least=0, *, key, value):  # noqa: ARG001 - as Streamlit's
     return st.session_state[key]
 
 
@@ -137,3 +139,35 @@ def test_what_is_shown_first_is_a_plant_also_where_rows_and_plants_have_numbers_
     plant_history.show(chosen(replace(plot, aisles=replace(plot.aisles, grid=grid))))
     assert said[-1] == "Never inspected."
     assert (st.session_state["history row"], st.session_state["history plant"]) == (101, 5)
+
+
+@pytest.mark.usefixtures("said")
+def test_the_plant_shown_may_be_typed_by_the_name_of_its_row():
+    plot = a_plot()
+    called = np.arange(len(plot.grid.line_number)) + 1
+    called[2] = 101
+    names = np.where(called > 100, "5A", called.astype(np.str_))
+    grid = replace(plot.grid, line_called=np.stack([called, called], axis=1), line_named=names)
+    choices = chosen(replace(plot, aisles=replace(plot.aisles, grid=grid)))
+    tap(choices, plant_at(grid, 101, 2))
+    assert plant_history.tapped(choices) == (plant_at(grid, 101, 2),)
+    st.session_state["history row called"] = "5a"
+    assert plant_history.tapped(choices) == (plant_at(grid, 101, 2),)
+    st.session_state["history row called"] = "Top"
+    assert plant_history.tapped(choices) == ()
+
+
+def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_its_plant_was_tapped(
+    said, season_named
+):
+    choices = in_season(season_named, season_named.settings.begins)
+    grid = season_named.plot.grid
+    tap(choices, plant_at(grid, 2, 5))
+    plant_history.show(choices)
+    assert said[-1] == "Never inspected."
+    st.session_state["history plant"] = 6
+    with pytest.raises(SettingError, match="2 may be any of rows 2–3 here"):
+        plant_history.show(choices)
+    st.session_state["history row called"], st.session_state["history plant"] = "5A", 4
+    with pytest.raises(SettingError, match="4 may be any of plants 3–4 of row 1 · 5a here"):
+        plant_history.show(choices)

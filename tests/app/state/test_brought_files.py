@@ -53,9 +53,9 @@ def test_answers_about_a_file_settle_its_options_and_are_taken_back_in_order():
     brought_files.answer("other", "crs", "EPSG:25831")
     assert brought_files.settled(file, PlotOptions()).crs == "EPSG:4326"
     assert brought_files.asking() == file.asked
-    brought_files.take_back(file.asked)
+    brought_files.drop_answer(file.asked)
     assert brought_files.settled(file, PlotOptions()).crs == "EPSG:2039"
-    brought_files.take_back(file.asked)
+    brought_files.drop_answer(file.asked)
     assert brought_files.settled(file, PlotOptions()) == PlotOptions()
 
 

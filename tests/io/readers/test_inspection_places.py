@@ -196,11 +196,26 @@ def test_a_plant_alone_is_the_one_that_its_file_names_so_and_that_is_said():
 
 
 def test_a_name_of_one_row_that_is_the_number_of_another_is_refused():
+    rows = ["3", "A", "B", "C", "D", "1"]
+    grid, lonlat = own_names(lambda k, _: rows[k], lambda _, j: f"{j + 1}")
+    imported = read("row,plant,found\nA,3,x\n3,3,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[12]], abs=1e-9)
+    assert "3 may be any of rows 1, 3 here" in imported.of(Severity.DROPPED)[0].sentence
+
+
+def test_a_row_without_a_number_of_its_own_is_meant_by_its_name_and_takes_none_of_the_others():
     rows = ["5a", "5", "4", "3", "2", "1"]
     grid, lonlat = own_names(lambda k, _: rows[k], lambda _, j: f"{j + 1}")
-    imported = read("row,plant,found\n5A,3,x\n3,3,x\n", grid=grid)
-    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[2]], abs=1e-9)
-    assert "3 may be any of rows 3–4 here" in imported.of(Severity.DROPPED)[0].sentence
+    imported = read("row,plant,found\n5A,3,x\n3,3,x\n101,4,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[2, 32, 3]], abs=1e-9)
+
+
+def test_a_name_of_one_plant_that_is_the_number_of_another_is_refused():
+    grid, lonlat = own_names(lambda k, _: f"{k + 1}", lambda k, j: f"{j + (j < 3 or k > 0)}")
+    imported = read("row,plant,found\n1,3,x\n1,1,x\n2,3,x\n", grid=grid)
+    assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 12]], abs=1e-9)
+    (why,) = imported.of(Severity.DROPPED)
+    assert "plant 3 may be any of plants 3–4 of row 1 here" in why.sentence
 
 
 def test_rows_and_plants_may_count_from_zero_where_their_file_does():

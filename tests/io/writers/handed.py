@@ -75,6 +75,22 @@ def in_blocks():
     return day(lay(whole, Planting(row_spacing_m=3.0, plant_spacing_m=1.5)), hours=3.0)
 
 
+NAMES = ("1", "2", "5A", "=<Top> 7/8", "4", "5")
+
+
+def with_names(grid):
+    """Return a grid of six rows with names, of which two have no number of their own."""
+    numbers = np.array([1, 2, 101, 102, 4, 5])
+    called = np.stack([numbers, numbers], axis=1)
+    return replace(grid, line_called=called, line_named=np.array(NAMES))
+
+
+@cache
+def with_named_rows():
+    """Return a day on a plot whose file names rows, two of them without a number of their own."""
+    return day(with_names(rectangle(6, 9)))
+
+
 @cache
 def among_trees():
     """Return a day among trees that stand in no rows."""

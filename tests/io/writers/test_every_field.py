@@ -13,9 +13,12 @@ import pyogrio
 import pytest
 import yaml
 
+from fieldmon.io.options import Upload
+from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
 from fieldmon.plot.grid import row_label
 from tests.io.writers.handed import (
+    NAMES,
     START,
     among_trees,
     crooked,
@@ -23,6 +26,7 @@ from tests.io.writers.handed import (
     long,
     of_team,
     usual,
+    with_named_rows,
     without_start,
 )
 from tests.pages import Page
@@ -231,6 +235,40 @@ def test_a_format_of_a_table_says_what_there_is_to_say_and_no_more(tmp_path, nam
             assert read == values
         else:
             np.testing.assert_allclose(np.array(read, float), values, atol=1e-7, rtol=0)
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_a_format_of_a_table_says_what_the_plots_file_calls_rows_without_a_number(tmp_path, name):
+    plan = with_named_rows()
+    (path,) = write_handoff(plan, tmp_path / name)
+    (tmp_path / "read").mkdir()
+    told = FORMATS[name][0](path.read_bytes(), tmp_path / "read")
+    numbers = [1, 2, 101, 102, 4, 5]
+    line = plan.grid.row_line[plan.grid.row[plan.route.plant]].tolist()
+    assert {2, 3} < set(line)
+    assert [int(row) for row in told["row"]] == [numbers[k] for k in line]
+    names = ["" if pd.isna(one) else one.removeprefix("'") for one in told["row_name"]]
+    assert names == [NAMES[k] if k in {2, 3} else "" for k in line]
+
+
+def test_waypoints_and_the_sheet_say_what_the_plots_file_calls_rows_without_a_number(tmp_path):
+    plan = with_named_rows()
+    line = plan.grid.row_line[plan.grid.row[plan.route.plant]].tolist()
+    names = ["R1", "R2", "R101·5A", "R102·=<Top>_7_8", "R4", "R5"]
+    (path,) = write_handoff(plan, tmp_path / "route.gpx")
+    tree = ET.parse(path)  # noqa: S314 - written above
+    points = [point.find(f"{GPX}name") for point in tree.getroot().findall(f"{GPX}wpt")]
+    shown = [point.text.split(" ", 1)[1].rsplit("/", 1)[0] for point in points]
+    assert shown == [names[k] for k in line]
+    for point in points:
+        point.text += " +3"
+    back = read_inspections(Upload("r.gpx", ET.tostring(tree.getroot())), plan.grid).value
+    assert back.plant.tolist() == plan.route.plant.tolist()
+    assert set(back.count.tolist()) == {3.0}
+    sheet, *_ = write_handoff(plan, tmp_path / "sheet.html")
+    ((_, *rows),) = Page(sheet.read_text("utf-8")).tables
+    signs = ["1", "2", "101 · 5A", "102 · =<Top> 7/8", "4", "5"]
+    assert [row[1] for row in rows] == [signs[k] for k in line]
 
 
 @pytest.mark.parametrize("make", [in_blocks, among_trees, of_team, without_start])

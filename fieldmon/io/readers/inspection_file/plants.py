@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
 
 _LABEL = re.compile(r"^[^\d\s]{0,8}\s*(\d{1,6})\s*[/\-.,:;\s]\s*[^\d\s]{0,8}\s*(\d{1,6})([abAB]?)$")
-#: a plant in the name of a waypoint of ours: ``R3/17``, with what stands before and behind it
-PLANT_IN_NAME = re.compile(r"(?:^|\s)(?:\d+\s+)?R(\d{1,6})/(\d{1,6})([ab]?)(?=\s|$)")
+#: a plant in the name of a waypoint of ours, with what stands before and behind it: ``R3/17``, or
+#: with the row's name, ``R101·5A/17``
+PLANT_IN_NAME = re.compile(r"(?:^|\s)(?:\d+\s+)?R(\d{1,7})(?:·[^\s/]*)?/(\d{1,6})([ab]?)(?=\s|$)")
 _FACES = {"1": 1, "a": 1, "2": 2, "b": 2}
 _ROW = "\0row"
 

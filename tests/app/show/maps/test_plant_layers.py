@@ -2,6 +2,7 @@
 
 import base64
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -56,6 +57,8 @@ def test_chances_are_said_of_each_plant_or_a_sentence_of_each_rank_but_nothing_u
     assert by_rank.tips["ranks"] == ["a", "b", "c"]
     assert "values" not in by_rank.arrays
     assert set(plant_layers.plants(GRID, colours.plain(48)).tips) == {"text"}
+    named = replace(GRID, line_named=np.full(len(GRID.line_number), "Top"))
+    assert plant_layers.plants(named, colours.plain(48)).tips["rows"][1] == "1 · Top"
 
 
 def test_points_touch_no_neighbour():

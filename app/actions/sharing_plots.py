@@ -52,6 +52,9 @@ def show(plots: list[PlotState]) -> SharedPlots:
     if not wanted:
         st.info(texts.PLAN_ALL_NONE)
         return SharedPlots(())
+    if not crew.members():
+        st.info(texts.PLAN_ALL_NOBODY)
+        return SharedPlots(())
     with st.empty():
         bar = st.progress(0.0, texts.PLAN_ALL_WORKING)
         made = shared_plots.planned(
@@ -64,10 +67,11 @@ def show(plots: list[PlotState]) -> SharedPlots:
 
 def _crew() -> EstateCrew:
     usual = EstateCrew()
-    columns = st.columns(2)
-    chosen = {}
+    chosen, columns = {}, []
     for k, (name, (least, most, step)) in enumerate(_LIMITS.items()):
-        with columns[k % 2]:
+        # each row has columns of its own: on a phone, how many and their hours stay together
+        columns += st.columns(2) if k % 2 == 0 else []
+        with columns[k]:
             chosen[name] = widget_memory.show(
                 st.number_input, texts.PLAN_ALL_CREW[name], least, most, step=step,
                 key=f"crew_{name}", default=getattr(usual, name),
@@ -95,9 +99,11 @@ def _say(made: SharedPlots, crew: EstateCrew) -> None:
         said = texts.PLAN_ALL_WAITING.format(names=names)
         st.markdown(many if len(made.waiting) > _MOST_NAMED else said)
     busy = {one.who for one in made.turns}
-    free = [one.name for one in crew.members() if one.name not in busy]
-    if free:
-        st.markdown(texts.PLAN_ALL_FREE.format(names=listed(free)))
+    every = [one.name for one in crew.members()]
+    if free := [name for name in every if name not in busy]:
+        many = texts.PLAN_ALL_FREE_MANY.format(n=len(free), all=len(every))
+        said = texts.PLAN_ALL_FREE.format(names=listed(free))
+        st.markdown(many if len(free) > _MOST_NAMED else said)
     for problem in (*made.closed, *made.problems):
         st.warning(problem)
     if made.turns:

@@ -26,6 +26,8 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
     worked = table[table[texts.PLAN_ALL_COLUMNS["who"]].notna()]
     assert len(worked) == len(layer(app, "route")["data"]) > 3
     assert sum("robot 1" in one["t"] for one in map_of(app)["labels"]) == len(worked)
+    boxes = [box.key for box in app.number_input if box.key.startswith("crew_")]
+    assert boxes[:4] == ["crew_robots", "crew_robot_hours", "crew_scouts", "crew_scout_hours"]
     app.number_input(key="crew_scouts").set_value(1).run()
     assert not app.exception
     (table,) = (frame.value for frame in app.dataframe)
@@ -33,7 +35,9 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
     app.number_input(key="crew_scouts").set_value(0).run()
     app.number_input(key="crew_robots").set_value(0).run()
     assert not app.exception
-    assert "No time today" in texts_of(app)
+    assert texts.PLAN_ALL_NOBODY in texts_of(app)
+    assert "0 plants" not in texts_of(app)
+    assert "No time today" not in texts_of(app)
     press(app, texts.PLAN_ALL_OFF)
     assert layer(app, "route") is None
 
@@ -76,4 +80,6 @@ def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
 def test_who_has_no_plot_is_said_to_be_free(said):
     sharing_plots._say(shared_plots.SharedPlots((), (), ("broken",)), EstateCrew(robots=2))
     assert "Free today: robot 1, robot 2." in said
+    sharing_plots._say(shared_plots.SharedPlots(()), EstateCrew(robots=20, scouts=20))
+    assert said[-1] == "Free today: 40 of 40.", "no wall of names"
     assert "broken" in said

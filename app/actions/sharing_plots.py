@@ -61,7 +61,7 @@ def show(plots: list[PlotState]) -> SharedPlots:
             wanted, crew, lambda k, n: bar.progress(k / n, texts.PLAN_ALL_WORKING)
         )
         st.empty()
-    _say(made, crew)
+    _say(made)
     return made
 
 
@@ -81,7 +81,7 @@ def _crew() -> EstateCrew:
     )
 
 
-def _say(made: SharedPlots, crew: EstateCrew) -> None:
+def _say(made: SharedPlots) -> None:
     routes = [one.route for one in made.turns]
     plants = sum(len(route) for route in routes)
     finds = sum(route.expected_found for route in routes)
@@ -98,12 +98,12 @@ def _say(made: SharedPlots, crew: EstateCrew) -> None:
         many = texts.PLAN_ALL_WAITING_MANY.format(n=len(made.waiting))
         said = texts.PLAN_ALL_WAITING.format(names=names)
         st.markdown(many if len(made.waiting) > _MOST_NAMED else said)
-    busy = {one.who for one in made.turns}
-    every = [one.name for one in crew.members()]
-    if free := [name for name in every if name not in busy]:
-        many = texts.PLAN_ALL_FREE_MANY.format(n=len(free), all=len(every))
-        said = texts.PLAN_ALL_FREE.format(names=listed(free))
-        st.markdown(many if len(free) > _MOST_NAMED else said)
+    if made.free:
+        many = texts.PLAN_ALL_FREE_MANY.format(n=len(made.free), all=made.n_members)
+        said = texts.PLAN_ALL_FREE.format(names=listed(made.free))
+        st.markdown(many if len(made.free) > _MOST_NAMED else said)
+    if made.several_kinds:
+        st.markdown(texts.PLAN_ALL_KINDS)
     for problem in (*made.closed, *made.problems):
         st.warning(problem)
     if made.turns:
@@ -118,7 +118,9 @@ def packed(made: SharedPlots) -> bytes:
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for file, one in files.items():
             archive.writestr(file, route_geojson(one.route, one.notes))
-        archive.writestr(TABLE, plan_table(files))
+        archive.writestr(
+            TABLE, plan_table(files, {one.name: () for one in made.waiting}, made.free)
+        )
     return out.getvalue()
 
 

@@ -13,7 +13,7 @@ from fieldmon.planning.plan import plan_in
 from fieldmon.planning.shared_day import MOVE_S, PlotNeed, share_day
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.shared_day import PlotTurn
+    from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler, Scene
 
 #: a plot is due so many days after it was seen
@@ -120,6 +121,17 @@ def days_since(season: Season, on: date) -> int | None:
     dates = season.history.inspections.date
     dates = dates[dates <= np.datetime64(on)]
     return int((np.datetime64(on) - dates.max()) / np.timedelta64(1, "D")) if len(dates) else None
+
+
+def one_robot(seasons: Iterable[Season]) -> Robot | None:
+    """Return the robot with which all of these seasons work; None: they have several, or none.
+
+    Hours are not compared: they are those of the first.
+    """
+    settings = [season.settings for season in seasons]
+    robots = [one.robot for of in settings for one in (of.team or (of,))]
+    kinds = {replace(robot, hours=1.0) for robot in robots}
+    return robots[0] if len(kinds) == 1 else None
 
 
 def due(days_since: Sequence[int | None]) -> list[int]:

@@ -70,7 +70,7 @@ def said(monkeypatch):
 def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
     for n, words in ((2, "No time today: \u2068Plot 0\u2069"), (96, "No time today for 96 plots")):
         waiting = tuple(SimpleNamespace(name=f"Plot {k}") for k in range(n))
-        sharing_plots._say(shared_plots.SharedPlots((), waiting), EstateCrew())
+        sharing_plots._say(shared_plots.SharedPlots((), waiting))
         (told,) = (one for one in said if one.startswith("No time today"))
         assert told.startswith(words)
         assert len(told) < 120
@@ -78,8 +78,13 @@ def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
 
 
 def test_who_has_no_plot_is_said_to_be_free(said):
-    sharing_plots._say(shared_plots.SharedPlots((), (), ("broken",)), EstateCrew(robots=2))
+    free = shared_plots.planned([], EstateCrew(robots=2), lambda *_: None).free
+    sharing_plots._say(
+        shared_plots.SharedPlots((), (), ("broken",), free=free, n_members=2, several_kinds=True)
+    )
+    assert texts.PLAN_ALL_KINDS in said
     assert "Free today: robot 1, robot 2." in said
-    sharing_plots._say(shared_plots.SharedPlots(()), EstateCrew(robots=20, scouts=20))
+    many = tuple(f"robot {k}" for k in range(40))
+    sharing_plots._say(shared_plots.SharedPlots((), free=many, n_members=40))
     assert said[-1] == "Free today: 40 of 40.", "no wall of names"
     assert "broken" in said

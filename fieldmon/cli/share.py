@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -12,7 +11,6 @@ import typer
 from fieldmon.cli.messages import (
     assumed_in_words,
     tell_assumed_of_plots,
-    tell_clock_change,
     tell_drafts,
 )
 from fieldmon.cli.option_groups import with_options
@@ -102,7 +100,6 @@ def share(options: ShareOptions) -> None:
     folder = options.output or Path(f"day-{min(plot.on for plot in plots)}")
     _require_empty(folder)
     members, starts = _members(options, [one.season for one in plots if one.season is not None])
-    _tell_clock_changes(plots, members, starts)
     made = _planned(plots, members, starts, 60.0 * options.move)
     tell_assumed_of_plots({_name(plot): _assumed(plot, members) for plot in plots})
     if not made.routes:
@@ -199,16 +196,6 @@ def _due(seasons: Sequence[Season], told: date | None, *, every: bool) -> Iterat
             days = since[k] or 0
             ago = f"{counted(days, 'day')} ago" if days else "today"
             typer.echo(f"{season.path.stem} was inspected {ago} and is not due.")
-
-
-def _tell_clock_changes(
-    plots: Sequence[EstatePlot], members: Sequence[TeamMember], starts: time
-) -> None:
-    """Print that clocks change in these hours, if so: once, as the plots of an estate lie near."""
-    plot = plots[0]
-    if plot.season is not None:
-        hours = max(one.starts_s / 3600 + one.robot.hours for one in members)
-        tell_clock_change(datetime.combine(plot.on, starts), hours, plot.season.plot.field)
 
 
 def _assumed(plot: EstatePlot, members: tuple[TeamMember, ...]) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from fieldmon.monitoring.closures import closed_plants, open_to_people
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.shared_day import MOVE_S, PlotNeed, share_day
+from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -225,8 +226,10 @@ def _turn(plot: EstatePlot, turn: PlotTurn, member: TeamMember, starts: time) ->
     # to the second, so that the same turn is planned once
     robot = replace(member.robot, hours=max(round(turn.seconds), 1) / 3600)
     after_s = round(member.starts_s + turn.starts_s)
-    begins = datetime.combine(plot.on, starts) + timedelta(seconds=after_s)
-    closed = plot.closed(begins, begins + timedelta(seconds=robot.day_s))
+    own = datetime.combine(plot.on, starts) + timedelta(seconds=member.starts_s)
+    clock = grid_clock(plot.scene.grid)
+    begins = clock.after(own, after_s - member.starts_s)
+    closed = plot.closed(begins, clock.after(begins, robot.day_s))
     scene = replace(open_to_people(plot.scene, closed), robot=robot, seconds_left=robot.day_s)
     return EstateTurn(turn.plot, turn.who, begins, scene, plot.decides, closed)
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass
-from datetime import datetime, timedelta
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
+from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from datetime import datetime
 
     from fieldmon.planning.route import Route
 
@@ -50,7 +51,7 @@ class EstateRoute:
     @property
     def ends(self) -> datetime:
         """Return when the route ends."""
-        return self.begins + timedelta(seconds=float(self.route.end_s))
+        return grid_clock(self.route.aisles.grid).after(self.begins, float(self.route.end_s))
 
     @property
     def notes(self) -> RouteNotes:

@@ -6,6 +6,7 @@ from abc import abstractmethod
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
+from operator import index
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -182,8 +183,19 @@ class Scene:
         return robot_clock(self.robot, self.seconds_left)
 
     def travel_s(self, i: int, j: int) -> float:
-        """Return the seconds from plant i to plant j, either of which may be `GATE` (-1)."""
-        return travel_s(self.aisles.travel, self.clock, i, j)
+        """Return the seconds from plant i to plant j, either of which may be `GATE` (-1).
+
+        Raise `SettingError` if one is no plant.
+        """
+        travel = self.aisles.travel
+        n = len(travel.x_m)
+        try:
+            known = GATE <= index(i) < n and GATE <= index(j) < n
+        except TypeError:
+            known = False
+        if not known or bool in (type(i), type(j)):
+            raise self.aisles.no_place(i, j)
+        return travel_s(travel, self.clock, i, j)
 
     def walked(self, walk: Callable[..., int], *arrays: object) -> Stops:
         """Return the stops of a compiled walk through the rest of the day.

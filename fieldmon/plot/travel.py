@@ -12,7 +12,7 @@ import numpy as np
 from fieldmon.compute.arguments import shown
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.plot.clearance import Clearance, narrow_sentence
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
@@ -211,8 +211,12 @@ class Aisles:
             or not GATE <= int(one) < len(self.grid)
         )
         return SettingError(
-            f"Travel is between plants, 0 to {len(self.grid) - 1}, and the gate, -1, but one is "
-            f"{shown(wrong)}. Count plants from 0."
+            worded(
+                "Travel is between plants, 0 to {last}, and the gate, -1, but one is {wrong}. "
+                "Count plants from 0.",
+                last=len(self.grid) - 1,
+                wrong=shown(wrong),
+            )
         )
 
     @cached_property

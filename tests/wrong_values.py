@@ -137,6 +137,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     "SeasonSettings": {"believe": {"class", "function"}, "pests": {"class", "function"}},
     # where that is, the plot says
     "TeamMember": {"gate": {"list", "pair", "far pair"}},
+    "Learning": {"detection": {"empty array", "array"}},
     "Weather.chosen": {"which": {"empty array"}},
 }  # fmt: skip
 #: how sentences call parameters that they do not call by their names
@@ -300,7 +301,9 @@ def _of_settings() -> Iterator[Case]:
     for made in (fm.Application(), fm.Dose(0.5, "l/ha"), fm.ProductLabel("a"), fm.rover(), pest,
                  fm.Spread(), fm.Viewpoints(), fm.SeasonSettings(), known,
                  fm.MonitoringSettings(TODAY), fm.PriorSettings(), fm.TeamMember("a"),
-                 fm.Teamwork(), fm.AdviceSettings()):  # fmt: skip
+                 fm.Teamwork(), fm.AdviceSettings(), fm.Learning(), fm.TreatmentRule(),
+                 fm.Sprayer(), fm.TreatmentCosts(), fm.HotSpotSettings(),
+                 fm.PestInWeather(pest)):  # fmt: skip
         yield Case(type(made).__name__, type(made), _fields_of(made))
     yield Case("Application.by_label", fm.Application().by_label, {"label": None})
     yield Case("Dose.share_of", fm.Dose(0.5, "l/ha").share_of,
@@ -337,7 +340,7 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
                {"path": folder / "a.gpx", "as_format": None})  # fmt: skip
     yield Case("Start", fm.Start, _fields_of(start))
     yield Case("Monitor", fm.Monitor, {"plot": plot, "sampler": "naive", "robot": None,
-               "chance": None, "belief_settings": None, "seed": 1})  # fmt: skip
+               "chance": None, "belief_settings": None, "seed": 1, "pest": None})  # fmt: skip
     yield Case("Monitor.day_in", monitor.day_in, {"scene": day.scene})
     yield Case("Monitor.estimate", monitor.estimate, {"sure": 0.9})
     yield Case("Monitor.verdict", monitor.verdict, {"level": 0.05, "sure": 0.9})

@@ -92,14 +92,14 @@ class Weather:
         for each in fields(self):
             value = getattr(self, each.name)
             if isinstance(value, np.ndarray):
-                if len(value) != len(self.at):
+                if value.shape != (len(self.at),):
                     raise SettingError(
                         worded(
                             "Weather must have one {name} for each of its {n} times, but it has "
                             "{n_2}.",
                             name=each.name,
                             n=len(self.at),
-                            n_2=len(value),
+                            n_2=value.size,
                         )
                     )
                 object.__setattr__(self, each.name, read_only(value.copy()))

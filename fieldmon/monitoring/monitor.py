@@ -478,7 +478,7 @@ class MonitorDay(AskedDay):
         return plants
 
     def ask(self) -> PlantToInspect | None:
-        """Return the plant to inspect next; None where the day's hours allow no other.
+        """Return the plant to inspect next; None where hours allow no other, or none is named.
 
         The same one until it is told what was seen there.
         """

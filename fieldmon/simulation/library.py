@@ -12,6 +12,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
+from fieldmon.samplers.answers import must_name_plants
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start, season_start
@@ -98,7 +99,7 @@ def simulate(
     Raises
     ------
     SettingError
-        If there is no such sampler.
+        If there is no such sampler, or one of your own names no plant on any day.
     PlotError
         If the start is of another plot.
 
@@ -117,6 +118,8 @@ def simulate(
     """
     decides = sampler_or_name(sampler)
     chosen, streams = settings or SeasonSettings(), RandomStreams(seed)
-    return season_metrics(
-        simulated_days(plot.aisles, robot or Robot(), decides, start, chosen, streams)
-    )
+    worker = robot or Robot()
+    season = season_metrics(simulated_days(plot.aisles, worker, decides, start, chosen, streams))
+    if not season.ever_visited_pct.any():
+        must_name_plants(decides, plot.aisles, worker)
+    return season

@@ -89,7 +89,8 @@ class Sprayer:
 
         Examples
         --------
-        >>> Sprayer.of_boom(12.0, 4, row_spacing_m=1.5).rows
+        >>> import fieldmon as fm
+        >>> fm.Sprayer.of_boom(12.0, 4, row_spacing_m=1.5).rows
         2
         """
         if not (boom_m > 0.0 and sections >= 1):

@@ -96,19 +96,19 @@ class Scene:
     chance
         ``(n,)`` believed chance that each plant is infested.
     last_inspected
-        ``(n,)`` int32 day on which each plant was inspected last, `NEVER` if it was not. Plants
+        ``(n,)`` int32 day on which each plant was inspected last, -1 if it was not. Plants
         in aisles too narrow for the robot seem inspected today: nobody is sent there.
     day
         Today's number. A plant inspected on this day is not visited again.
     at
-        Where the robot stands: a plant, or `GATE`.
+        Where the robot stands: a plant, or -1, the gate.
     seconds_left
         What is left of the working day.
     trail
         ``(k,)`` int32 plants of the last working day before today, in order; empty if there was
         none. A sweep goes on where it ends, in its direction.
     key
-        64 random bits for samplers that draw, see `fieldmon.compute.random_streams.coin`.
+        64 random bits for samplers that draw, by ``np.random.default_rng(int(scene.key))``.
     pair_chance
         ``(e,)`` believed chance that two plants side by side are both infested, in the order of
         ``grid.adjacent``; None where nothing is believed of pairs.
@@ -162,7 +162,7 @@ class Scene:
 
     @property
     def resume(self) -> int:
-        """Return the plant after which a sweep goes on, or `NEVER` if it has not begun."""
+        """Return the plant after which a sweep goes on, or -1 if it has not begun."""
         if self.at >= 0:
             return self.at
         return int(self.trail[-1]) if len(self.trail) else NEVER
@@ -183,7 +183,7 @@ class Scene:
         return robot_clock(self.robot, self.seconds_left)
 
     def travel_s(self, i: int, j: int) -> float:
-        """Return the seconds from plant i to plant j, either of which may be `GATE` (-1).
+        """Return the seconds from plant i to plant j, either of which may be -1, the gate.
 
         Raise `SettingError` if one is no plant.
         """

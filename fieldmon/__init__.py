@@ -69,9 +69,9 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
     from fieldmon.samplers import SAMPLERS
     from fieldmon.samplers.base import Sampler, Scene, Stops
-    from fieldmon.simulation.library import draw_start, simulate
+    from fieldmon.simulation.library import draw_start, simulate, simulate_days
     from fieldmon.simulation.metrics import SeasonMetrics
-    from fieldmon.simulation.season import SeasonSettings
+    from fieldmon.simulation.season import SeasonSettings, SimulatedDay
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.treating import TreatmentRule
 
@@ -127,9 +127,9 @@ _MODULES = {
     "monitoring.advice": ("AdviceSettings",),
     "monitoring.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork"),
-    "simulation.library": ("draw_start", "simulate"),
+    "simulation.library": ("draw_start", "simulate", "simulate_days"),
     "simulation.metrics": ("SeasonMetrics",),
-    "simulation.season": ("SeasonSettings",),
+    "simulation.season": ("SeasonSettings", "SimulatedDay"),
     "simulation.start": ("Start",),
     "simulation.treating": ("TreatmentRule",),
     "io.sources": ("PlantingChoices",),
@@ -181,6 +181,7 @@ __all__ = [
     "SeasonMetrics",
     "SeasonSettings",
     "SettingError",
+    "SimulatedDay",
     "Sprayer",
     "Spread",
     "Start",
@@ -207,6 +208,7 @@ __all__ = [
     "rover",
     "scout",
     "simulate",
+    "simulate_days",
 ]
 
 

@@ -15,6 +15,7 @@ import warnings
 from dataclasses import dataclass, fields
 from datetime import UTC, date, datetime
 from datetime import time as clock
+from functools import wraps
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -356,6 +357,8 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
                {"plot": plot, "chance": chance, "share": 0.02, "seed": 1})  # fmt: skip
     yield Case("simulate", fm.simulate, {"plot": plot, "start": start, "sampler": "naive",
                "robot": robot, "settings": fm.SeasonSettings(n_days=2), "seed": 1})  # fmt: skip
+    yield Case("simulate_days", fm.simulate_days, {"plot": plot, "start": start,
+               "sampler": "naive", "robot": robot, "settings": None, "seed": 1})  # fmt: skip
     posed = {"plot": plot, "reward": chance, "robot": robot, "seconds": 0.1}
     yield Case("routes.best", fm.routes.best, posed | {"others": ()})
     yield Case("routes.bound", fm.routes.bound, posed | {"within_s": 0.1})
@@ -429,8 +432,14 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "verdict": on | {"level": 0.05, "sure": 0.9, "plants": None},
         "verify": {"whole": True},
     }  # fmt: skip
+
+    @wraps(season.undo)
+    def undo(**given: Any) -> object:
+        season.record(seen)  # or there is nothing to take back
+        return season.undo(**given)
+
     for name, right in methods.items():
-        yield Case(f"Season.{name}", getattr(season, name), right)
+        yield Case(f"Season.{name}", undo if name == "undo" else getattr(season, name), right)
 
 
 _NEW = "a new file"

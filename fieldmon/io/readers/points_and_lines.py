@@ -145,7 +145,7 @@ def _strays(
     stray = np.flatnonzero(far_m > max(_STRAY_M, _STRAY_TIMES * float(np.median(far_m))))
     messages = []
     gone = stray[far_m[stray] > _FAR_M]
-    if len(gone) and options.far is None and len(gone) * _RARE < len(lonlat):
+    if len(gone) and options.far != "keep" and len(gone) * _RARE < len(lonlat):
         out[gone] = True
         said = worded(
             "{n} {n:plant stands|plants stand} {far} and more from the others and {n:was|were} "

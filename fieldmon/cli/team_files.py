@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.outputs import ROUTE
 from fieldmon.cli.times import clock
 from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
@@ -86,7 +87,7 @@ def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -
         )
     made = []
     for name in names:
-        parts = [(path, *path.name.partition(".")) for path in outputs or [Path("route.geojson")]]
+        parts = [(path, *path.name.partition(".")) for path in outputs or [ROUTE]]
         made.append(
             [path.with_name(f"{stem}-{name}{dot}{rest}") for path, stem, dot, rest in parts]
         )

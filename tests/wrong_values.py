@@ -60,7 +60,7 @@ VALUES: dict[str, Any] = {
     "point": shapely.Point(0, 0),
 }  # fmt: skip
 
-_DATES = {"date", "first date", "last date"}
+_DATES = {"date", "first date", "last date", "moment"}
 _TEXTS = {"text", "empty text", "NUL"}
 #: what each annotation allows; whatever else is taken is taken for something that it is not
 _RIGHT = {

@@ -90,7 +90,7 @@ _COLUMNS = {
     "second": {"tuple", "list of 10^30", "array of nan", "array of 1e30", "array of -1"},
     "count": {"tuple", "list of 10^30", "array of nan", "array of 1e30", "array of -1"},
     "plant": {"tuple", "array of -1"},
-    "result": {"tuple", "array of -1", "mask"},
+    "result": {"tuple", "mask"},
     "date": {"array of dates"},
     "on": {"array of dates", "moment", "numpy's NaT"},
     **{name: {"list of 10^30"} for name in ("who", "notes")},

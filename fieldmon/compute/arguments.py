@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
 from fieldmon.compute.ranges import AllowedRange
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import LANGUAGES, worded
 from fieldmon.errors import ObservationError, SettingError
 
 if TYPE_CHECKING:
@@ -248,6 +248,18 @@ def must_be_name_of_file(what: str, path: object) -> None:
     if not str(path) or "\0" in str(path):
         raise SettingError(
             f"{what} must be given by its path, but it is {str(path)!r}. Name the file."
+        )
+
+
+def must_be_language(code: str) -> None:
+    """Raise `SettingError` unless sentences are translated into the language of this code."""
+    if code not in LANGUAGES:
+        raise SettingError(
+            worded(
+                "A language must be one of {known}, but it is {code!r}.",
+                known=", ".join(LANGUAGES),
+                code=code,
+            )
         )
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.doses import Dose
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.decisions.map_verdict import MapVerdict
+    from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
     from fieldmon.errors import (
         ChoiceNeeded,
         ContradictionError,
@@ -29,10 +30,12 @@ if TYPE_CHECKING:
         PlotError,
         SettingError,
     )
+    from fieldmon.infestation.belief import Learning
     from fieldmon.infestation.forecast import Forecast
-    from fieldmon.infestation.hotspots import HotSpots, hot_spots
+    from fieldmon.infestation.hotspots import HotSpots, HotSpotSettings, hot_spots
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.spread import Spread
@@ -66,10 +69,11 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
     from fieldmon.samplers import SAMPLERS
     from fieldmon.samplers.base import Sampler, Scene, Stops
-    from fieldmon.simulation.library import draw_start, simulate
+    from fieldmon.simulation.library import draw_start, simulate, simulate_days
     from fieldmon.simulation.metrics import SeasonMetrics
-    from fieldmon.simulation.season import SeasonSettings
+    from fieldmon.simulation.season import SeasonSettings, SimulatedDay
     from fieldmon.simulation.start import Start
+    from fieldmon.simulation.treating import TreatmentRule
 
 _MODULES = {
     "errors": (
@@ -84,7 +88,10 @@ _MODULES = {
     ),
     "decisions.doses": ("Dose",),
     "decisions.labels": ("ProductLabel",),
-    "infestation.hotspots": ("HotSpots", "hot_spots"),
+    "decisions.sprayer": ("Sprayer", "TreatmentCosts"),
+    "infestation.belief": ("Learning",),
+    "infestation.pest_in_weather": ("PestInWeather",),
+    "infestation.hotspots": ("HotSpotSettings", "HotSpots", "hot_spots"),
     "infestation.inspections": ("Inspections",),
     "infestation.observations": ("Observations",),
     "infestation.spread": ("Spread",),
@@ -120,10 +127,11 @@ _MODULES = {
     "monitoring.advice": ("AdviceSettings",),
     "monitoring.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork"),
-    "simulation.library": ("draw_start", "simulate"),
+    "simulation.library": ("draw_start", "simulate", "simulate_days"),
     "simulation.metrics": ("SeasonMetrics",),
-    "simulation.season": ("SeasonSettings",),
+    "simulation.season": ("SeasonSettings", "SimulatedDay"),
     "simulation.start": ("Start",),
+    "simulation.treating": ("TreatmentRule",),
     "io.sources": ("PlantingChoices",),
 }
 #: names that are modules themselves
@@ -144,9 +152,11 @@ __all__ = [
     "FieldmonError",
     "FileProblem",
     "Forecast",
+    "HotSpotSettings",
     "HotSpots",
     "ImportDoubt",
     "Inspections",
+    "Learning",
     "MapVerdict",
     "Monitor",
     "MonitorDay",
@@ -154,6 +164,7 @@ __all__ = [
     "ObservationError",
     "Observations",
     "Pest",
+    "PestInWeather",
     "PlantToInspect",
     "Planting",
     "PlantingChoices",
@@ -170,12 +181,16 @@ __all__ = [
     "SeasonMetrics",
     "SeasonSettings",
     "SettingError",
+    "SimulatedDay",
+    "Sprayer",
     "Spread",
     "Start",
     "Status",
     "Stops",
     "TeamMember",
     "Teamwork",
+    "TreatmentCosts",
+    "TreatmentRule",
     "Viewpoints",
     "Weather",
     "__version__",
@@ -193,6 +208,7 @@ __all__ = [
     "rover",
     "scout",
     "simulate",
+    "simulate_days",
 ]
 
 

@@ -59,6 +59,18 @@ def test_examples_run_as_they_stand(module):
     assert failed == 0
 
 
+@pytest.mark.usefixtures("_here")
+@pytest.mark.parametrize("name", [*CLASSES, *FUNCTIONS])
+def test_examples_of_public_names_need_nothing_but_the_sample_estate(name):
+    """No name of the module in which they stand, and no file that they do not make."""
+    public = FUNCTIONS.get(name) or getattr(fm, name)
+    for test in doctest.DocTestFinder().find(public, name, globs={}):
+        assert not [one.source for one in test.examples if doctest.SKIP in one.options]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ImportDoubt)
+            assert doctest.DocTestRunner().run(test).failed == 0, test.name
+
+
 def test_enough_examples_are_there():
     finder = doctest.DocTestFinder()
     tested = [

@@ -15,6 +15,7 @@ import warnings
 from dataclasses import dataclass, fields
 from datetime import UTC, date, datetime
 from datetime import time as clock
+from functools import wraps
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -137,6 +138,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     "SeasonSettings": {"believe": {"class", "function"}, "pests": {"class", "function"}},
     # where that is, the plot says
     "TeamMember": {"gate": {"list", "pair", "far pair"}},
+    "Learning": {"detection": {"empty array", "array"}},
     "Weather.chosen": {"which": {"empty array"}},
 }  # fmt: skip
 #: how sentences call parameters that they do not call by their names
@@ -300,7 +302,9 @@ def _of_settings() -> Iterator[Case]:
     for made in (fm.Application(), fm.Dose(0.5, "l/ha"), fm.ProductLabel("a"), fm.rover(), pest,
                  fm.Spread(), fm.Viewpoints(), fm.SeasonSettings(), known,
                  fm.MonitoringSettings(TODAY), fm.PriorSettings(), fm.TeamMember("a"),
-                 fm.Teamwork(), fm.AdviceSettings()):  # fmt: skip
+                 fm.Teamwork(), fm.AdviceSettings(), fm.Learning(), fm.TreatmentRule(),
+                 fm.Sprayer(), fm.TreatmentCosts(), fm.HotSpotSettings(),
+                 fm.PestInWeather(pest)):  # fmt: skip
         yield Case(type(made).__name__, type(made), _fields_of(made))
     yield Case("Application.by_label", fm.Application().by_label, {"label": None})
     yield Case("Dose.share_of", fm.Dose(0.5, "l/ha").share_of,
@@ -337,7 +341,7 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
                {"path": folder / "a.gpx", "as_format": None})  # fmt: skip
     yield Case("Start", fm.Start, _fields_of(start))
     yield Case("Monitor", fm.Monitor, {"plot": plot, "sampler": "naive", "robot": None,
-               "chance": None, "belief_settings": None, "seed": 1})  # fmt: skip
+               "chance": None, "belief_settings": None, "seed": 1, "pest": None})  # fmt: skip
     yield Case("Monitor.day_in", monitor.day_in, {"scene": day.scene})
     yield Case("Monitor.estimate", monitor.estimate, {"sure": 0.9})
     yield Case("Monitor.verdict", monitor.verdict, {"level": 0.05, "sure": 0.9})
@@ -353,6 +357,8 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
                {"plot": plot, "chance": chance, "share": 0.02, "seed": 1})  # fmt: skip
     yield Case("simulate", fm.simulate, {"plot": plot, "start": start, "sampler": "naive",
                "robot": robot, "settings": fm.SeasonSettings(n_days=2), "seed": 1})  # fmt: skip
+    yield Case("simulate_days", fm.simulate_days, {"plot": plot, "start": start,
+               "sampler": "naive", "robot": robot, "settings": None, "seed": 1})  # fmt: skip
     posed = {"plot": plot, "reward": chance, "robot": robot, "seconds": 0.1}
     yield Case("routes.best", fm.routes.best, posed | {"others": ()})
     yield Case("routes.bound", fm.routes.bound, posed | {"within_s": 0.1})
@@ -426,8 +432,14 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "verdict": on | {"level": 0.05, "sure": 0.9, "plants": None},
         "verify": {"whole": True},
     }  # fmt: skip
+
+    @wraps(season.undo)
+    def undo(**given: Any) -> object:
+        season.record(seen)  # or there is nothing to take back
+        return season.undo(**given)
+
     for name, right in methods.items():
-        yield Case(f"Season.{name}", getattr(season, name), right)
+        yield Case(f"Season.{name}", undo if name == "undo" else getattr(season, name), right)
 
 
 _NEW = "a new file"

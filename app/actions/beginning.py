@@ -17,7 +17,9 @@ from ..state import (
     assumptions,
     chosen_day,
     chosen_pest,
+    drawn_plot,
     notices,
+    plot_files,
     plot_source,
     seasons_folder,
     widget_memory,
@@ -128,7 +130,7 @@ def begin(choices: Choices) -> str:
     plot = replace(choices.plot, assumed=()) if sure else choices.plot
     Season.create(path, plot, choices.records, settings, messages, choices.risk)
     assumptions.ask(choices, "")
-    st.session_state[_FROM] = plot_source.chosen()
+    st.session_state[f"{_FROM} {path}"] = plot_source.chosen()
     plot_source.open_season(name)
     if choices.on != choices.clock.today():
         work_day.choose(name, choices.on)  # what is shown stays what it was
@@ -141,8 +143,13 @@ def another(choices: Choices) -> None:
     if choices.season.batches():
         return
     st.markdown(texts.ANOTHER_NOTE)
-    st.button(texts.ANOTHER, key="begin_another", on_click=_open_files)
+    st.button(texts.ANOTHER, key="begin_another", on_click=_open_files, args=(choices,))
 
 
-def _open_files() -> None:
-    plot_source.open_season(st.session_state.get(_FROM, plot_source.FILES))
+def _open_files(choices: Choices) -> None:
+    begun_from = st.session_state.get(f"{_FROM} {choices.season.path}")
+    field, nothing = choices.plot.field, plot_files.of_session() is None
+    # opened by its address: what it was begun from is not here; measured plants are files'
+    if begun_from is None and nothing and field.plants is None:
+        drawn_plot.bring(field)
+    plot_source.open_season(begun_from or plot_source.FILES)

@@ -140,6 +140,7 @@ def _of_files() -> dict[str, str]:
 
 
 def _from_season(name: str, work: Work) -> Choices:
+    kept_files.sync()
     with work.foot:  # the boxes above are folded on a phone
         held.wait(seasons_folder.path_of(name))
     season = cached.season(seasons_folder.path_of(name))

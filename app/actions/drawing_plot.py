@@ -61,9 +61,13 @@ def show() -> bool:
         today = (LocalClock() if drawn.at is None else clock_at(*drawn.at)).today()
         laying_ground.web_map(None, today, units())
     _so_far(drawn.corners)
+    n = len(drawn_plot.distinct(drawn.corners))
     with st.container(horizontal=True):
-        st.button(texts.OUTLINE_USE, key="outline_use", type="primary", on_click=_use)
+        st.button(texts.OUTLINE_USE, key="outline_use", type="primary", on_click=_use,
+                  disabled=n < drawn_plot.LEAST)  # fmt: skip
         st.button(texts.OUTLINE_LEAVE, key="outline_leave", on_click=drawn_plot.leave)
+    if n < drawn_plot.LEAST:
+        st.caption(texts.OUTLINE_LEAST.format(n=n))
     content = drawn_map.content(drawn, units(), dark=browser.is_dark())
     field_map.want(content, MapAnswers(drawn=_drawn))
     return True
@@ -73,11 +77,13 @@ def show() -> bool:
 
 
 def _place() -> None:
-    st.text_input(texts.OUTLINE_PLACE, key=_TYPED, placeholder="31.5012, 34.9034",
-                  help=texts.OUTLINE_PLACE_HELP)  # fmt: skip
-    with st.container(horizontal=True):
-        st.button(texts.OUTLINE_GO, key="outline_go", on_click=_go)
-        st.button(texts.OUTLINE_ADD, key="outline_add", on_click=_add)
+    # a form, whose first button Enter presses
+    with st.form("outline_place", border=False):
+        st.text_input(texts.OUTLINE_PLACE, key=_TYPED, placeholder="31.5012, 34.9034",
+                      help=texts.OUTLINE_PLACE_HELP)  # fmt: skip
+        with st.container(horizontal=True):
+            st.form_submit_button(texts.OUTLINE_GO, key="outline_go", on_click=_go)
+            st.form_submit_button(texts.OUTLINE_ADD, key="outline_add", on_click=_add)
     found: FoundPlace | None = st.session_state.get(_READ)
     if found is None:
         return

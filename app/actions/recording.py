@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
 from ..show import day, plant_history, recorded_batches
-from ..state import chosen_day, fresh_boxes, notices, unconfirmed
+from ..state import chosen_day, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
@@ -61,6 +62,7 @@ def show(choices: Choices) -> None:
         _show_file(choices)
     with treat:
         treating.show(choices)
+    kept_files.sync()  # marks are known once their table is shown
 
 
 # -- one plant
@@ -82,22 +84,21 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
 
 def _show_one(choices: Choices) -> None:
     st.caption(texts.HISTORY_TAP)
-    key = FreshBoxes(_ONE, choices).key
-    # Enter after the row would record it with the plant and the result of the plant before
-    with st.form("one_plant_form", border=False, enter_to_submit=False):
-        left, right = st.columns(2)
-        # empty: what nobody said must not be recorded by one click
-        if choices.plot.grid.row_names:
-            left.text_input(texts.HISTORY_ROW, key=key("one_row"))
-        else:
-            left.number_input(texts.HISTORY_ROW, 0, None, None, key=key("one_row"))
-        right.number_input(texts.HISTORY_PLANT, 0, None, None, key=key("one_plant"))
-        st.segmented_control(
-            texts.RESULT, [FOUND, CLEAN, SKIPPED], default=None, key=key("one_result"),
-            format_func=texts.RESULTS_OF.__getitem__,
-        )  # fmt: skip
-        st.number_input(texts.COUNT, 0, None, None, key=key("one_count"))
-        pressed = st.form_submit_button(texts.RECORD_BUTTON)
+    show = FreshBoxes(_ONE, choices).show
+    # no form: what is typed into one is the browser's alone until it is sent
+    left, right = st.columns(2)
+    # empty: what nobody said must not be recorded by one click
+    if choices.plot.grid.row_names:
+        show(left.text_input, texts.HISTORY_ROW, box="one_row", default="")
+    else:
+        show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
+    show(right.number_input, texts.HISTORY_PLANT, 0, None, box="one_plant")
+    show(
+        st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED], box="one_result",
+        format_func=texts.RESULTS_OF.__getitem__,
+    )  # fmt: skip
+    show(st.number_input, texts.COUNT, 0, None, box="one_count")
+    pressed = st.button(texts.RECORD_BUTTON, key="record_one")
     acting.once(pressed, _record_one, choices)
 
 
@@ -109,7 +110,7 @@ def _record_one(choices: Choices) -> str:
         raise SettingError(texts.ONE_UNSAID)
     plant = (
         plant_at(grid, int(row), number)
-        if said(_TAPPED) == (row, number)
+        if tuple(said(_TAPPED) or ()) == (row, number)
         else plant_meant(grid, f"{row}", int(number))
     )
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
@@ -126,31 +127,42 @@ def _show_route(choices: Choices) -> None:
     """Show the route given out for the day, or the one planned, to be marked stop by stop."""
     kept, plan = chosen_day.given_out(choices), choices.plan()
     plants = kept if len(kept) else plan.route.plant
-    label = row_label(choices.plot.grid, plants)
+    boxes = FreshBoxes(_ROUTE, choices)
+    # what was marked on another route is none of this one
+    of = zlib.crc32(np.ascontiguousarray(plants).tobytes())
+    st.caption(texts.RECORD_REST)
+    if len(kept) and len(plan.route) and not chosen_day.is_given_out(choices, plan):
+        st.caption(texts.RECORD_GIVEN_OUT)
+    done = boxes.show(
+        st.number_input, texts.RECORD_STOPS, 0, len(plants), box=f"stops_done {of}"
+    )  # fmt: skip
+    with st.container(key="route_marks"):
+        table = partial(_marks, choices, plants, boxes.key(f"marks {of}"))
+        found = boxes.show(table, box=f"marked {of}", default=[])
+    pressed = st.button(texts.RECORD_BUTTON, key="record_route", type="primary")
+    acting.once(pressed, _record_stops, choices, plants, (int(done or 0), found))
+
+
+def _marks(
+    choices: Choices, plants: np.ndarray, editor: str, *, value: list[int], key: str
+) -> list[int]:
+    """Show the stops to be marked, those of `value` marked already; return those marked now."""
+    label, stops = row_label(choices.plot.grid, plants), np.arange(len(plants)) + 1
     table = pd.DataFrame(
         {
             **day.row_column(choices.plot.grid, label.line),
             texts.COLUMN_PLANT: label.number,
-            texts.LEGEND_STATES["found"]: False,
+            texts.LEGEND_STATES["found"]: np.isin(stops, value),
         },
-        index=pd.RangeIndex(1, len(plants) + 1, name=texts.STOP_NUMBER),
+        index=pd.Index(stops, name=texts.STOP_NUMBER),
     )
-    boxes = FreshBoxes(_ROUTE, choices)
-    # what was marked on another route is none of this one
-    of = zlib.crc32(np.ascontiguousarray(plants).tobytes())
-    # Enter after typing a number must not record: the button under it would record as many again
-    with st.form("route_form", border=False, enter_to_submit=False):
-        st.caption(texts.RECORD_REST)
-        if len(kept) and len(plan.route) and not chosen_day.is_given_out(choices, plan):
-            st.caption(texts.RECORD_GIVEN_OUT)
-        done = st.number_input(texts.RECORD_STOPS, 0, len(plants), None,
-                               key=boxes.key(f"stops_done {of}"))  # fmt: skip
-        with st.container(key="route_marks"):
-            marked = st.data_editor(table, height=230, disabled=list(table.columns[:-1]),
-                                    key=boxes.key(f"marks {of}"))  # fmt: skip
-        pressed = st.form_submit_button(texts.RECORD_BUTTON, type="primary")
+    marked = st.data_editor(
+        table, height=230, disabled=list(table.columns[:-1]), key=editor
+    )  # fmt: skip
     found = marked.index[marked[texts.LEGEND_STATES["found"]]].tolist()
-    acting.once(pressed, _record_stops, choices, plants, (int(done or 0), found))
+    # what is known of it on another page: no table takes a value by its own key
+    st.session_state[key] = found
+    return found
 
 
 @notices.reporting
@@ -206,7 +218,7 @@ def _record_file(choices: Choices, name: str, data: bytes) -> str:
         if more:
             notices.warn()
         if not messages:
-            fresh_boxes.empty(_FILE)
+            boxes.empty()
     listed = "".join(f"\n- {in_words(sentence)}" for sentence in messages)
     return "\n\n".join(part for part in (corrected, said + listed if said else "") if part)
 
@@ -234,7 +246,8 @@ def recorded(
         unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form))
         return None
     unconfirmed.drop()
-    fresh_boxes.empty(form)
+    if form:
+        FreshBoxes(form, choices).empty()
     return done
 
 
@@ -331,7 +344,7 @@ def _record_instead(choices: Choices) -> str:
         return ""
     who = choices.who or ""
     done = choices.season.record_instead(waiting.results, waiting.source, who)
-    return _end_waiting(waiting, done)
+    return _end_waiting(choices, waiting, done)
 
 
 @notices.reporting
@@ -349,13 +362,15 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     if waiting is None:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
-    return _end_waiting(waiting, choices.season.record(taken, waiting.source, who, confirmed=True))
+    done = choices.season.record(taken, waiting.source, who, confirmed=True)
+    return _end_waiting(choices, waiting, done)
 
 
-def _end_waiting(waiting: Unconfirmed, done: Recorded) -> str:
+def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
     """Let nothing wait any more; return what was done."""
     unconfirmed.drop()
-    fresh_boxes.empty(waiting.form)
+    if waiting.form:
+        FreshBoxes(waiting.form, choices).empty()
     return said_of(done)
 
 

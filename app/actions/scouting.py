@@ -9,7 +9,6 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import seconds
 
 from ..show import recorded_batches
@@ -80,8 +79,8 @@ def longer(choices: Choices) -> str:
 
     Of a team it is the day of the one chosen.
     """
-    settings, history = choices.season.settings, choices.season.history
-    second = made_by(history.inspections.on(choices.on), choices.who).second
+    settings = choices.season.settings
+    second = choices.season.worked(choices.on, choices.who or "").second
     # who worked on is hours beyond the end
     gone_s = np.nanmax(np.append(second, 0.0)) - choices.season.begun_s(
         choices.on, choices.who or ""
@@ -99,7 +98,7 @@ def longer(choices: Choices) -> str:
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
     now, starts = choices.clock.now(), chosen_day.work_begins(choices)
-    begun = len(made_by(choices.season.history.inspections.on(choices.on), choices.who))
+    begun = len(choices.season.worked(choices.on, choices.who or ""))
     late = now.date() == choices.on and now > starts
     if not begun and late:
         said = texts.SCOUT_START.format(start=f"{starts:%H:%M}", now=f"{now:%H:%M}")

@@ -52,22 +52,26 @@ def show(plots: list[PlotState]) -> SharedPlots:
     if not wanted:
         st.info(texts.PLAN_ALL_NONE)
         return SharedPlots(())
+    if not crew.members():
+        st.info(texts.PLAN_ALL_NOBODY)
+        return SharedPlots(())
     with st.empty():
         bar = st.progress(0.0, texts.PLAN_ALL_WORKING)
         made = shared_plots.planned(
             wanted, crew, lambda k, n: bar.progress(k / n, texts.PLAN_ALL_WORKING)
         )
         st.empty()
-    _say(made, crew)
+    _say(made)
     return made
 
 
 def _crew() -> EstateCrew:
     usual = EstateCrew()
-    columns = st.columns(2)
-    chosen = {}
+    chosen, columns = {}, []
     for k, (name, (least, most, step)) in enumerate(_LIMITS.items()):
-        with columns[k % 2]:
+        # each row has columns of its own: on a phone, how many and their hours stay together
+        columns += st.columns(2) if k % 2 == 0 else []
+        with columns[k]:
             chosen[name] = widget_memory.show(
                 st.number_input, texts.PLAN_ALL_CREW[name], least, most, step=step,
                 key=f"crew_{name}", default=getattr(usual, name),
@@ -77,7 +81,7 @@ def _crew() -> EstateCrew:
     )
 
 
-def _say(made: SharedPlots, crew: EstateCrew) -> None:
+def _say(made: SharedPlots) -> None:
     routes = [one.route for one in made.turns]
     plants = sum(len(route) for route in routes)
     finds = sum(route.expected_found for route in routes)
@@ -94,10 +98,12 @@ def _say(made: SharedPlots, crew: EstateCrew) -> None:
         many = texts.PLAN_ALL_WAITING_MANY.format(n=len(made.waiting))
         said = texts.PLAN_ALL_WAITING.format(names=names)
         st.markdown(many if len(made.waiting) > _MOST_NAMED else said)
-    busy = {one.who for one in made.turns}
-    free = [one.name for one in crew.members() if one.name not in busy]
-    if free:
-        st.markdown(texts.PLAN_ALL_FREE.format(names=listed(free)))
+    if made.free:
+        many = texts.PLAN_ALL_FREE_MANY.format(n=len(made.free), all=made.n_members)
+        said = texts.PLAN_ALL_FREE.format(names=listed(made.free))
+        st.markdown(many if len(made.free) > _MOST_NAMED else said)
+    if made.several_kinds:
+        st.markdown(texts.PLAN_ALL_KINDS)
     for problem in (*made.closed, *made.problems):
         st.warning(problem)
     if made.turns:
@@ -112,7 +118,9 @@ def packed(made: SharedPlots) -> bytes:
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for file, one in files.items():
             archive.writestr(file, route_geojson(one.route, one.notes))
-        archive.writestr(TABLE, plan_table(files))
+        archive.writestr(
+            TABLE, plan_table(files, {one.name: () for one in made.waiting}, made.free)
+        )
     return out.getvalue()
 
 

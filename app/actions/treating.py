@@ -16,7 +16,7 @@ from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
 from fieldmon.plot.named_rows import plants_in_rows
 
-from ..state import notices, widget_memory, wishes
+from ..state import notices, wishes
 from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
 from ..words.language import in_words, listed
@@ -53,15 +53,13 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     """
     # what was typed on one page is of its own place
     boxes = FreshBoxes("treatment" if area is None else "treatment of zones", choices)
-    # Enter after one box would record the treatment before the others are said
-    with st.form("treatment_form", border=False, enter_to_submit=False):
-        if area is None:
-            _where(boxes)
-        st.number_input(texts.TREAT_EFFICACY, 0, 100, None, 5, key=boxes.key("efficacy"))
-        st.text_input(texts.TREAT_PRODUCT, key=boxes.key("product"))
-        with st.expander(texts.TREAT_RECORD):
-            _boxes(boxes)
-        pressed = st.form_submit_button(texts.TREAT_BUTTON)
+    if area is None:
+        _where(boxes)
+    boxes.show(st.number_input, texts.TREAT_EFFICACY, 0, 100, step=5, box="efficacy")
+    boxes.show(st.text_input, texts.TREAT_PRODUCT, box="product", default="")
+    with st.expander(texts.TREAT_RECORD):
+        _boxes(boxes)
+    pressed = st.button(texts.TREAT_BUTTON, key="treat")
     acting.once(pressed, _treat, choices, boxes, area, advised)
     _harvest(choices)
     with st.expander(texts.LABELS):
@@ -75,8 +73,8 @@ def _where(boxes: FreshBoxes) -> None:
         st.checkbox(texts.TREAT_SELECTED.format(plants=plants), value=True,
                     key=boxes.key(_SELECTED))  # fmt: skip
     if boxes.choices.plot.grid.in_rows:
-        st.text_input(texts.TREAT_ROWS, key=boxes.key(_ROWS), placeholder="3-5,8",
-                      help=texts.TREAT_ROWS_HELP)  # fmt: skip
+        boxes.show(st.text_input, texts.TREAT_ROWS, box=_ROWS, default="", placeholder="3-5,8",
+                   help=texts.TREAT_ROWS_HELP)  # fmt: skip
 
 
 def _plants(boxes: FreshBoxes) -> NDArray[np.bool_] | None:
@@ -91,24 +89,26 @@ def _plants(boxes: FreshBoxes) -> NDArray[np.bool_] | None:
 
 def _boxes(boxes: FreshBoxes) -> None:
     """Show what a certifier asks of each treatment."""
-    units, key = boxes.choices.units, boxes.key
+    units, show = boxes.choices.units, boxes.show
     area = texts.UNITS[units.area]
+    # each row has columns of its own: on a phone a dose stays with its unit
     left, right = st.columns(2)
-    anew = widget_memory.anew
-    anew(left.number_input, texts.TREAT_DOSE, 0.0, None, None, key=key("treat dose"))
-    right.text_input(texts.TREAT_UNIT, key=key("treat unit"), placeholder="l/ha")
+    show(left.number_input, texts.TREAT_DOSE, 0.0, None, box="treat dose")
+    show(right.text_input, texts.TREAT_UNIT, box="treat unit", default="", placeholder="l/ha")
     water = texts.TREAT_WATER.format(area=area)
-    anew(left.number_input, water, 0.0, None, None, key=key(_water(units)))
-    right.text_input(texts.TREAT_GROUP, key=key("treat group"), help=texts.TREAT_GROUP_HELP)
-    left.number_input(
-        texts.TREAT_WAIT, 0, None, None, key=key("treat days"), help=texts.TREAT_BY_LABEL
-    )
-    anew(right.number_input, texts.TREAT_ENTRY, 0.0, None, None, key=key("treat hours"),
-         help=texts.TREAT_BY_LABEL)  # fmt: skip
-    left.time_input(texts.TREAT_BEGAN, None, key=key("treat began"))
-    right.time_input(texts.TREAT_ENDED, None, key=key("treat ended"), help=texts.TREAT_ENDED_HELP)
+    left, right = st.columns(2)
+    show(left.number_input, water, 0.0, None, box=_water(units))
+    show(right.text_input, texts.TREAT_GROUP, box="treat group", default="",
+         help=texts.TREAT_GROUP_HELP)  # fmt: skip
+    by_label = texts.TREAT_BY_LABEL
+    left, right = st.columns(2)
+    show(left.number_input, texts.TREAT_WAIT, 0, None, box="treat days", help=by_label)
+    show(right.number_input, texts.TREAT_ENTRY, 0.0, None, box="treat hours", help=by_label)
+    left, right = st.columns(2)
+    show(left.time_input, texts.TREAT_BEGAN, box="treat began")
+    show(right.time_input, texts.TREAT_ENDED, box="treat ended", help=texts.TREAT_ENDED_HELP)
     for name in _TEXTS:
-        st.text_input(texts.TREAT_TEXTS[name], key=key(f"treat {name}"))
+        show(st.text_input, texts.TREAT_TEXTS[name], box=f"treat {name}", default="")
 
 
 def _water(units: UnitsInLanguage) -> str:

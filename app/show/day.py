@@ -44,10 +44,8 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
     """Return the stops of a day's route in order, as a table."""
     route = shown.route
     label = row_label(choices.plot.grid, route.plant)
-    gone = pd.to_timedelta(route.arrive_s.round(), unit="s")
-    starts = pd.Timestamp(shown.begins)
     columns = {
-        texts.COLUMN_ARRIVE: (starts + gone).strftime("%H:%M:%S"),
+        texts.COLUMN_ARRIVE: [f"{shown.at(s):%H:%M:%S}" for s in route.arrive_s.tolist()],
         **row_column(choices.plot.grid, label.line),
         texts.COLUMN_PLANT: label.number,
         texts.COLUMN_CHANCE: (100 * route.chance).round(1),

@@ -42,10 +42,10 @@ def content(drawn: DrawnCorners, units: UnitsInLanguage, *, dark: bool) -> MapCo
     return MapContent(
         place=f"drawing {drawn.at} {drawn_plot.turn()}",
         bounds=bounds(drawn), alt=texts.OUTLINE_ON_MAP.format(n=n), layers=layers,
-        switches=switches if middle else (), labels=_labels(drawn.corners, units),
+        switches=switches if middle else (),
         legend=_legend(middle is not None, units),
         draw=Drawable("outline", f"outline {drawn_plot.turn()}", said(drawn.corners, units),
-                      points=drawn.corners),
+                      points=drawn.corners, lengths=units.lengths_written()),
         ground=below,
     )  # fmt: skip
 
@@ -128,18 +128,3 @@ def _legend(is_placed: bool, units: UnitsInLanguage) -> list[dict[str, Any]]:  #
         words = texts.LEGEND_GRID.format(near=near, far=far)
     item = ("line", answers_map.GROUND, words)
     return [legends.part("", [item], "grid" if is_placed else "")]
-
-
-def _labels(corners: Points, units: UnitsInLanguage) -> list[dict[str, Any]]:
-    """Return the numbers of the corners, outside of them, and the lengths of the edges."""
-    middle = np.mean(corners, axis=0) if corners else None
-    labels = [
-        {"p": list(at), "t": f"{k}", "k": "leg", "tight": True, "gap": 9,
-         "away": (2 * np.array(at) - middle).round(7).tolist()}
-        for k, at in enumerate(corners, start=1)
-    ]  # fmt: skip
-    for k, length_m in enumerate(drawn_plot.edges_m(corners).tolist()):
-        ends = np.array([corners[k], corners[(k + 1) % len(corners)]])
-        place = ends.mean(axis=0).round(7).tolist()
-        labels.append({"p": place, "t": units.metres(length_m), "k": "edge"})
-    return labels

@@ -85,6 +85,8 @@ class Drawable:
     hint: str = ""
     snap: tuple[tuple[float, float], ...] = ()
     points: tuple[tuple[float, float], ...] = ()
+    #: of an outline: how the lengths of its edges are written, see `UnitsInLanguage`
+    lengths: tuple[tuple[float, float, str, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +211,8 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "drive": content.drive,
         "draw": draw and {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
                           "snap": [list(p) for p in draw.snap],
-                          "points": [list(p) for p in draw.points]},
+                          "points": [list(p) for p in draw.points],
+                          "lengths": [list(one) for one in draw.lengths]},
         "taps": answers.tapped is not None,
         "select": answers.selected is not None,
         "picked": run_ends(np.unique(answers.picked)).tolist(),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 from dataclasses import replace
-from datetime import timedelta
 from functools import partial
 from html import escape
 from typing import TYPE_CHECKING
@@ -162,7 +161,7 @@ def _on_route(choices: Choices, plant: int) -> str:
     stops = np.flatnonzero(shown.route.plant == plant)
     if not len(stops):
         return texts.HISTORY_NO_STOP
-    at = shown.begins + timedelta(seconds=round(float(shown.route.arrive_s[stops[0]])))
+    at = shown.at(float(shown.route.arrive_s[stops[0]]))
     return texts.HISTORY_STOP.format(n=int(stops[0]) + 1, all=len(shown.route), time=f"{at:%H:%M}")
 
 

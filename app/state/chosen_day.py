@@ -15,6 +15,7 @@ from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked
 from fieldmon.monitoring.history import made_by
 from fieldmon.planning import day_bound
+from fieldmon.plot.local_clock import grid_clock
 
 from . import cached
 
@@ -45,6 +46,12 @@ class DayRoute:
     route: Route
     begins: datetime
     worked: bool = False
+
+    def at(self, seconds: float) -> datetime:
+        """Return the local time so many seconds after the start."""
+        if self.worked:  # from one time noted to another
+            return self.begins + timedelta(seconds=round(seconds))
+        return grid_clock(self.route.aisles.grid).after(self.begins, round(seconds))
 
 
 def starts(choices: Choices, plan: DayPlan) -> datetime:

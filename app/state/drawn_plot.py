@@ -21,17 +21,21 @@ from fieldmon.io.parse.geometry import LARGEST_M2, SMALLEST_M2, area_m2, steps_m
 from fieldmon.io.parse.values import positions_in_cells
 
 from ..words import language, texts
-from . import brought_files, plot_source, widget_memory
+from . import brought_files, plot_edits, plot_files, plot_source, widget_memory
 from .brought_files import PLOT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from fieldmon.plot.field import Field
 
     from ..words.units import UnitsInLanguage
     from .plot_edits import Points
 
 #: what the corners so far are kept as
 CORNERS = "corners"
+#: corners that a plot has
+LEAST = 3
 # a plot as wide as this is a slip of a finger, or two plots
 _WIDEST_M = LARGEST_M2**0.5
 _OPEN, _TURN, _FILE = "draws a plot", "plot drawn anew", "drawn.geojson"
@@ -147,6 +151,26 @@ def use(units: UnitsInLanguage) -> None:
     st.session_state[_OPEN] = False
 
 
+def bring(field: Field) -> None:
+    """Let the plot be this one, as if it had come in a file, with what is drawn on it."""
+    parts = shapely.get_parts(field.boundary)
+    if len(parts) == 1 and not parts[0].interiors:
+        data = geojson(tuple(parts[0].exterior.coords)[:-1], field.name)
+    else:
+        shape = shapely.geometry.mapping(field.boundary)
+        feature = {"type": "Feature", "properties": {"name": field.name}, "geometry": shape}
+        data = json.dumps(feature, ensure_ascii=False).encode()
+    brought_files.keep_uploads(PLOT, (Upload(_FILE, data),))
+    drawn = [plot_edits.Edit(plot_edits.GATE, (field.gate,))] if field.gate is not None else []
+    for kind, lines in (
+        (plot_edits.PATH, shapely.get_parts(field.paths)),
+        (plot_edits.NO_GO, [area.exterior for area in shapely.get_parts(field.no_go)]),
+    ):
+        drawn += [plot_edits.Edit(kind, tuple(line.coords)) for line in lines]
+    files = plot_files.of_session()
+    plot_files.draw(plot_files.outline(files, lambda *_: 0).key, tuple(drawn))
+
+
 def _carry(old: str, new: str) -> None:
     """Let what was said and drawn of the plot hold for the corrected one, too."""
     for key, value in list(st.session_state.items()):
@@ -187,12 +211,18 @@ def _read(data: bytes) -> tuple[Points, str]:
     return tuple((float(lon), float(lat)) for lon, lat in ring[:-1]), feature["properties"]["name"]
 
 
-def checked(corners: Points, units: UnitsInLanguage) -> Points:
-    """Return corners that can be a plot, none twice in a row; else raise `SettingError`."""
+def distinct(corners: Points) -> Points:
+    """Return corners, none twice in a row."""
     made = tuple(at for k, at in enumerate(corners) if not k or at != corners[k - 1])
     while len(made) > 1 and made[-1] == made[0]:
         made = made[:-1]
-    if len(made) < 3:
+    return made
+
+
+def checked(corners: Points, units: UnitsInLanguage) -> Points:
+    """Return corners that can be a plot, none twice in a row; else raise `SettingError`."""
+    made = distinct(corners)
+    if len(made) < LEAST:
         raise SettingError(texts.OUTLINE_LEAST.format(n=len(made)))
     if (wide_m := _wide_m(made)) > _WIDEST_M:
         most, wide = units.metres(_WIDEST_M), units.metres(wide_m)

@@ -1,14 +1,25 @@
-"""Boxes for what was done on a day: empty on each day and in each season, and once it is kept."""
+"""Boxes for what was done on a day: empty on each day and in each season, and once it is kept.
+
+What was said in them and not kept yet is there again on another page and after a reload.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from datetime import time
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import streamlit as st
 
+from . import widget_memory
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from .choices import Choices
+
+T = TypeVar("T")
+_BOXES, _TIMES = "fresh boxes", "emptied "
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,26 +40,63 @@ class FreshBoxes:
     def key(self, box: str) -> str:
         """Return the key of a box."""
         place = f"{self.choices.day} {self.choices.key}"
-        return f"{box} {self.form} {st.session_state.get(_times(self.form), 0)} {place}"
+        return f"{box} {self.form} {st.session_state.get(self._times, 0)} {place}"
+
+    @property
+    def _times(self) -> str:
+        return f"{_TIMES}{self.form} {self.choices.day} {self.choices.key}"
+
+    def show(self, widget: Callable[..., T], *arguments: object, box: str, **settings: object) -> T:
+        """Show a box with what was said in it and not kept yet."""
+        _shown()[self.key(box)] = self._times
+        return widget_memory.show(widget, *arguments, key=self.key(box), **settings)
 
     def said(self, box: str) -> Any:  # noqa: ANN401 - whatever the widget holds
         """Return what a box holds; None where it is not shown."""
-        return st.session_state.get(self.key(box))
+        key = self.key(box)
+        return widget_memory.value(key) if key in _shown() else st.session_state.get(key)
 
     def put(self, box: str, value: object) -> None:
         """Let a box hold a value (for callbacks)."""
-        st.session_state[self.key(box)] = value
+        key = self.key(box)
+        _shown()[key] = self._times
+        widget_memory.put(key, value)
+        st.session_state[key] = value
 
     def empty(self) -> None:
-        """Let the boxes be empty from the next run on."""
-        empty(self.form)
+        """Let the boxes be empty from the next run on; those of another day stay as they are."""
+        for key in [key for key, of in _shown().items() if of == self._times]:
+            del _shown()[key]
+        st.session_state[self._times] = st.session_state.get(self._times, 0) + 1
 
 
-def empty(form: str) -> None:
-    """Let the boxes of a form be empty from the next run on; of no form: nothing."""
-    if form:
-        st.session_state[_times(form)] = st.session_state.get(_times(form), 0) + 1
+def unfinished() -> dict[str, Any]:
+    """Return what was said in all boxes and not kept yet, as JSON can hold it; empty: nothing."""
+    said = {key: [of, widget_memory.value(key)] for key, of in _shown().items()}
+    boxes = {
+        key: [of, str(one) if isinstance(one, time) else one]
+        for key, (of, one) in said.items()
+        if one not in (None, "", [])
+    }
+    if not boxes:
+        return {}
+    state = {str(key): value for key, value in st.session_state.items()}
+    return {
+        "boxes": boxes,
+        "times": {key: n for key, n in state.items() if key.startswith(_TIMES)},
+    }
 
 
-def _times(form: str) -> str:
-    return f"emptied {form}"
+def take(said: dict[str, Any]) -> None:
+    """Let boxes begin with what was said in them before a reload, as `unfinished` returned it."""
+    st.session_state.update(said.get("times", {}))
+    for key, (of, value) in said.get("boxes", {}).items():
+        _shown()[key] = of
+        is_time = isinstance(value, str) and key.startswith(("treat began ", "treat ended "))
+        widget_memory.first(key, time.fromisoformat(value) if is_time else value)
+
+
+def _shown() -> dict[str, str]:
+    """Return the count of each box that may hold something: how often its form was emptied."""
+    shown: dict[str, str] = st.session_state.setdefault(_BOXES, {})
+    return shown

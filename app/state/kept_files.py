@@ -1,5 +1,6 @@
-"""What a session brought and said of it, kept on this machine: a reload finds it again.
+"""What a session brought, said of it, or typed and did not record yet, is kept on this machine.
 
+A reload finds it again.
 The way back is a long random word in the address. Whoever has it sees the files; who does not
 cannot guess it. Who came by it changes nothing for others who did: the first change is kept under
 a word of one's own. What nobody came back to for a day is removed.
@@ -24,7 +25,7 @@ import streamlit as st
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.options import Upload
 
-from . import brought_files, plot_edits, widget_memory
+from . import brought_files, fresh_boxes, plot_edits, widget_memory
 from .brought_files import File
 
 #: the word in the address that leads back to the files
@@ -94,6 +95,7 @@ def _restore(word: str) -> None:
     st.session_state.update(edits)
     for key, value in said["boxes"].items():
         widget_memory.first(key, value)
+    fresh_boxes.take(said.get("unfinished", {}))
     st.session_state[_CAME_BY], st.session_state[_SAVED] = word, _said(brought_files.brought())
     os.utime(here)
 
@@ -112,7 +114,7 @@ def _keep() -> None:
     if st.session_state.get(_SAVED) == said or not _is_ours():
         return
     word, came_by = st.session_state[_SESSION], st.session_state.pop(_CAME_BY, "")
-    if not files:
+    if not files and not said["unfinished"]:
         if word:
             shutil.rmtree(folder() / word, ignore_errors=True)
         st.session_state[_SESSION], st.session_state[_SAVED] = "", said
@@ -148,7 +150,11 @@ def _said(files: dict[str, File]) -> dict[str, Any]:
     }
     named = {k: (file.key, [part.name for part in _parts(file)]) for k, file in files.items()}
     boxes = widget_memory.values_of(_BOXES)
-    return {"files": named, "answers": answers, "edits": edits, "boxes": boxes}
+    unfinished = fresh_boxes.unfinished()
+    return {
+        "files": named, "answers": answers, "edits": edits, "boxes": boxes,
+        "unfinished": unfinished,
+    }  # fmt: skip
 
 
 def _parts(file: File) -> tuple[Upload, ...]:

@@ -53,9 +53,11 @@ class EstateCrew:
     scout_hours: float = 8.0
     move_min: float = 15.0
 
-    def members(self) -> tuple[TeamMember, ...]:
-        """Return who works, robots first."""
-        robot, walker = Robot(hours=self.robot_hours), replace(scout(), hours=self.scout_hours)
+    def members(self, kind: Robot | None = None) -> tuple[TeamMember, ...]:
+        """Return who works, robots first; they are of a `kind`, or None: of the usual ones."""
+        usual = {False: Robot(), True: scout()} | ({} if kind is None else {kind.on_foot: kind})
+        robot = replace(usual[False], hours=self.robot_hours)
+        walker = replace(usual[True], hours=self.scout_hours)
         return (
             *(TeamMember(texts.ROBOT_NAMED.format(n=k + 1), robot) for k in range(self.robots)),
             *(TeamMember(texts.SCOUT_NAMED.format(n=k + 1), walker) for k in range(self.scouts)),
@@ -74,13 +76,17 @@ class PlannedTurn(EstateRoute):
 class SharedPlots:
     """The plan: its turns, plots for which there is no time, and plots that cannot be planned.
 
-    And what is left off as people may not be there yet.
+    And what is left off as people may not be there yet, who has no plot, of how many, and whether
+    the plots have robots of several kinds, so that the usual one is taken.
     """
 
     turns: tuple[PlannedTurn, ...]
     waiting: tuple[PlotState, ...] = ()
     problems: tuple[str, ...] = ()
     closed: tuple[str, ...] = ()
+    free: tuple[str, ...] = ()
+    n_members: int = 0
+    several_kinds: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +123,11 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
             ready.append(_ready(plot))
         except FieldmonError as error:
             problems.append(f"{texts.isolated(plot.name)}: {of_error(error)}")
-    members = crew.members()
     known = [one.known for one in ready]
+    seasons = [one.season for one in known if one.season is not None]
+    # plots of files have the usual robot
+    kind = estate_day.one_robot(seasons) if len(seasons) == len(known) else None
+    members = crew.members(kind)
     shared = estate_day.share_estate(known, members, STARTS, 60.0 * crew.move_min)
     said = [one.closed_in_words(closed) for one, closed in zip(ready, shared.closed, strict=True)]
     turns, waiting = [], {*shared.waiting}
@@ -142,6 +151,9 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
             for one, sentences in zip(ready, said, strict=True)
             for sentence in sentences
         ),
+        tuple(one.name for one in members if one.name not in {turn.who for turn in turns}),
+        len(members),
+        several_kinds=kind is None and bool(seasons),
     )
 
 

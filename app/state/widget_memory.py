@@ -106,7 +106,7 @@ def show(
 def anew(widget: Callable[..., T], *arguments: object, **settings: object) -> T:
     """Show a widget that begins anew on each page, its number written as `show` writes it."""
     numbers = (*arguments[1:], settings.get("value"), settings.get("step"))
-    if widget.__name__ == "number_input" and any(isinstance(one, float) for one in numbers):
+    if _name(widget) == "number_input" and any(isinstance(one, float) for one in numbers):
         settings["format"] = _SHORTEST
     return widget(*arguments, **settings)
 
@@ -119,13 +119,17 @@ def _own_default(
     A run that is followed at once by another never reaches the browser, nor does the value set in
     it: a box then fell back to its least number, and a choice to none.
     """
-    name = widget.__name__
+    name = _name(widget)
     if name in {"selectbox", "radio"}:
         options: list[object] = list(arguments[1])  # type: ignore[call-overload]
         return {"index": options.index(value)} if value in options else {}
     if name in {"pills", "segmented_control", "multiselect"}:
         return {"default": value}
     return {"value": value}
+
+
+def _name(widget: Callable[..., object]) -> str:
+    return getattr(widget, "__name__", "")
 
 
 def _values() -> dict[str, tuple[str, Any]]:

@@ -422,6 +422,9 @@ PLAN_ALL_WAITING_MANY = (
     "No time today for {n} plots: those of the table beside which nobody stands."
 )
 PLAN_ALL_FREE = "Free today: {names}."
+PLAN_ALL_FREE_MANY = "Free today: {n} of {all}."
+PLAN_ALL_KINDS = "The plots have robots of several kinds: here all are of the usual one."
+PLAN_ALL_NOBODY = "Nobody works: give one robot or scout, or more."
 PLAN_ALL_WORKING = "Planning the plots ..."
 PLAN_ALL_DOWNLOAD = "Download all routes"
 PLAN_ALL_COLUMNS = {"who": "who", "when": "when", "finds": "finds"}

@@ -10,7 +10,7 @@ from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
 from fieldmon.compute.wording import hours_figure
 
 from . import texts
-from .language import day_and_month, in_words, together, weekday
+from .language import day_and_month, in_words, number, separators, together, weekday
 
 __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 
@@ -63,6 +63,21 @@ class UnitsInLanguage(library.Units):
     def short_day(self, on: date) -> str:
         """Return a date without its weekday and year, for the axes of charts."""
         return day_and_month(on, month_first=DATES[self.date_like].startswith("%m"))
+
+    def lengths_written(self) -> tuple[tuple[float, float, str, str], ...]:
+        """Return how `metres` writes lengths, for the browser to do so too: short and long ones.
+
+        Each from how many metres on, its unit in metres, what a browser writes its number by, text.
+
+        >>> UnitsInLanguage().lengths_written()[0][:3]
+        (0.0, 1.0, '0')
+        """
+        mark, long_m = separators()[0], 1609.344 if self.length == "ft" else 1000.0
+        short, far = self.metres(0.0), self.metres(long_m)
+        return (
+            (0.0, LENGTHS[self.length], "0", short.replace("0", "{n}")),
+            (long_m, long_m, f"0{mark}00", far.replace(number(1.0, ".2f"), "{n}")),
+        )
 
     def lengths(self) -> list[tuple[float, str]]:
         """Return the round lengths for scale bars, shortest first: in metres and as text."""

@@ -188,33 +188,28 @@ def tell_not_come(on: date, field: Field, what: str) -> None:
 
 
 def tell_clock_change(start: datetime, hours: float, field: Field) -> None:
-    """Print that clocks change while a day is worked, if so: arrivals do not know it."""
+    """Print that clocks are put back in a season's work, if so: an hour comes twice in its file."""
     from fieldmon.plot.local_clock import local_clock
 
     moved_min = local_clock(field).put_forward(start, 3600 * hours).total_seconds() / 60
-    if not moved_min:
-        return
-    way, shown = ("forward", "early") if moved_min > 0 else ("back", "late")
-    typer.echo(
-        f"doubtful: Clocks are put {way} by {abs(moved_min):.0f} min during this day: arrivals "
-        f"after that are {abs(moved_min):.0f} min too {shown}.",
-        err=True,
-    )
+    if moved_min < 0:
+        typer.echo(
+            f"doubtful: Clocks are put back by {-moved_min:.0f} min during this work: once "
+            f"something found after that is recorded, {-moved_min:.0f} min too many of its hours "
+            "are left.",
+            err=True,
+        )
 
 
 def tell_past_midnight(on: date, settings: MonitoringSettings) -> None:
-    """Print that a season's work goes past midnight, if so: what is found then is of the next day.
-
-    That day's own work begins with fewer hours.
-    """
+    """Print that a season's work goes past midnight, if so: what is found then has another date."""
     start = datetime.combine(on, settings.starts)
     team = (timedelta(seconds=m.starts_s, hours=m.robot.hours) for m in settings.team)
     ends = start + max(team, default=timedelta(hours=settings.robot.hours))
     if ends.date() > start.date() and ends.time() != time():
         typer.echo(
-            f"doubtful: The work goes past midnight, to {ends:%H:%M}: what is found after that "
-            f"counts for {ends.date()}, whose own work then has fewer hours left. Let it end by "
-            "midnight: fieldmon change --start HH:MM, or --hours.",
+            f"seen: The work goes past midnight, to {ends:%H:%M}: what is found after that counts "
+            f"for {ends.date()}. To plan the rest of the work then, give --date {on}.",
             err=True,
         )
 

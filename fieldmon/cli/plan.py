@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_unusable
+from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     sampler_of,
@@ -116,7 +116,6 @@ def _plan_one(options: PlanOptions) -> None:
     prior = prior_of(pest_in_weather, begins.date(), options.background)
     settings = PlanSettings(robot, sampler, prior)
     tell_unusable(known.records, on, prior)
-    tell_clock_change(begins, robot.hours, known.plot.field)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
         raise SettingError(
@@ -146,7 +145,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
 
     worker, starts = options.worker, options.starts()
     # what cannot be is refused before any plot is read
-    robot = worker.robot()
+    worker.robot()
     sampler_of(options.sampler, options.every)
     request, folder = _request_of_all(options), _folder(options.output)
     plots = estate(request)
@@ -167,7 +166,6 @@ def _plan_every_plot(options: PlanOptions) -> None:
         at=starts.at,
     )
     tell_unusable(plots.records.anywhere, orders.day, orders.prior)
-    tell_clock_change(begins, robot.hours, plots.fields[0])
     plan_all(plots, orders, EstateDay(plots.records, folder, begins))
 
 

@@ -71,7 +71,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
             "The working day must be long enough to reach another plant and come back, but "
             f"{left_h:.1f} h are left of {on}. Plan another day with --date."
         )
-    seen = season.history.on(today.scene.day)
+    seen = season.worked(on)
     done = f"{len(seen)} done, " if len(seen) else ""
     infested = float(season.evening(on)[route.plant].sum())
     typer.echo(f"{on}: {done}{day_in_words(route, infested)}")
@@ -191,7 +191,7 @@ def _plan_team(
             f"Somebody must have time to reach another plant and come back, but nobody has on "
             f"{on}. Plan another day with --date."
         )
-    done = len(season.history.on(days[0].scene.day))
+    done = sum(len(season.worked(on, one.name)) for one in team)
     typer.echo(f"{on}{f': {done} done' if done else ''}")
     for member, today in zip(team, days, strict=True):
         if (notes := today.route.notes) is not None and notes.start is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_unusable
+from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.pest_options import prior_of
 from fieldmon.cli.preparing import prepared
@@ -54,7 +54,6 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     members = tuple(replace(one, robot=options.pest_options.seen(one.robot)) for one in members)
     on = np.datetime64(begins.date(), "D")
     tell_unusable(known.records, on, prior)
-    tell_clock_change(begins, max(one.robot.hours for one in members), plot.field)
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
     with counting("Routes") as count:
         planned = team.plan_team(

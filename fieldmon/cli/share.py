@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from fieldmon.cli.messages import (
     assumed_in_words,
     tell_assumed_of_plots,
-    tell_clock_change,
     tell_drafts,
 )
 from fieldmon.cli.option_groups import with_options
@@ -32,6 +30,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.estate_day import EstatePlot
     from fieldmon.monitoring.estate_routes import EstateRoute
     from fieldmon.planning.members import TeamMember
+    from fieldmon.plot.robot import Robot
 
 Seasons = Annotated[
     list[Path], typer.Argument(help="Season files, made by fieldmon init; a plot each.")
@@ -44,7 +43,10 @@ Folder = Annotated[
 ]
 Formats = Annotated[
     list[str] | None,
-    typer.Option("--format", help="Format of the routes, as often as wanted: geojson, gpx, nav2."),
+    typer.Option(
+        "--format",
+        help="Format of the routes, as often as wanted: geojson, gpx, csv, sheet, nav2 and so on.",
+    ),
 ]
 Also = Annotated[
     bool, typer.Option("--all", help="Also plots that were inspected in the last three days.")
@@ -66,6 +68,14 @@ class ShareOptions:
     worker: WorkerOptions = field(default_factory=WorkerOptions)
 
 
+class _SharedDay(NamedTuple):
+    """What comes of it: the routes, plots to which nobody goes with what is closed, who is free."""
+
+    routes: list[EstateRoute]
+    waiting: dict[str, list[str]]
+    free: list[str]
+
+
 @with_options
 def share(options: ShareOptions) -> None:
     """Share one day between the seasons that are due: who inspects which plot, when and where.
@@ -74,10 +84,11 @@ def share(options: ShareOptions) -> None:
     infested plants expected comes first; hours are shared by what is expected. A plot that would
     get less than a quarter of an hour waits. The seasons are not changed.
 
+    Their robot works where nobody else is told, and the routes go into a new folder.
+
     Example: fieldmon share gate.gpkg hill.gpkg nursery.gpkg --robots 2 --hours 6 -o monday
     Example: fieldmon share *.gpkg --robots crew.csv --format geojson --format gpx
     """
-    members, starts = _members(options)
     endings = _endings(options.formats or ["geojson"])
     seasons = opened(options.seasons)
     plots = [*_due(seasons, day(options.on), every=options.not_due)]
@@ -86,19 +97,50 @@ def share(options: ShareOptions) -> None:
             "At least one season must have begun and be due, but none has and is. Plan those seen "
             "in the last three days with --all, or another day with --date."
         )
-    first = min(plot.on for plot in plots)
-    _tell_clock_changes(plots, members, starts)
-    routes = _planned(plots, members, starts, 60.0 * options.move)
+    folder = options.output or Path(f"day-{min(plot.on for plot in plots)}")
+    _require_empty(folder)
+    members, starts = _members(options, [one.season for one in plots if one.season is not None])
+    made = _planned(plots, members, starts, 60.0 * options.move)
     tell_assumed_of_plots({_name(plot): _assumed(plot, members) for plot in plots})
-    if not routes:
-        raise SettingError("Somebody must have time to inspect a plot, but nobody has.")
-    _write(options.output or Path(f"day-{first}"), routes, endings)
+    if not made.routes:
+        raise SettingError(
+            "Somebody must be able to inspect a plot within the hours, but nobody is: the plots "
+            "are closed, as said above, or the hours are too short."
+        )
+    _write(folder, made, endings)
 
 
-def _members(options: ShareOptions) -> tuple[tuple[TeamMember, ...], time]:
-    """Return who works, and when the first of them starts."""
-    usual = clock(options.start)
-    members, starts = members_of(options.robots or "1", usual, options.worker)
+def _require_empty(folder: Path) -> None:
+    """Refuse a folder that holds anything: an earlier day's routes may be filled in."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise SettingError(
+            f"The routes must go into a new or empty folder, but {folder} holds something. Choose "
+            "another one with --output, or move away what it holds."
+        )
+
+
+def _members(
+    options: ShareOptions, seasons: Sequence[Season]
+) -> tuple[tuple[TeamMember, ...], time]:
+    """Return who works, and when the first of them starts: the seasons' robot, if not told."""
+    from fieldmon.monitoring.estate_day import one_robot
+
+    worker, told = options.worker, options.robots or "1"
+    robot = None if worker.scout or worker.rover else one_robot(seasons)
+    if robot is not None:
+        robot = worker.said_of(robot)
+    elif told.isdecimal() and not (worker.scout or worker.rover):
+        raise SettingError(
+            "The seasons must work with one robot, but they have several. Say who works: --scout, "
+            "--rover, or a table with --robots."
+        )
+    hours = {one.hours for season in seasons for one in _robots(season)}
+    if told.isdecimal() and worker.hours is None and len(hours) > 1:
+        listed = " and ".join(f"{one:g}" for one in sorted(hours))
+        raise SettingError(
+            f"The day must have one length, but the seasons have {listed} h. Say it with --hours."
+        )
+    members, starts = members_of(told, clock(options.start), worker, robot)
     if fixed := [one.name for one in members if one.gate is not None]:
         raise SettingError(
             "Who works on several plots must start at each plot's own gate, but the table tells "
@@ -107,11 +149,22 @@ def _members(options: ShareOptions) -> tuple[tuple[TeamMember, ...], time]:
     return members, starts
 
 
-def _endings(formats: Sequence[str]) -> list[str]:
-    """Return the endings of the formats that are named."""
-    from fieldmon.io.writers.handoff import format_of
+def _robots(season: Season) -> list[Robot]:
+    settings = season.settings
+    return [one.robot for one in settings.team] or [settings.robot]
 
-    return [format_of(Path(), one).endings[0] for one in dict.fromkeys(formats)]
+
+def _endings(formats: Sequence[str]) -> list[str]:
+    """Return the endings of the formats that are named, by their names or endings."""
+    from fieldmon.io.writers.handoff import FORMATS, format_of
+
+    def ending(one: str) -> str:
+        if one.lower() in FORMATS or not (bare := one.lower().strip(".")):
+            return format_of(Path(), one).endings[0]
+        known = {e.strip(".") for chosen in FORMATS.values() for e in chosen.endings}
+        return f".{bare}" if bare in known else format_of(Path(), one).endings[0]
+
+    return [*dict.fromkeys(map(ending, formats))]
 
 
 def _name(plot: EstatePlot) -> str:
@@ -145,16 +198,6 @@ def _due(seasons: Sequence[Season], told: date | None, *, every: bool) -> Iterat
             typer.echo(f"{season.path.stem} was inspected {ago} and is not due.")
 
 
-def _tell_clock_changes(
-    plots: Sequence[EstatePlot], members: Sequence[TeamMember], starts: time
-) -> None:
-    """Print that clocks change in these hours, if so: once, as the plots of an estate lie near."""
-    plot = plots[0]
-    if plot.season is not None:
-        hours = max(one.starts_s / 3600 + one.robot.hours for one in members)
-        tell_clock_change(datetime.combine(plot.on, starts), hours, plot.season.plot.field)
-
-
 def _assumed(plot: EstatePlot, members: tuple[TeamMember, ...]) -> str:
     if plot.season is None:
         return ""
@@ -166,7 +209,7 @@ def _planned(
     members: Sequence[TeamMember],
     starts: time,
     move_s: float,
-) -> list[EstateRoute]:
+) -> _SharedDay:
     """Return the routes in the order of who works; say what is left off, waits and is free."""
     from fieldmon.compute.units import Units
     from fieldmon.monitoring.closures import left_off_in_words
@@ -179,14 +222,14 @@ def _planned(
         left_off_in_words(closed, (one.scene.grid, one.season.label), Units())
         for one, closed in zip(plots, shared.closed, strict=True)
     ]  # fmt: skip
-    routes, waiting = [], {*shared.waiting}
+    routes, worked = [], set()
     with progress("Routes", len(shared.turns)) as bar:
         for turn in shared.turns:
             route, plot = turn.plan().route, plots[turn.plot]
             bar.update(1)
             if not len(route):
-                waiting.add(turn.plot)
                 continue
+            worked.add(turn.plot)
             sampler = "" if plot.season is None else plot.season.settings.sampler
             routes.append(
                 EstateRoute(
@@ -199,36 +242,30 @@ def _planned(
     for plot, sentences in zip(plots, said, strict=True):
         for sentence in sentences:
             typer.echo(f"seen: {_name(plot)}: {sentence}", err=True)
-    if waiting:
-        typer.echo(f"No time for {', '.join(_name(plots[k]) for k in sorted(waiting))}.")
+    without = sorted({*range(len(plots))} - worked)
+    if late := [_name(plots[k]) for k in without if not said[k]]:
+        typer.echo(f"No time for {', '.join(late)}.")
     busy = {one.who for one in routes}
     if free := [one.name for one in members if one.name not in busy]:
         typer.echo(f"Without a plot: {', '.join(free)}.")
-    return routes
+    waits = {_name(plots[k]): [*map(str, said[k])] for k in without}
+    return _SharedDay(routes, waits, free)
 
 
-def _write(folder: Path, routes: Sequence[EstateRoute], endings: Sequence[str]) -> None:
-    """Write the routes and their table in place of those of an earlier run."""
+def _write(folder: Path, made: _SharedDay, endings: Sequence[str]) -> None:
+    """Write the routes and their table."""
     from fieldmon.io.atomic_write import write_whole
-    from fieldmon.monitoring.estate_routes import TABLE, files_named, plan_table, stems
+    from fieldmon.monitoring.estate_routes import TABLE, plan_table, stems
 
     folder.mkdir(parents=True, exist_ok=True)
-    table = folder / TABLE
-    if table.is_file():
-        for file in files_named(table.read_bytes()):
-            (folder / Path(file).name).unlink(missing_ok=True)
-        table.unlink()
     files = {}
-    for stem, one in stems(routes).items():
-        route, names = (
-            replace(one.route, notes=one.notes),
-            [f"{stem}{ending}" for ending in endings],
-        )
-        made = [path for file in names for path in route.to_file(folder / file)]
-        files[" ".join(path.name for path in made)] = one
-    write_whole(table, plan_table(files))
-    plants = sum(len(one.route) for one in routes)
+    for stem, one in stems(made.routes).items():
+        route = replace(one.route, notes=one.notes)
+        written = [path for end in endings for path in route.to_file(folder / f"{stem}{end}")]
+        files[" ".join(dict.fromkeys(path.name for path in written))] = one
+    write_whole(folder / TABLE, plan_table(files, made.waiting, made.free))
+    plants = sum(len(one.route) for one in made.routes)
     typer.echo(
-        f"{counted(len(routes), 'plot')}, {counted(plants, 'plant')}. Routes and {TABLE} in "
+        f"{counted(len(made.routes), 'plot')}, {counted(plants, 'plant')}. Routes and {TABLE} in "
         f"{folder}"
     )

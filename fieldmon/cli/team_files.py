@@ -19,26 +19,34 @@ if TYPE_CHECKING:
     from fieldmon.cli.options import WorkerOptions
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
+    from fieldmon.plot.robot import Robot
 
 _NOT_IN_A_NAME = re.compile(r"[^\w-]+")
 
 
 def members_of(
-    robots: str, usual: time, worker: WorkerOptions
+    robots: str, usual: time, worker: WorkerOptions, robot: Robot | None = None
 ) -> tuple[tuple[TeamMember, ...], time]:
-    """Return the team of ``--robots``, and the local time at which the first of it starts."""
+    """Return the team of ``--robots``, and the local time at which the first of it starts.
+
+    `robot` is what its robots are; None: as the options of the worker have it.
+    """
+    usual_robot = worker.robot() if robot is None else robot
     from fieldmon.io.readers.team import read_team
     from fieldmon.planning.members import TeamMember, team_of
 
     if robots.isdecimal():
-        return team_of(int(robots), worker.robot()), usual
+        return team_of(int(robots), usual_robot), usual
     stated = read_team(Path(robots))
     starts = [usual if one.start is None else clock(one.start, "start") for one in stated]
     first = min(starts)
     members = [
         TeamMember(
             one.name,
-            replace(replace(worker, scout=worker.scout or one.scout).robot(), **one.settings),  # type: ignore[arg-type]
+            replace(
+                replace(worker, scout=True).robot() if one.scout else usual_robot,
+                **one.settings,  # type: ignore[arg-type]
+            ),
             one.gate,
             60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute),
         )

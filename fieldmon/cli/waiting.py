@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fieldmon.compute.jit_progress import FIRST_USE
+from fieldmon.compute.jit_progress import COMPILING, FIRST_USE, LEAST_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 _SILENT_S = 2.0
 _EVERY_S = 0.5
 _WORKING = "Working, {seconds:.0f} s"
-_COMPILING = "Compiling fieldmon for this machine, once; this may take a minute ..."
 _WIPE = "\r\x1b[K"
 
 
@@ -71,14 +70,14 @@ class Waiting:
                 _show(text)
 
     def _compiling(self, compiled: int, seconds: float) -> None:
-        if seconds < 1.0:
+        if seconds < LEAST_S:
             return
         if sys.stderr.isatty():
-            said = f"{_COMPILING} {compiled} parts so far" if FIRST_USE.is_busy else ""
+            said = f"{COMPILING} {compiled} parts so far" if FIRST_USE.is_busy else ""
             _show(f"{_WIPE}{said}")
         elif not self._compiling_said:
             self._compiling_said = True
-            typer.echo(_COMPILING, err=True)
+            typer.echo(COMPILING, err=True)
 
 
 def _show(text: str) -> None:

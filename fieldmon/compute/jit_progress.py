@@ -1,7 +1,9 @@
-"""Who is told that inner loops are being compiled: once an installation, for up to a minute."""
+"""Who is told that inner loops are being compiled: once an installation, for a minute or two."""
 
 from __future__ import annotations
 
+import sys
+from multiprocessing import parent_process
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -11,15 +13,24 @@ if TYPE_CHECKING:
     #: told when a loop's compiling begins or ends: loops compiled so far, seconds since the first
     Listener = Callable[[int, float], None]
 
+COMPILING = "Compiling fieldmon for this machine, once; this may take two minutes ..."
+#: what takes less is not said
+LEAST_S = 1.0
+
 
 class FirstUse:
-    """Counts the loops that this process had to compile, and tells whoever asked last."""
+    """Counts the loops that this process had to compile, and tells whoever asked last.
+
+    Where nobody asked, as in a program of one's own, it says so once on standard error, if
+    somebody sits there: at a terminal or before a notebook.
+    """
 
     def __init__(self) -> None:
         self.compiled = 0
         self._depth = 0
         self._since = self._began = self._took_s = 0.0
         self._listener: Listener | None = None
+        self._said = False
 
     def tell(self, listener: Listener) -> None:
         """Tell `listener` from now on, and nobody else."""
@@ -62,8 +73,20 @@ class FirstUse:
         self._say()
 
     def _say(self) -> None:
+        seconds = monotonic() - self._since
         if self._listener is not None:
-            self._listener(self.compiled, monotonic() - self._since)
+            self._listener(self.compiled, seconds)
+        elif seconds >= LEAST_S and not self._said and _somebody_sees():
+            self._said = True
+            sys.stderr.write(f"{COMPILING}\n")
+            sys.stderr.flush()
+
+
+def _somebody_sees() -> bool:
+    """Return whether somebody sees what this process writes to standard error."""
+    if sys.stderr is None or parent_process() is not None:
+        return False
+    return sys.stderr.isatty() or "ipykernel" in sys.modules
 
 
 FIRST_USE = FirstUse()

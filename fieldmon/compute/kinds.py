@@ -33,6 +33,7 @@ _INSTEAD = {
     "time": "Give time(6).",
     "MonitoringSettings": "Begin with season.settings.",
     "Robot": "Give Robot(hours=4), or scout() for a person on foot.",
+    "PestInWeather": "Give PestInWeather(pest, weather, date(2026, 11, 18)).",
     "Plot": "Give the plot itself, as read_plot returns it; its plants are plot.grid.",
     "PlantGrid": "Give plot.grid.",
     "Inspections": "Read them with read_inspections(path, plot), or give Inspections.of(...).",

@@ -45,9 +45,10 @@ class Dose:
 
     Examples
     --------
-    >>> Dose(50, "ml/dunam").share_of(Dose(1, "l/ha"))
+    >>> import fieldmon as fm
+    >>> fm.Dose(50, "ml/dunam").share_of(fm.Dose(1, "l/ha"))
     0.5
-    >>> Dose(0.1, "%").share_of(Dose(1, "l/ha"), water_l_ha=800)
+    >>> fm.Dose(0.1, "%").share_of(fm.Dose(1, "l/ha"), water_l_ha=800)
     0.8
     """
 
@@ -77,7 +78,8 @@ class Dose:
 
         Examples
         --------
-        >>> Dose.of("0,5 l/ha")
+        >>> import fieldmon as fm
+        >>> fm.Dose.of("0,5 l/ha")
         Dose(value=0.5, unit='l/ha')
         """
         from fieldmon.io.parse.values import told_number  # noqa: PLC0415 - commands start without

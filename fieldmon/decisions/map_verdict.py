@@ -14,7 +14,7 @@ from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pair_chances
-from fieldmon.infestation.plot_estimate import doubted, draw_fields
+from fieldmon.infestation.plot_estimate import doubted, draw_fields, known_infested
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -103,8 +103,8 @@ class AskedVerdict:
     since
         What the number may have become on days without inspections (`Belief.since_inspected`).
     found
-        ``(n,)`` plants that were found infested and left: of them nothing is in doubt. None: there
-        are none.
+        ``(n,)`` plants of which nothing is in doubt, as they were found infested and left or are
+        told to be infested. None: there are none.
 
     Raises
     ------
@@ -127,7 +127,8 @@ class AskedVerdict:
         found: NDArray[np.bool_] | None = None,
     ) -> AskedVerdict:
         """Return what is asked of a belief, which says itself how doubtful its number is."""
-        return cls(level, sure, belief.doubt_of_rates, belief.since_inspected, found)
+        known = known_infested(belief, found)
+        return cls(level, sure, belief.doubt_of_rates, belief.since_inspected, known)
 
     def __post_init__(self) -> None:
         if not 0.0 < self.level < 1.0:

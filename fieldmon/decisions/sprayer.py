@@ -47,6 +47,12 @@ class Sprayer:
     ------
     SettingError
         If a number is below 0, or beyond any plot.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.AdviceSettings(sprayer=fm.Sprayer(rows=0)).sprayer.rows
+    0
     """
 
     rows: int = 2
@@ -67,6 +73,15 @@ class Sprayer:
     ) -> Sprayer:
         """Return the sprayer of a boom: as many rows a section as stand under one, at least one.
 
+        Parameters
+        ----------
+        boom_m, sections
+            The boom's width, and how many sections it has.
+        row_spacing_m
+            From row to row.
+        least_on_m
+            Least length of a stretch, and of a gap.
+
         Raises
         ------
         SettingError
@@ -74,7 +89,8 @@ class Sprayer:
 
         Examples
         --------
-        >>> Sprayer.of_boom(12.0, 4, row_spacing_m=1.5).rows
+        >>> import fieldmon as fm
+        >>> fm.Sprayer.of_boom(12.0, 4, row_spacing_m=1.5).rows
         2
         """
         if not (boom_m > 0.0 and sections >= 1):
@@ -114,6 +130,12 @@ class TreatmentCosts:
     ------
     SettingError
         If a number cannot be.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.AdviceSettings(costs=fm.TreatmentCosts(per_ha=120)).costs.per_ha
+    120
     """
 
     per_ha: float = 100.0

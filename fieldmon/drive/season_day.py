@@ -14,6 +14,7 @@ from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspe
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.wishes import Wishes
+from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -109,7 +110,9 @@ class SeasonDay(AskedDay):
         self._tell(found, at_s)
 
     def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
-        one = as_inspection(stop.plant, found, (self._on, self.begun_s + now_s))
+        clock = grid_clock(self._season.plot.grid)
+        at_s = clock.second_after(self._on, self.begun_s, now_s)
+        one = as_inspection(stop.plant, found, (self._on, at_s))
         self._season.record(one, self._source, into=self.batch)
 
     def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001

@@ -17,6 +17,7 @@ from fieldmon.drive.season_day import (
 )
 from fieldmon.errors import SettingError
 from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE, travel_s
 
 if TYPE_CHECKING:
@@ -174,7 +175,9 @@ class MemberDay(AskedDay):
 
     def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
         team = self._team
-        one = as_inspection(stop.plant, found, (team.on, self.begun_s + now_s), self._member.name)
+        clock = grid_clock(team.season.plot.grid)
+        at_s = clock.second_after(team.on, self.begun_s, now_s)
+        one = as_inspection(stop.plant, found, (team.on, at_s), self._member.name)
         team.season.record(one, team.source, into=team.batch)
 
     def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001

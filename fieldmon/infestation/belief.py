@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -31,6 +32,12 @@ class Learning:
         (infestations come in clusters; our choice).
     treated
         Whether a find is destroyed at once (the thesis's rule), or only flagged.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.SeasonSettings(learning=fm.Learning(detection=0.7)).learning.detection
+    0.7
     """
 
     detection: float | NDArray[np.float64] = 0.84
@@ -38,12 +45,18 @@ class Learning:
     treated: bool = True
 
     def __post_init__(self) -> None:
+        must_hold_kinds(self, "Learning's")
         for name in ("detection", "beside_find"):
             values = np.atleast_1d(getattr(self, name))
             if not ((values >= 0.0) & (values <= 1.0)).all():
                 raise SettingError(
                     f"{name} must be a chance in 0..1, but it is {getattr(self, name)}."
                 )
+        if np.ndim(self.detection) > 1:
+            raise SettingError(
+                "Learning's detection must be one chance, or (k,), but it has the shape "
+                f"{np.shape(self.detection)}."
+            )
 
     def detects(self, inspections: int) -> NDArray[np.float64]:
         """Return the detection of each of so many inspections, ``(k,)``."""

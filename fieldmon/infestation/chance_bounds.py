@@ -6,6 +6,8 @@ from fieldmon.compute.jit import inlined
 
 #: no plant is ever taken as certainly clean or certainly infested: evidence must be able to undo it
 LEAST_CHANCE, MOST_CHANCE = 1e-6, 1.0 - 1e-6
+#: a plant with more was found and left where it is, or told to be infested
+KNOWN = 0.99
 
 
 # round the loops of a lattice the same news arrives twice: no plant settles its neighbour more

@@ -21,11 +21,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.arguments import array_of, must_be, must_hold_shapes
+from fieldmon.compute.arguments import array_of, must_be, must_be_in, must_hold_shapes
 from fieldmon.compute.jit import routine
 from fieldmon.compute.kinds import must_hold_kinds
+from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import counted
-from fieldmon.errors import ObservationError, SettingError
+from fieldmon.errors import ObservationError
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.plot.grid import PlantGrid
@@ -44,7 +45,9 @@ _ASKED, _NEIGHBOURS = 1000, 12
 # records farther from the plot than this belong to none of its plants
 _NEARBY_M = 1000.0
 # no plot is wider, or has more plants
-_MOST_M, _MOST_FINDS = 100_000.0, 100_000_000
+_RADIUS_M = AllowedRange(0.0, 100_000.0, above=True, unit=" m")
+_SHARE = AllowedRange(0.0, 1.0, above=True, below=True)
+_FINDS = AllowedRange(2, 100_000_000)
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,12 @@ class HotSpotSettings:
         average (Benjamini-Hochberg).
     least_finds
         Finds a hot spot must hold. Our choice: of two finds side by side a list is no help.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.HotSpotSettings(radius_m=10).radius_m
+    10
     """
 
     radius_m: float | None = None
@@ -72,21 +81,10 @@ class HotSpotSettings:
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A hot spot's")
-        if self.radius_m is not None and not 0.0 < self.radius_m <= _MOST_M:
-            raise SettingError(
-                f"The radius of a hot spot's window must be above 0 m and {_MOST_M:g} m at most, "
-                f"but it is {self.radius_m}."
-            )
-        if not 0.0 < self.false_share < 1.0:
-            raise SettingError(
-                "The tolerated share of false hot spots must lie between 0 and 1, "
-                f"but it is {self.false_share}."
-            )
-        if not 2 <= self.least_finds <= _MOST_FINDS:
-            raise SettingError(
-                "A hot spot must hold 2 finds or more, and at most so many as a plot has plants, "
-                f"but least_finds is {self.least_finds}."
-            )
+        if self.radius_m is not None:
+            must_be_in("A hot spot's radius_m", _RADIUS_M, self.radius_m)
+        must_be_in("A hot spot's false_share", _SHARE, self.false_share)
+        must_be_in("A hot spot's least_finds", _FINDS, self.least_finds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +209,7 @@ def newest_records(
 def hot_spots(
     grid: PlantGrid, state: NDArray[np.int8], settings: HotSpotSettings | None = None
 ) -> HotSpots:
-    """Return where finds cluster, from each plant's `state` ``(n,)`` (see :func:`states`).
+    """Return where finds cluster, from each plant's `state` ``(n,)``.
 
     The two faces of a vine count as one plant, infested if either is.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from datetime import date, datetime, timedelta
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -10,6 +10,9 @@ from zoneinfo import ZoneInfo
 
 import numpy as np
 
+from fieldmon.compute.kinds import checked, must_hold_kinds
+from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
 from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.infestation.spread import Spread
 from fieldmon.pests.degree_days import Thresholds, degree_days_of_hours
@@ -36,6 +39,8 @@ _MILD_C = 20.0
 _WIND_STEP_M_S = 0.5
 # a two-dimensional Cauchy jump's median, over its scale
 _CAUCHY_MEDIAN = 3.0**0.5
+# without weather no day differs from another
+_NO_DAY = date(2026, 1, 1)
 # a chance of 1 would be an endless rate
 _MOST = 1.0 - 1e-9
 
@@ -115,6 +120,7 @@ class DayWeather(NamedTuple):
         return cls(*(np.full(_HOURS, np.nan) for _ in range(4)))
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class PestInWeather:
     """A pest and the weather of the place, day by day.
@@ -126,12 +132,38 @@ class PestInWeather:
     weather
         What was measured and forecast; None: every day is as the pest's figures hold.
     begins
-        The date of day 0.
+        The date of day 0. It must be given where there is weather.
+
+    Raises
+    ------
+    SettingError
+        If there is weather and no date, or one is of another kind.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> mite = fm.PestInWeather(fm.read_pest("spider-mite"))
+    >>> settings = fm.SeasonSettings(n_days=5, pest=mite)
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
+    >>> robot = mite.pest.seen_by(fm.Robot())
+    >>> fm.simulate(plot, start, "naive", robot, settings).left.shape
+    (5,)
     """
 
     pest: Pest
     weather: Weather | None = None
-    begins: date = field(default_factory=lambda: date(2026, 1, 1))
+    begins: date = _NO_DAY
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A pest's")
+        if self.weather is not None and self.begins is _NO_DAY:
+            raise SettingError(
+                worded(
+                    "A pest in its weather must begin on a day, but none is given. Give "
+                    "begins=date(2026, 11, 18)."
+                )
+            )
 
     @property
     def content(self) -> tuple[object, ...]:
@@ -142,7 +174,7 @@ class PestInWeather:
         return (self.pest, str(self.begins), *weather)
 
     def day(self, number: int) -> DayWeather:
-        """Return the weather of a day: of its date, or the usual of it."""
+        """Return the weather of the day of a `number`: of its date, or the usual of it."""
         on = self.begins + timedelta(days=number)
         known = self._known.get(on)
         if known is None:
@@ -154,15 +186,15 @@ class PestInWeather:
         return known._replace(temperature_c=_filled(warm))
 
     def known(self, number: int) -> bool:
-        """Tell whether the weather of a day was measured or forecast."""
+        """Tell whether the weather of the day of a `number` was measured or forecast."""
         return self.begins + timedelta(days=number) in self._known
 
     def measured(self, number: int) -> bool:
-        """Tell whether the weather of a day was measured, all that is known of it."""
+        """Tell whether all that is known of the weather of the day of a `number` was measured."""
         return self.known(number) and self.begins + timedelta(days=number) not in self._forecast
 
     def usual(self, on: date) -> DayWeather:
-        """Return the mean of the days that stand for a day without weather, see `UsualDays`."""
+        """Return the mean of the days that stand for one without weather, `on` a date."""
         days, usual = self._usual
         if not days:
             return DayWeather.unknown()
@@ -170,11 +202,14 @@ class PestInWeather:
         return _mean([days[one] for one in stand_ins.which], stand_ins.weight)
 
     def night(self, number: int, frame: Frame) -> Spell:
-        """Return a day and its night as one spell."""
+        """Return the day of a `number` and its night as one spell, on a plot of this `frame`."""
         return self._spell(self.day(number), range(_HOURS), frame)
 
     def hours(self, number: int, frame: Frame, starts: int = 6) -> list[Spell]:
-        """Return the 24 hours that follow the hour at which the work of a day starts."""
+        """Return the 24 hours from that at which work `starts` on the day of a `number`.
+
+        The wind is told by the plot's `frame`.
+        """
         today, tomorrow = self.day(number), self.day(number + 1)
         return [
             self._spell(today if hour >= starts else tomorrow, [hour], frame)
@@ -182,7 +217,10 @@ class PestInWeather:
         ]
 
     def spread(self, number: int, frame: Frame) -> PestSpread:
-        """Return what a chance map takes the night after a day to be."""
+        """Return what a chance map takes the night after the day of a `number` to be.
+
+        The wind is told by the plot's `frame`.
+        """
         spell, pest = self.night(number, frame), self.pest
         adjacent = pest.movement.kernel == "adjacent"
         entry = pest.entry

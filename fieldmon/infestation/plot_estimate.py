@@ -16,6 +16,7 @@ from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.unwatched import of_odds
 
@@ -145,7 +146,8 @@ def estimate_of(
     """
     must_be_sure(sure)
     chance, doubt, named = belief.chance, level_doubt(belief), belief.pest is not None
-    asked = np.ones(len(chance), np.bool_) if found is None else ~found
+    known = known_infested(belief, found)
+    asked, n_known = ~known, np.count_nonzero(known)
     expected = float(chance[asked].sum())
     if (since := belief.since_inspected) is not None:
         factors = doubted_level(doubt, named=named)
@@ -153,7 +155,20 @@ def estimate_of(
         clean = since.chance_of_none(factors, expected)
     else:
         numbers, clean = _of_map(grid, (chance, belief.pair_chance), asked, doubt, named=named)
-    return _estimate(expected, numbers, (clean, sure), exact=doubt <= 0.0)
+    unknown = _estimate(expected, numbers, (clean, sure), exact=doubt <= 0.0)
+    return unknown.beside(int(n_known if found is None else n_known - np.count_nonzero(found)))
+
+
+def known_infested(belief: Belief, found: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+    """Return of which plants it is certain that they are infested, ``(n,)``.
+
+    Those that were `found` and left, and those that are told to be by a chance near 1; none that
+    came so near only while nobody inspected.
+    """
+    told, since = belief.chance > KNOWN, belief.since_inspected
+    if since is not None and np.count_nonzero(told) > since.counted.known:
+        told[np.argsort(-belief.chance, kind="stable")[since.counted.known :]] = False
+    return told if found is None else told | found
 
 
 def level_doubt(belief: Belief) -> float:

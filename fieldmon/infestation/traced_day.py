@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.jit import loop, part
 from fieldmon.infestation.calibration_slope import note_inspection
-from fieldmon.infestation.chance_bounds import lesser
+from fieldmon.infestation.chance_bounds import KNOWN, lesser
 from fieldmon.infestation.origins import (
     BY_ADJACENT,
     JUMPED,
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import Linked
 
     Floats = NDArray[np.float64]
-
-# a plant found and left where it is
-KNOWN = 0.99
 
 
 class TracedDay(NamedTuple):

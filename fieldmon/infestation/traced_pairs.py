@@ -17,7 +17,7 @@ import numpy as np
 from fieldmon.compute.arrays import as_compiled
 from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry
 from fieldmon.infestation.calibration_slope import no_inspections
-from fieldmon.infestation.chance_bounds import LEAST_CHANCE, MOST_CHANCE
+from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
     CLUSTERING,
     ClusterEstimate,
@@ -47,7 +47,7 @@ from fieldmon.infestation.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
 from fieldmon.infestation.reach import pest_reach_of, reach_of
-from fieldmon.infestation.traced_day import KNOWN, KernelRoom, TracedDay, learn_day
+from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
 from fieldmon.infestation.unwatched import Counted, Since, Unwatched
 
@@ -395,16 +395,19 @@ class TracedPairs:
 
     def _in_doubt(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
         """Return the next morning with what is in doubt of it if nobody inspected today."""
-        # of those that were not found yet
-        unknown = self.chance <= KNOWN
-        before, after = (max(float(b.chance[unknown].sum()), LEAST_CHANCE) for b in (self, morning))
+        told = self.chance > KNOWN
+        known, counted = int(np.count_nonzero(told)), self.unwatched.counted
+        if counted is not None:  # others became likely only while nobody inspected
+            known = min(known, counted.known)
+        # of those of which it is not certain
+        before, after = (max(float(b.chance.sum()) - known, LEAST_CHANCE) for b in (self, morning))
         anywhere, by_edge = self._from_outside(self.reach, spread)
-        new = float(((1.0 - self.chance) * (anywhere + by_edge))[unknown].sum())
-        counted = None
+        new = float(((1.0 - self.chance) * (anywhere + by_edge)).sum())
+        sent = max(after - before - new, 0.0) * known / (known + before)
         if self.unwatched.begins:
-            drawn, none = drawn_numbers(self.grid, (self.chance, self.pair_chance), unknown)
-            counted = Counted(drawn / before, none, before, self.doubt)
-        unwatched = self.unwatched.overnight(before, after, new, counted)
+            drawn, none = drawn_numbers(self.grid, (self.chance, self.pair_chance), ~told)
+            counted = Counted(drawn / before, none, before, self.doubt, known)
+        unwatched = self.unwatched.overnight(before, after, (new, sent), counted)
         return replace(morning, unwatched=unwatched)
 
     def in_hindsight(self, spread: Spread) -> TracedPairs:

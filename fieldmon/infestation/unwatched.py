@@ -56,12 +56,15 @@ class Counted(NamedTuple):
         How many were expected.
     doubt
         How far that might be off by then, as a share (`Belief.doubt`).
+    known
+        How many more there were of which it was certain.
     """
 
     drawn: Floats
     none: float
     expected: float
     doubt: float
+    known: int = 0
 
 
 class Since(NamedTuple):
@@ -74,7 +77,8 @@ class Since(NamedTuple):
     grew
         ``(k,)`` draws of how many times as many these are now: nothing heals.
     came
-        ``(k,)`` draws of what arrived, over all that is expected now.
+        ``(k,)`` draws of what arrived or was sent out by known plants, over all that is expected
+        now.
     now
         How many are expected now, had nothing been treated since.
     """
@@ -146,7 +150,11 @@ class Unwatched(NamedTuple):
     left
         The variance that is left of days without inspections before it.
     arrived
-        The share of them that arrived from outside since, and of their offspring.
+        The share of them that arrived from outside since, and of their offspring, leaving out
+        those that were `sent`.
+    sent
+        The share of them that plants sent out since of which it is certain that they are infested,
+        and of their offspring.
     looked
         Whether somebody inspected today.
     counted
@@ -157,6 +165,7 @@ class Unwatched(NamedTuple):
     grown: float = 0.0
     left: float = 0.0
     arrived: float = 0.0
+    sent: float = 0.0
     looked: bool = False
     counted: Counted | None = None
 
@@ -169,7 +178,8 @@ class Unwatched(NamedTuple):
             return self.left
         level = OF_A_PEST if named else LEVEL_DOUBT
         by_arrivals = self.arrived**2 / arrivals_known(arrivals_found)
-        since = level**2 + (RATE_DOUBT * self.grown) ** 2 + by_arrivals
+        by_rate = RATE_DOUBT**2 * (self.grown**2 + self.sent**2)
+        since = level**2 + by_rate + by_arrivals
         return self.left + min(since, _MOST_VARIANCE)
 
     def draws(self, *, named: bool, arrivals_found: float = 0.0) -> Since | None:
@@ -182,10 +192,12 @@ class Unwatched(NamedTuple):
         levels = gammaincinv(level**-2.0, one) * level**2.0
         faster = np.exp(RATE_DOUBT * ndtri(other))
         known = arrivals_known(arrivals_found)
-        came = self.arrived * levels * gammaincinv(known, third) / known
+        arrived = self.arrived * (1.0 - self.sent) * gammaincinv(known, third) / known
+        came = levels * (arrived + self.sent * faster)
         times = levels * np.exp(np.minimum(self.grown * faster, _MOST_GROWN))
         grew = np.maximum(times * (1.0 - self.arrived), min(float(np.exp(self.grown)), 1.0))
         now = self.counted.expected * float(np.exp(min(self.grown, _MOST_GROWN)))
+        now /= max(1.0 - self.sent, _LEAST)
         return Since(self.counted, grew, came, now)
 
     def inspected(self, found: float, variance: float) -> Unwatched:
@@ -201,32 +213,40 @@ class Unwatched(NamedTuple):
         return self.counted is None and not self.looked
 
     def overnight(
-        self, before: float, after: float, new: float = 0.0, counted: Counted | None = None
+        self,
+        before: float,
+        after: float,
+        new: tuple[float, float] = (0.0, 0.0),
+        counted: Counted | None = None,
     ) -> Unwatched:
-        """Return the same after a night in which so many become so many, some from outside.
+        """Return the same after a night in which so many become so many.
 
-        `counted` tells of this morning, where it `begins` days without inspections.
+        `new` are how many of these come from outside, and how many are sent out by plants of which
+        it is certain that they are infested. `counted` tells of this morning, where it `begins`
+        days without inspections.
         """
         if self.looked:
             return Unwatched(left=self.left)
-        share = min(new / after, 1.0)
+        others = max(after - new[1], _LEAST)
+        share, by_known = min(new[0] / others, 1.0), min(new[1] / after, 1.0)
         arrived = share + self.arrived * (1.0 - share)
-        grown = self.grown + float(np.log(after / before))
+        sent = by_known + self.sent * (1.0 - by_known)
+        grown = self.grown + float(np.log(others / before))
         counted = self.counted if counted is None else counted
-        return Unwatched(self.days + 1, grown, self.left, arrived, counted=counted)
+        return Unwatched(self.days + 1, grown, self.left, arrived, sent, counted=counted)
 
     @property
     def array(self) -> Floats:
-        """What to keep of it on a morning, ``(4,)`` or, with what was counted, ``(7 + k,)``."""
+        """What to keep of it on a morning, ``(5,)`` or, with what was counted, ``(9 + k,)``."""
         counted = () if self.counted is None else self.counted
-        return np.concatenate([self[:4], *(np.atleast_1d(part) for part in counted[::-1])])
+        return np.concatenate([self[:5], *(np.atleast_1d(part) for part in counted[::-1])])
 
     @classmethod
     def of_array(cls, kept: Floats) -> Unwatched:
         """Return what such an array has kept."""
-        days, grown, left, arrived = map(float, kept[:4])
+        days, grown, left, arrived, sent = map(float, kept[:5])
         counted = None
-        if len(kept) > 4:
-            doubt, expected, none = map(float, kept[4:7])
-            counted = Counted(kept[7:], none, expected, doubt)
-        return cls(int(days), grown, left, arrived, counted=counted)
+        if len(kept) > 5:
+            known, doubt, expected, none = map(float, kept[5:9])
+            counted = Counted(kept[9:], none, expected, doubt, int(known))
+        return cls(int(days), grown, left, arrived, sent, counted=counted)

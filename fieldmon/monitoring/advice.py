@@ -77,7 +77,10 @@ class AdviceSettings:
     --------
     >>> import fieldmon as fm
     >>> asked = fm.AdviceSettings(level=0.08, sure=0.95)
-    >>> fm.Season("season.gpkg").advice("2026-11-20", asked).headline()  # doctest: +SKIP
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+    >>> season = fm.Season.create("of_advice.gpkg", plot, begins="2026-11-18")
+    >>> season.advice("2026-11-18", asked).headline()
+    'Do not treat today.'
     """
 
     level: float = 0.05

@@ -68,8 +68,8 @@ class Application:
 
     Examples
     --------
-    >>> from fieldmon.decisions.doses import Dose
-    >>> Application("Acarol", Dose(0.5, "l/ha"), waiting_days=7).said()["dose"]
+    >>> import fieldmon as fm
+    >>> fm.Application("Acarol", fm.Dose(0.5, "l/ha"), waiting_days=7).said()["dose"]
     '0.5 l/ha'
     """
 

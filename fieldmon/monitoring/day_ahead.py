@@ -10,7 +10,6 @@ import numpy as np
 
 from fieldmon.monitoring import routes
 from fieldmon.monitoring.closures import closed_plants
-from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import scouts_in
 from fieldmon.planning.members import person_key
@@ -18,7 +17,7 @@ from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
 from fieldmon.planning.wishes import Wishes
 from fieldmon.planning.workday import Workday
-from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.local_clock import grid_clock, local_clock
 from fieldmon.plot.travel import GATE, driven_s
 
 if TYPE_CHECKING:
@@ -277,9 +276,7 @@ def planned_again(
 
 def work_hours(season: Season, on: date, part: Part = WHOLE) -> WorkHours:
     """Return somebody's hours on a day."""
-    member, now = season.planned_by(on).at_work(part.name), local_clock(season.plot.field).now()
-    who = (part.name or None) if member is None else member.name
-    second = made_by(season.history.inspections.on(on), who).second
+    second, now = season.worked(on, part.name).second, local_clock(season.plot.field).now()
     run = now.date() == on and len(second) > 0 and bool(np.isfinite(second[0]))
     scene = season.scene(on, now.time() if run else None, part.name)
     return WorkHours(season.begun_s(on, part.name), run, float(scene.seconds_left))
@@ -297,7 +294,8 @@ def _time(season: Season, on: date, seconds_left: float, member: TeamMember | No
     """Return the local time at which so much of the working day is left."""
     robot, who = (season.settings.robot, "") if member is None else (member.robot, member.name)
     left_s = min(max(seconds_left, 0.0), robot.day_s)
-    now_s = min(season.begun_s(on, who) + robot.day_s - left_s, 86_399.0)
+    clock = grid_clock(season.plot.grid)
+    now_s = clock.second_after(on, season.begun_s(on, who), robot.day_s - left_s)
     return (datetime.combine(on, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
 
 

@@ -11,9 +11,10 @@ import numpy as np
 from fieldmon.monitoring.closures import closed_plants, open_to_people
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.shared_day import MOVE_S, PlotNeed, share_day
+from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.shared_day import PlotTurn
+    from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler, Scene
 
 #: a plot is due so many days after it was seen
@@ -122,6 +124,17 @@ def days_since(season: Season, on: date) -> int | None:
     return int((np.datetime64(on) - dates.max()) / np.timedelta64(1, "D")) if len(dates) else None
 
 
+def one_robot(seasons: Iterable[Season]) -> Robot | None:
+    """Return the robot with which all of these seasons work; None: they have several, or none.
+
+    Hours are not compared: they are those of the first.
+    """
+    settings = [season.settings for season in seasons]
+    robots = [one.robot for of in settings for one in (of.team or (of,))]
+    kinds = {replace(robot, hours=1.0) for robot in robots}
+    return robots[0] if len(kinds) == 1 else None
+
+
 def due(days_since: Sequence[int | None]) -> list[int]:
     """Return the numbers of the plots that are due, from how long ago each was seen; None: never.
 
@@ -213,8 +226,10 @@ def _turn(plot: EstatePlot, turn: PlotTurn, member: TeamMember, starts: time) ->
     # to the second, so that the same turn is planned once
     robot = replace(member.robot, hours=max(round(turn.seconds), 1) / 3600)
     after_s = round(member.starts_s + turn.starts_s)
-    begins = datetime.combine(plot.on, starts) + timedelta(seconds=after_s)
-    closed = plot.closed(begins, begins + timedelta(seconds=robot.day_s))
+    own = datetime.combine(plot.on, starts) + timedelta(seconds=member.starts_s)
+    clock = grid_clock(plot.scene.grid)
+    begins = clock.after(own, after_s - member.starts_s)
+    closed = plot.closed(begins, clock.after(begins, robot.day_s))
     scene = replace(open_to_people(plot.scene, closed), robot=robot, seconds_left=robot.day_s)
     return EstateTurn(turn.plot, turn.who, begins, scene, plot.decides, closed)
 

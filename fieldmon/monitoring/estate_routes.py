@@ -5,14 +5,16 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
+from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from datetime import datetime
 
     from fieldmon.planning.route import Route
 
@@ -49,12 +51,12 @@ class EstateRoute:
     @property
     def ends(self) -> datetime:
         """Return when the route ends."""
-        return self.begins + timedelta(seconds=float(self.route.end_s))
+        return grid_clock(self.route.aisles.grid).after(self.begins, float(self.route.end_s))
 
     @property
     def notes(self) -> RouteNotes:
         """Return what the route's file says beside it."""
-        return RouteNotes(self.plot, self.sampler, self.begins)
+        return RouteNotes(self.plot, self.sampler, self.begins, self.who)
 
 
 def stems(routes: Iterable[EstateRoute]) -> dict[str, EstateRoute]:
@@ -62,10 +64,21 @@ def stems(routes: Iterable[EstateRoute]) -> dict[str, EstateRoute]:
     return {f"{k:02d}-{plain_name(one.plot)}": one for k, one in enumerate(routes, start=1)}
 
 
-def plan_table(files: Mapping[str, EstateRoute]) -> bytes:
-    """Return the table of routes, by the names of their files, as CSV that a spreadsheet reads.
+def plan_table(
+    files: Mapping[str, EstateRoute],
+    waiting: Mapping[str, Sequence[str]] = MappingProxyType({}),
+    free: Iterable[str] = (),
+) -> bytes:
+    """Return the table of an estate's day as CSV that a spreadsheet reads.
 
-    A route in several formats has their names in one cell, apart by spaces.
+    Parameters
+    ----------
+    files
+        The routes by the names of their files; those of several formats apart by spaces.
+    waiting
+        Plots to which nobody goes, and sentences on what is closed there.
+    free
+        Names of those who have no plot.
     """
     text = io.StringIO()
     table = csv.writer(text)
@@ -76,14 +89,7 @@ def plan_table(files: Mapping[str, EstateRoute]) -> bytes:
         table.writerow(
             (file, one.plot, one.who, *hours, len(one.route), finds, " ".join(one.closed))
         )
+    table.writerows(("", plot, *[""] * 5, " ".join(said)) for plot, said in waiting.items())
+    table.writerows(("", "", who, *[""] * 5) for who in free)
     # the mark at the beginning tells a spreadsheet that names may be in any script
     return text.getvalue().encode("utf-8-sig")
-
-
-def files_named(table: bytes) -> list[str]:
-    """Return the names of the files that a table of routes lists; none where it is another."""
-    try:
-        lines = csv.DictReader(io.StringIO(table.decode("utf-8-sig")))
-        return [file for one in lines for file in (one.get("file") or "").split()]
-    except (UnicodeDecodeError, csv.Error):
-        return []

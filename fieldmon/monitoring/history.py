@@ -17,6 +17,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
@@ -26,16 +27,16 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_day import KNOWN
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
+from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import driven_s, robot_clock
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Hashable
     from datetime import date
 
     from numpy.typing import NDArray
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.local_clock import LocalClock
     from fieldmon.plot.travel import Aisles
 
 
@@ -472,15 +474,15 @@ class History:
         morning
             What was believed on its morning.
         now_s
-            Seconds since midnight; None: when the last inspection recorded was done, by its own
-            time or, where none was noted, by what driving and looking cost.
+            Seconds since midnight, of the next day where work goes past it and had not begun then;
+            None: when the last inspection recorded was done, by its own time or, where none was
+            noted, by what driving and looking cost.
         who
             Whose scene it is, of a team or beside others; None: all inspections were made by the
             one who works.
         """
         aisles, robot = shift.aisles, shift.robot
         later = self._past_midnight(shift, day, who)
-        today = self._with_later(day, later)
         # what the day's finds say of other plants counts for the rest of it, too
         believed = in_sight(
             in_hindsight(self._evening(morning, day, later), self.night(day))
@@ -488,9 +490,10 @@ class History:
             else self.in_hindsight(morning, day)
         )
         last = self.last_inspected(day)
-        last[today.plant] = day  # nobody is sent to a plant twice a day, not even a skipped one
-        trail = self._trail(day, who)
-        today = made_by(today, who)
+        # nobody is sent to a plant twice a day, not even a closed one
+        last[self.on(day).plant] = last[self.inspections.plant[later]] = day
+        trail = self._trail(shift, day, who)
+        today = made_by(self.worked(shift, day, who), who)
         resting = resting_place(robot, trail)
         return Scene(
             aisles=aisles,
@@ -502,7 +505,7 @@ class History:
             last_inspected=last,
             day=day,
             at=int(today.plant[-1]) if len(today) else resting,
-            seconds_left=max(0.0, robot.day_s - _gone_s(shift, today, resting, now_s)),
+            seconds_left=max(0.0, robot.day_s - self._gone_s((shift, day), today, resting, now_s)),
             trail=trail,
             key=shift.streams.key("sampler", day),
         )
@@ -513,45 +516,102 @@ class History:
         It is the shift's, unless the first inspection shows that it was more than
         `BEGINS_OTHERWISE_S` off: then it began with the way to that one.
         """
-        resting = resting_place(shift.robot, self._trail(day, who))
+        resting = resting_place(shift.robot, self._trail(shift, day, who))
         return _begun_s(shift, made_by(self.worked(shift, day, who), who), resting)
 
     def gone_s(
         self, shift: Shift, day: int, now_s: float | None = None, who: str | Besides | None = None
     ) -> float:
         """Return how many seconds of somebody's working day are gone; all is as in `scene`."""
-        resting = resting_place(shift.robot, self._trail(day, who))
-        return _gone_s(shift, made_by(self.worked(shift, day, who), who), resting, now_s)
+        resting = resting_place(shift.robot, self._trail(shift, day, who))
+        today = made_by(self.worked(shift, day, who), who)
+        return self._gone_s((shift, day), today, resting, now_s)
+
+    def _gone_s(
+        self, work: tuple[Shift, int], today: Inspections, resting: int, now_s: float | None
+    ) -> float:
+        """Return the seconds of somebody's working day that are gone after these inspections."""
+        shift, day = work
+        if now_s is None and len(today) and np.isfinite(today.second[-1]):
+            now_s = float(today.second[-1])
+        if now_s is None:
+            return _charged_s(shift, today.plant, resting) if len(today) else 0.0
+        begun_s = _begun_s(shift, today, resting)
+        if now_s < min(begun_s, self._ends_s(shift, day, begun_s)):  # past midnight
+            now_s += DAY_S
+        return max(0.0, self._clock.seconds_between(self.date_of(day), begun_s, now_s))
+
+    @cached_property
+    def _clock(self) -> LocalClock:
+        return grid_clock(self.grid)
 
     def worked(self, shift: Shift, day: int, who: str | Besides | None = None) -> Inspections:
-        """Return what anybody inspected on a day, and until somebody's work ends past its midnight.
+        """Return what anybody inspected from when somebody's work of a day began until it ends.
 
         Inspections after midnight are dated the next day; here their seconds go on from 86 400.
         """
-        return self._with_later(day, self._past_midnight(shift, day, who))
-
-    def _with_later(self, day: int, rows: NDArray[np.signedinteger]) -> Inspections:
-        later = self.inspections.take(rows)
-        return self.on(day).and_those(replace(later, second=later.second + DAY_S))
+        rows = self._work_days(shift, who) == day
+        done, late = self.inspections.take(rows), self.days[rows] > day
+        return replace(done, second=done.second + np.where(late, DAY_S, 0.0))
 
     def _past_midnight(
         self, shift: Shift, day: int, who: str | Besides | None
     ) -> NDArray[np.signedinteger]:
         """Return which inspections of the next day were made in the hours of a day's work."""
-        rows = np.arange(*np.searchsorted(self.days, [day + 1, day + 2]))
-        if not len(rows):
-            return rows
-        resting = resting_place(shift.robot, self._trail(day, who))
-        begun_s = _begun_s(shift, made_by(self.on(day), who), resting)
-        ends_s = begun_s + shift.robot.day_s + BEGINS_OTHERWISE_S
-        return rows[self.inspections.second[rows] < ends_s - DAY_S]
+        return np.flatnonzero((self._work_days(shift, who) == day) & (self.days > day))
 
-    def _trail(self, day: int, who: str | Besides | None) -> NDArray[np.int32]:
-        """Return the plants ``(k,)`` of the last day before `day` on which any was inspected."""
-        earlier = made_by(self.until(day - 1).inspected, who)
-        if not len(earlier):
-            return earlier.plant
-        return earlier.take(earlier.date == earlier.date[-1]).plant
+    def _work_days(self, shift: Shift, who: str | Besides | None) -> NDArray[np.int32]:
+        """Return ``(k,)`` the day on which the work began in whose hours each inspection was made.
+
+        That is its own day, or the one before where somebody's work goes past midnight: until its
+        hours end or their next work begins.
+        """
+        # asked for several times by each scene
+        key = shift.aisles, shift.robot, shift.starts_s, who
+        if key not in self._worked_out:
+            self._worked_out[key] = self._work_days_of(shift, who)
+        return self._worked_out[key]
+
+    @cached_property
+    def _worked_out(self) -> dict[Hashable, NDArray[np.int32]]:
+        return {}
+
+    def _work_days_of(self, shift: Shift, who: str | Besides | None) -> NDArray[np.int32]:
+        is_early = self.inspections.second < shift.starts_s - BEGINS_OTHERWISE_S
+        nights = np.unique(self.days[is_early]) - 1
+        if not len(nights):
+            return self.days
+        work, own = self.days.copy(), _are_by(self.inspections, who)
+        for day in nights[nights >= 0].tolist():
+            mine = np.arange(*np.searchsorted(self.days, [day, day + 1]))
+            mine = mine[own[mine] & (work[mine] == day)]
+            early = np.arange(*np.searchsorted(self.days, [day + 1, day + 2]))
+            second = self.inspections.second[early]
+            # work begins when its first inspection is made, at the latest
+            latest_s = np.fmax(shift.starts_s, self.inspections.second[mine[:1]].sum())
+            if (second < self._ends_s(shift, day, latest_s)).any():
+                resting = resting_place(shift.robot, self._last_worked(work, own, day))
+                begun_s = _begun_s(shift, self.inspections.take(mine[:1]), resting)
+                work[early[second < self._ends_s(shift, day, begun_s)]] = day
+        return work
+
+    def _ends_s(self, shift: Shift, day: int, begun_s: float) -> float:
+        """Return the second of the next day at which work's hours end or the next work begins."""
+        hours_s = shift.robot.day_s + BEGINS_OTHERWISE_S
+        ends_s = self._clock.second_after(self.date_of(day), begun_s, hours_s)
+        return min(ends_s - DAY_S, shift.starts_s - BEGINS_OTHERWISE_S)
+
+    def _trail(self, shift: Shift, day: int, who: str | Besides | None) -> NDArray[np.int32]:
+        """Return the plants ``(k,)`` of somebody's last work before `day` that had any."""
+        return self._last_worked(self._work_days(shift, who), _are_by(self.inspections, who), day)
+
+    def _last_worked(
+        self, work: NDArray[np.int32], own: NDArray[np.bool_], day: int
+    ) -> NDArray[np.int32]:
+        earlier = own & (self.inspections.result != SKIPPED) & (work < day)
+        last = work[earlier].max(initial=-1)
+        plants: NDArray[np.int32] = self.inspections.plant[earlier & (work == last)]
+        return plants
 
 
 def in_sight(belief: Belief) -> Belief:
@@ -566,12 +626,18 @@ def in_hindsight(evening: Belief, night: Spread) -> Belief:
 
 def made_by(inspections: Inspections, who: str | Besides | None) -> Inspections:
     """Return those that somebody made; None: all."""
+    return inspections if who is None else inspections.take(_are_by(inspections, who))
+
+
+def _are_by(inspections: Inspections, who: str | Besides | None) -> NDArray[np.bool_]:
+    """Return ``(k,)`` whether somebody made each; None: all."""
     if who is None:
-        return inspections
+        return np.ones(len(inspections), np.bool_)
     names = np.array([person_key(str(name)) for name in inspections.who], np.str_)
     if isinstance(who, Besides):
-        return inspections.take(~np.isin(names, [person_key(one) for one in who.others]))
-    return inspections.take(names == person_key(who))
+        return ~np.isin(names, [person_key(one) for one in who.others])
+    mine: NDArray[np.bool_] = names == person_key(who)
+    return mine
 
 
 @dataclass(frozen=True, eq=False)
@@ -602,15 +668,6 @@ def _begun_s(shift: Shift, today: Inspections, resting: int) -> float:
         return shift.starts_s
     begun_s = max(0.0, float(today.second[0]) - _charged_s(shift, today.plant[:1], resting))
     return begun_s if abs(begun_s - shift.starts_s) > BEGINS_OTHERWISE_S else shift.starts_s
-
-
-def _gone_s(shift: Shift, today: Inspections, resting: int, now_s: float | None) -> float:
-    """Return the seconds of the working day that are gone."""
-    if now_s is None and len(today) and np.isfinite(today.second[-1]):
-        now_s = float(today.second[-1])
-    if now_s is not None:
-        return max(0.0, now_s - _begun_s(shift, today, resting))
-    return _charged_s(shift, today.plant, resting) if len(today) else 0.0
 
 
 def _charged_s(shift: Shift, plants: NDArray[np.int32], resting: int) -> float:

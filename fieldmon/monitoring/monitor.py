@@ -48,7 +48,9 @@ if TYPE_CHECKING:
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.infestation.spread import Spread
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
@@ -179,11 +181,15 @@ class Monitor:
         defaults of a monitored season.
     seed
         For samplers that draw.
+    pest
+        What is looked for, in the weather of the days to come, which then says what insects do at
+        night; None: as `belief_settings` says.
 
     Raises
     ------
     SettingError
-        If `plot` is none, there is no such sampler, or `chance` does not fit the plants.
+        If `plot` is none, there is no such sampler, `chance` does not fit the plants, or a pest's
+        finds are not traced.
 
     Examples
     --------
@@ -200,7 +206,7 @@ class Monitor:
     True
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - each has its default, and is named where it has not
         self,
         plot: Plot,
         sampler: str | Sampler = "adaptive",
@@ -208,20 +214,26 @@ class Monitor:
         chance: NDArray[np.float64] | None = None,
         belief_settings: BeliefSettings | None = None,
         seed: int = 1,
+        *,
+        pest: PestInWeather | None = None,
     ) -> None:
         must_be_plot(plot)
         must_be_robot(robot)
         must_be_of("'belief_settings' of Monitor", "BeliefSettings | None", belief_settings)
         must_be_of("A seed", "int", seed)
+        must_be_of("'pest' of Monitor", "PestInWeather | None", pest)
         self.plot = plot
         self.robot = robot or Robot()
         self.belief_settings = belief_settings or BeliefSettings()
+        if pest is not None and not self.belief_settings.traces:
+            raise SettingError("A pest needs its finds traced. Give BeliefSettings(traces=True).")
+        self.pest = pest
         self.day_number = 0
         self._sampler = sampler_or_name(sampler)
         self._streams = RandomStreams(int(seed))
         first = _first_chance(plot, chance)
         self._belief: Belief = self.belief_settings.first_morning(
-            plot.grid, first, detection=self.robot.detects
+            plot.grid, first, None if pest is None else pest.pest, self.robot.detects
         )
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
         self._trail = np.empty(0, np.int32)
@@ -278,16 +290,27 @@ class Monitor:
     def forecast(self, nights: int = NIGHTS) -> Forecast:
         """Return how many are infested after each of so many `nights` if nobody inspects."""
         must_be_in("A forecast's nights", DAYS, nights)
-        ahead = [self.belief_settings.spread] * nights
+        ahead, known, measured = range(self.day_number, self.day_number + nights), None, 0
+        if (pest := self.pest) is not None and pest.weather is not None:
+            known = sum(pest.known(number) for number in ahead)
+            measured = sum(pest.measured(number) for number in ahead)
+        spreads = [self._spread(number) for number in ahead]
         now = estimate_of(self.plot.grid, self._told, found=self._left)
-        return forecast(self._belief, self.plot.grid, ahead, now=now, found=self._left)
+        made = forecast(self._belief, self.plot.grid, spreads, known, now, self._left)
+        return replace(made, measured=measured)
+
+    def _spread(self, number: int) -> Spread:
+        """Return what the insects are taken to do in the night after a day."""
+        if self.pest is None:
+            return self.belief_settings.spread
+        return self.pest.spread(number, self.plot.grid.frame)
 
     @property
     def _told(self) -> Belief:
         """What is told of the belief: what finds say of other plants counts, see `Season`."""
         belief, told = self._last_told
         if belief is not self._belief:
-            told = in_hindsight(self._belief, self.belief_settings.spread)
+            told = in_hindsight(self._belief, self._spread(self.day_number))
             self._last_told = self._belief, told
         return told
 
@@ -338,7 +361,7 @@ class Monitor:
         """
         if self._day is not None and not self._day.ended:
             raise SettingError("The day must end before the night. Leave its with statement first.")
-        self._belief = self.belief_settings.overnight(self._belief)
+        self._belief = self._belief.overnight(self._spread(self.day_number))
         self._day = None
         self.day_number += 1
 
@@ -455,7 +478,7 @@ class MonitorDay(AskedDay):
         return plants
 
     def ask(self) -> PlantToInspect | None:
-        """Return the plant to inspect next; None where the day's hours allow no other.
+        """Return the plant to inspect next; None where hours allow no other, or none is named.
 
         The same one until it is told what was seen there.
         """

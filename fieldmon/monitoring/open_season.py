@@ -38,7 +38,7 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
 from fieldmon.plot.grid import RowLabel, row_label
-from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.local_clock import grid_clock, local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -358,7 +358,9 @@ class OpenSeason:
             day = contents.settings.day(on)
             gone_s = contents.history.gone_s(shift, day, None, name)
             seconds_left = max(0.0, day_s - gone_s)
-        return self.closed_between(on, begun_s + day_s - seconds_left, begun_s + day_s)
+        clock = grid_clock(self.plot.grid)
+        begins_s = clock.second_after(on, begun_s, day_s - seconds_left)
+        return self.closed_between(on, begins_s, clock.second_after(on, begun_s, day_s))
 
     def _entry_waits(self) -> tuple[EntryWait, ...]:
         with self.store.reading() as db:
@@ -393,9 +395,11 @@ class OpenSeason:
         Also past midnight, where inspections are dated the next day: seconds go on from 86 400.
         """
         with self._lock:
-            contents = self._now()
-            shift, name = self._shift(self._planned_by(contents, on), who)
-            return made_by(contents.history.worked(shift, contents.settings.day(on), name), name)
+            return self._worked(self._now(), on, who)
+
+    def _worked(self, contents: SeasonContents, on: date, who: str | Besides) -> Inspections:
+        shift, name = self._shift(self._planned_by(contents, on), who)
+        return made_by(contents.history.worked(shift, contents.settings.day(on), name), name)
 
     def _scene(
         self, contents: SeasonContents, on: date, now: time | None = None,

@@ -13,6 +13,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
 from fieldmon.planning.members import person_key
+from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -31,8 +32,9 @@ _PLAN_DIGITS = 12
 def begins(settings: MonitoringSettings, today: DayPlan, begun_s: float) -> datetime:
     """Return the local time at which a route begins: `begun_s`, when work did, or half-way."""
     gone_s = today.scene.robot.day_s - today.scene.seconds_left
-    midnight = datetime.combine(settings.date(today.scene.day), time())
-    return midnight + timedelta(seconds=round(begun_s + gone_s))
+    on = settings.date(today.scene.day)
+    now_s = grid_clock(today.scene.grid).second_after(on, begun_s, gone_s)
+    return datetime.combine(on, time()) + timedelta(seconds=round(now_s))
 
 
 def keep(
@@ -49,7 +51,7 @@ def keep(
     day, route, notes = today.scene.day, today.route, today.route.notes
     assert notes is not None  # noqa: S101 - whoever planned said
     assert notes.start is not None  # noqa: S101 - when it begins
-    begin = notes.start
+    begin, clock = notes.start, grid_clock(route.aisles.grid)
     mark, last = _digest(today), kept_last(db, day).get(person_key(who))
     if last is not None and last.digest == mark:
         return False
@@ -82,7 +84,7 @@ def keep(
         label.line[route.plant].tolist(),
         label.number[route.plant].tolist(),
         route.arrive_s.tolist(),
-        [(begin + timedelta(seconds=round(s))).isoformat() for s in route.arrive_s.tolist()],
+        [clock.after(begin, round(s)).isoformat() for s in route.arrive_s.tolist()],
         route.chance.tolist(),
         strict=True,
     )

@@ -14,7 +14,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes, scouts, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
-from fieldmon.monitoring.history import Besides, made_by
+from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.monitoring.settings import seconds
@@ -23,7 +23,7 @@ from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
 from fieldmon.planning.team_worker import Posted
-from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.local_clock import grid_clock, local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -182,15 +182,16 @@ class SeasonPlans(OpenSeason):
             shift, name = self._shift(settings, who)
             own = str(name or "") if kept_as is None else kept_as
             kept = routes.kept_last(db, settings.day(on)).get(person_key(own))
-            begun = len(made_by(contents.history.inspections.on(on), name))
+            begun = len(self._worked(contents, on, who))
             now = local_clock(self.plot.field).now()
             begins = None if kept is None else kept.begins
             if begun:  # whoever is out goes on now
                 begins = now if now.date() == on else None
             if begins is None:
                 return self._closed(contents, on, who, None)
-            late_s = (begins - datetime.combine(on, time())).total_seconds()
-            late_s -= self._begun_s(contents, on, who)
+            begins_s = (begins - datetime.combine(on, time())).total_seconds()
+            begun_s = self._begun_s(contents, on, who)
+            late_s = grid_clock(self.plot.grid).seconds_between(on, begun_s, begins_s)
             day_s = shift.robot.day_s
             return self._closed(contents, on, who, min(max(day_s - late_s, 0.0), day_s))
 
@@ -255,18 +256,21 @@ class SeasonPlans(OpenSeason):
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             contents = self._read(db)
-            day, done = contents.settings.day(on), contents.history.inspections.on(on)
-            kept = routes.of_day(db, day)
+            kept = routes.of_day(db, contents.settings.day(on))
             out = self._people_out(db, contents, on) if who is None else {person_key(who)}
             codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
         if who is not None:
             kept = [one for one in kept if one.who in out]
         if not kept:
             return None
+        names = [one.name for one in self._planned_by(contents, on).team]
+        every: list[str | Besides] = [*names, Besides(tuple(names))] if names else [""]
+        each = every if who is None else [who]
+        done = [self._worked(contents, on, one).plant for one in each]
         none = np.empty(0, np.int32)
         return PlannedAndDone.of(
             [(one.last if one.who in out else none, one.of_all) for one in kept],
-            np.unique(made_by(done, who).plant),
+            np.unique(np.concatenate(done)),
             [one.hours(self._begun(contents, on, one, codes)) for one in kept if one.who in out],
         )
 
@@ -281,7 +285,7 @@ class SeasonPlans(OpenSeason):
         """
         alone = [*codes.values()] in ([], [None])
         who = kept.who or ("" if alone else Besides(tuple(codes)))
-        done = made_by(contents.history.inspections.on(on), who or None)
+        done = self._worked(contents, on, who)
         first, last = np.isin(kept.at, done.plant)
         if first or not last or not np.isfinite(done.second[0]):
             return None

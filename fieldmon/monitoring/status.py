@@ -56,8 +56,11 @@ class Status:
     Examples
     --------
     >>> import fieldmon as fm
-    >>> now = fm.Season("season.gpkg").status("2026-11-20")  # doctest: +SKIP
-    >>> now.inspected, now.found, now.estimate.high  # doctest: +SKIP
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+    >>> season = fm.Season.create("of_status.gpkg", plot, begins="2026-11-18")
+    >>> now = season.status("2026-11-18")
+    >>> now.plants, now.inspected, now.found, now.estimate.high > 0
+    (1320, 0, 0, True)
     """
 
     day: int

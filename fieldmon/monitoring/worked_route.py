@@ -53,8 +53,10 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
         robot, aisles = member.robot, season.aisles_from(member.gate)
         starts_s += member.starts_s
     history, day = season.history, settings.day(on)
-    begun_s = history.begun_s(Shift(aisles, robot, starts_s), day, who)
     done = _in_order(made_by(history.on(day), who))
+    begun_s = history.begun_s(Shift(aisles, robot, starts_s), day, who)
+    # after midnight the work of the day before may go on
+    begun_s = float(np.fmin(begun_s, done.second.min(initial=np.inf)))
     scene = Scene(
         aisles=aisles, robot=robot, chance=season.morning_in_sight(on),
         seconds_left=robot.day_s,

@@ -42,6 +42,8 @@ MEASURED = {
 class Weather:
     """Hours or days of weather, one entry each, in the order of time; NaN: not measured.
 
+    What no place on earth has is refused, for it is in another unit.
+
     Parameters
     ----------
     at
@@ -90,14 +92,14 @@ class Weather:
         for each in fields(self):
             value = getattr(self, each.name)
             if isinstance(value, np.ndarray):
-                if len(value) != len(self.at):
+                if value.shape != (len(self.at),):
                     raise SettingError(
                         worded(
                             "Weather must have one {name} for each of its {n} times, but it has "
                             "{n_2}.",
                             name=each.name,
                             n=len(self.at),
-                            n_2=len(value),
+                            n_2=value.size,
                         )
                     )
                 object.__setattr__(self, each.name, read_only(value.copy()))
@@ -108,8 +110,38 @@ class Weather:
                     step_s=self.step_s,
                 )
             )
-
         must_be_zone("Weather's zone", self.zone)
+        self._must_be_possible()
+
+    def _must_be_possible(self) -> None:
+        """Raise `SettingError` where no place has such weather: it is in another unit."""
+        for name, (low, high) in MEASURED.items():
+            values = getattr(self, name)
+            wrong = (values < low) | (values > high)
+            if wrong.any():
+                k = int(wrong.argmax())
+                raise SettingError(
+                    worded(
+                        "Weather's {name} must be from {low:g} to {high:g}, but at {at} it is "
+                        "{value:g}. Give it in the unit in which its name ends.",
+                        name=name,
+                        low=low,
+                        high=high,
+                        at=self.at[k],
+                        value=float(values[k]),
+                    )
+                )
+        if (wrong := self.low_c > self.high_c).any():
+            k = int(wrong.argmax())
+            raise SettingError(
+                worded(
+                    "Weather's low_c must not be above its high_c, but at {at} they are {low:g} "
+                    "and {high:g}.",
+                    at=self.at[k],
+                    low=float(self.low_c[k]),
+                    high=float(self.high_c[k]),
+                )
+            )
 
     def __len__(self) -> int:
         return len(self.at)

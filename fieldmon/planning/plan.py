@@ -23,7 +23,7 @@ from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.adaptive import Adaptive
-from fieldmon.samplers.answers import must_detect
+from fieldmon.samplers.answers import must_detect, must_name_plants
 from fieldmon.samplers.base import NEVER, Sampler, Scene
 
 _STARTS = time(6)
@@ -179,8 +179,8 @@ def plan_day(
     Raises
     ------
     SettingError
-        If `plot` is none, there is no such day or sampler, inspections find nothing, or the hours
-        do not reach a plant and back.
+        If `plot` is none, there is no such day or sampler, inspections find nothing, the hours do
+        not reach a plant and back, or a sampler of your own names none.
     ObservationError
         If all records are too far away to say anything, or `risk` does not fit the plants.
 
@@ -203,6 +203,7 @@ def plan_day(
     warn_of_left_out(given, day)
     today = first_day(plot, given, day, plans, risk)
     if not len(today.route):
+        must_name_plants(decides, plot.aisles, plans.robot)
         raise SettingError(
             worded(
                 "The working day must be long enough to reach a plant and "

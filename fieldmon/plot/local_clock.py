@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
 
 # no clock was ever put back by more than a day: where the date line moved
 _BACK_HOURS = 26
@@ -62,6 +63,40 @@ class LocalClock:
         shown = start + timedelta(seconds=seconds)
         moment = self.moment(start.date(), start.time()).astimezone(UTC)
         return self.at(moment + timedelta(seconds=seconds)) - shown
+
+    def after(self, start: datetime, seconds: float) -> datetime:
+        """Return what the clock shows so many seconds after a local time, though it be changed.
+
+        A `start` that names its zone goes by that one's clock.
+
+        Examples
+        --------
+        >>> from datetime import datetime
+        >>> from fieldmon.plot.local_clock import LocalClock
+        >>> str(LocalClock("Asia/Jerusalem").after(datetime(2027, 3, 26, 1, 30), 3600))
+        '2027-03-26 03:30:00'
+        """
+        gone = timedelta(seconds=seconds)
+        if start.tzinfo is not None:
+            return (start.astimezone(UTC) + gone).astimezone(start.tzinfo)
+        return start + gone + self.put_forward(start, seconds)
+
+    def second_after(self, on: date, second: float, seconds: float) -> float:
+        """Return the second of a day that the clock shows so many seconds after another one.
+
+        Where it is put back, as if it were not: the hour that it shows twice would be in no order.
+        """
+        start = datetime.combine(on, time()) + timedelta(seconds=second)
+        moved_s = self.put_forward(start, seconds).total_seconds()
+        return second + seconds + max(0.0, moved_s)
+
+    def seconds_between(self, on: date, second: float, later: float) -> float:
+        """Return how many seconds pass from one second of a day to another; see `second_after`."""
+        midnight = datetime.combine(on, time())
+        local = [midnight + timedelta(seconds=one) for one in (second, later)]
+        begin, end = (self.moment(at.date(), at.time()).astimezone(UTC) for at in local)
+        moved = (local[1] - local[0]) - (end - begin)
+        return later - second - max(0.0, moved.total_seconds())
 
     def latest(self, local: datetime) -> datetime:
         """Return the last moment at which the clock shows a local time.
@@ -123,6 +158,11 @@ def local_clock(field: Field) -> LocalClock:
     """
     west, south, east, north = field.boundary.bounds
     return clock_at((west + east) / 2, (south + north) / 2)
+
+
+def grid_clock(grid: PlantGrid) -> LocalClock:
+    """Return the clock of the place where plants stand."""
+    return clock_at(grid.frame.lon, grid.frame.lat)
 
 
 def clock_at(lon: float, lat: float) -> LocalClock:

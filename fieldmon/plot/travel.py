@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from numbers import Integral
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arguments import shown
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import counted, worded
+from fieldmon.errors import SettingError
 from fieldmon.plot.clearance import Clearance, narrow_sentence
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.road_network import RoadNetwork, find_roads
@@ -158,9 +161,13 @@ class Aisles:
         return self.grid.stop_m
 
     def distance_m(self, i: ArrayLike, j: ArrayLike) -> Float:
-        """Return the metres from plants i to plants j, -1 for the gate; shapes broadcast."""
-        shape = np.broadcast_shapes(np.shape(i), np.shape(j))
-        a, b = (np.array(np.broadcast_to(k, shape), np.int64).ravel() for k in (i, j))
+        """Return the metres from plants i to plants j, -1 for the gate; shapes broadcast.
+
+        Raise `SettingError` if one is neither.
+        """
+        here, there = self.places(i), self.places(j)
+        shape = np.broadcast_shapes(here.shape, there.shape)
+        a, b = (np.array(np.broadcast_to(k, shape)).ravel() for k in (here, there))
         metres = np.empty(a.size)
         _drive_all(self.travel, a, b, metres)
         return metres.reshape(shape)
@@ -170,14 +177,47 @@ class Aisles:
 
         It is as long as `distance_m` says, and has two points or more.
         """
-        return self.line(np.array([i, j], np.int64))[0]
+        return self.line(np.array([i, j]))[0]
 
     def line(self, places: NDArray[np.int64]) -> tuple[Float, NDArray[np.int64]]:
         """Return the line ``(m, 2)`` driven from place to place ``(k,)``, and where each leg ends.
 
         Legs are as `path` has them, one after the other; what is passed straight on is no corner.
         """
-        return driven_line(self.travel, self.roads, self._lanes, places)
+        return driven_line(self.travel, self.roads, self._lanes, self.places(places))
+
+    def places(self, given: ArrayLike) -> NDArray[np.int64]:
+        """Return numbers of plants, -1 for the gate; raise `SettingError` if one is neither.
+
+        Loops look at no number: beyond the last plant they read what is not theirs.
+        """
+        numbers = np.asarray(given)
+        if not numbers.size:
+            return numbers.astype(np.int64)
+        if numbers.dtype.kind not in "iu":
+            raise self.no_place(given)
+        wrong = (numbers < GATE) | (numbers >= len(self.grid))
+        if wrong.any():
+            raise self.no_place(numbers[wrong][0])
+        return numbers.astype(np.int64)
+
+    def no_place(self, *given: object) -> SettingError:
+        """Return what is said of the first that is neither a plant nor the gate."""
+        wrong = next(
+            one
+            for one in given
+            if not isinstance(one, Integral)
+            or isinstance(one, bool)
+            or not GATE <= int(one) < len(self.grid)
+        )
+        return SettingError(
+            worded(
+                "Travel is between plants, 0 to {last}, and the gate, -1, but one is {wrong}. "
+                "Count plants from 0.",
+                last=len(self.grid) - 1,
+                wrong=shown(wrong),
+            )
+        )
 
     @cached_property
     def onward_m(self) -> NDArray[np.float32]:

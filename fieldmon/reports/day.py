@@ -17,6 +17,7 @@ from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import left_off_in_words
 from fieldmon.planning.members import person_key
 from fieldmon.plot.grid import row_label
+from fieldmon.plot.local_clock import grid_clock
 from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
     Block,
@@ -401,4 +402,7 @@ def _every_stop(facts: DayFacts) -> TickList:
 def _clock(facts: DayFacts, seconds: float, form: str = "%H:%M") -> str:
     if facts.team:
         return NO_ROW
-    return (facts.begins + timedelta(seconds=round(seconds))).strftime(form)
+    if facts.worked:  # from one time noted to another
+        return (facts.begins + timedelta(seconds=round(seconds))).strftime(form)
+    clock = grid_clock(facts.route.aisles.grid)
+    return clock.after(facts.begins, round(seconds)).strftime(form)

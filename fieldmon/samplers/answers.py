@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.robot import Robot
-    from fieldmon.plot.travel import Clock
+    from fieldmon.plot.travel import Aisles, Clock
     from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.base import Scene, WouldFind
 
@@ -96,6 +96,27 @@ class Checked(Sampler):
                 "and the same ones each time, but it does not. Read would_find only of plants "
                 "that were reached, and draw by scene.key."
             )
+
+
+def must_name_plants(sampler: Sampler, aisles: Aisles, robot: Robot) -> None:
+    """Raise `SettingError` for one of somebody's own that named no plant, though hours reach one.
+
+    Those of this package name what their hours reach.
+    """
+    if not isinstance(sampler, Checked):
+        return
+    ways = aisles.for_robot(robot)
+    way_s = ways.distance_m(GATE, np.flatnonzero(~ways.too_narrow)) / robot.speed_m_s
+    stop_s = float(sampler.inspection_times(robot).stop_s.min())
+    if way_s.min() * (2 if robot.returns else 1) + stop_s <= robot.day_s:
+        raise SettingError(
+            worded(
+                "{who} must name plants to inspect, but it names none, though {hours:g} h reach "
+                "some. Let its walk return Stops with plants.",
+                who=repr(sampler).strip("<>"),
+                hours=robot.hours,
+            )
+        )
 
 
 def must_detect(sampler: Sampler, robot: Robot) -> None:

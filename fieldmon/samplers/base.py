@@ -6,6 +6,7 @@ from abc import abstractmethod
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
+from operator import index
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -95,19 +96,19 @@ class Scene:
     chance
         ``(n,)`` believed chance that each plant is infested.
     last_inspected
-        ``(n,)`` int32 day on which each plant was inspected last, `NEVER` if it was not. Plants
+        ``(n,)`` int32 day on which each plant was inspected last, -1 if it was not. Plants
         in aisles too narrow for the robot seem inspected today: nobody is sent there.
     day
         Today's number. A plant inspected on this day is not visited again.
     at
-        Where the robot stands: a plant, or `GATE`.
+        Where the robot stands: a plant, or -1, the gate.
     seconds_left
         What is left of the working day.
     trail
         ``(k,)`` int32 plants of the last working day before today, in order; empty if there was
         none. A sweep goes on where it ends, in its direction.
     key
-        64 random bits for samplers that draw, see `fieldmon.compute.random_streams.coin`.
+        64 random bits for samplers that draw, by ``np.random.default_rng(int(scene.key))``.
     pair_chance
         ``(e,)`` believed chance that two plants side by side are both infested, in the order of
         ``grid.adjacent``; None where nothing is believed of pairs.
@@ -161,7 +162,7 @@ class Scene:
 
     @property
     def resume(self) -> int:
-        """Return the plant after which a sweep goes on, or `NEVER` if it has not begun."""
+        """Return the plant after which a sweep goes on, or -1 if it has not begun."""
         if self.at >= 0:
             return self.at
         return int(self.trail[-1]) if len(self.trail) else NEVER
@@ -182,8 +183,19 @@ class Scene:
         return robot_clock(self.robot, self.seconds_left)
 
     def travel_s(self, i: int, j: int) -> float:
-        """Return the seconds from plant i to plant j, either of which may be `GATE` (-1)."""
-        return travel_s(self.aisles.travel, self.clock, i, j)
+        """Return the seconds from plant i to plant j, either of which may be -1, the gate.
+
+        Raise `SettingError` if one is no plant.
+        """
+        travel = self.aisles.travel
+        n = len(travel.x_m)
+        try:
+            known = GATE <= index(i) < n and GATE <= index(j) < n
+        except TypeError:
+            known = False
+        if not known or bool in (type(i), type(j)):
+            raise self.aisles.no_place(i, j)
+        return travel_s(travel, self.clock, i, j)
 
     def walked(self, walk: Callable[..., int], *arrays: object) -> Stops:
         """Return the stops of a compiled walk through the rest of the day.

@@ -160,7 +160,8 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
     if isinstance(given, type) or not own:
         raise SettingError(
             f"A sampler must be one of {', '.join(SAMPLERS)}, or one of your own with a method "
-            f"walk, but it is {shown(given)}. Derive your own from fieldmon.Sampler."
+            f"walk, but it is {shown(given)}. Give its name, or derive your own from "
+            "fieldmon.Sampler."
         )
     if type(given).__module__.startswith("fieldmon."):
         return given

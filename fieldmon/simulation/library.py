@@ -12,16 +12,20 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
+from fieldmon.samplers.answers import must_name_plants
 from fieldmon.simulation.metrics import season_metrics
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SeasonSettings, check_start, simulated_days
 from fieldmon.simulation.start import Start, season_start
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.season import SimulatedDay
 
 
 def draw_start(
@@ -93,12 +97,13 @@ def simulate(
     Returns
     -------
     SeasonMetrics
-        Columns ``(d,)`` a day: finds, plants still infested, shares inspected and detected.
+        Columns ``(d,)`` a day: finds, plants still infested, shares inspected and detected. Each
+        plant's are in `simulate_days`.
 
     Raises
     ------
     SettingError
-        If there is no such sampler.
+        If there is no such sampler, or one of your own names no plant on any day.
     PlotError
         If the start is of another plot.
 
@@ -115,8 +120,54 @@ def simulate(
     >>> season.visits, (season.worked_h > 0).nonzero()[0].tolist()
     (2, [0, 7])
     """
-    decides = sampler_or_name(sampler)
-    chosen, streams = settings or SeasonSettings(), RandomStreams(seed)
-    return season_metrics(
-        simulated_days(plot.aisles, robot or Robot(), decides, start, chosen, streams)
+    decides, worker = sampler_or_name(sampler), robot or Robot()
+    season = season_metrics(simulate_days(plot, start, decides, worker, settings, seed))
+    if not season.ever_visited_pct.any():
+        must_name_plants(decides, plot.aisles, worker)
+    return season
+
+
+@checked
+def simulate_days(
+    plot: Plot,
+    start: Start,
+    sampler: str | Sampler = "adaptive",
+    robot: Robot | None = None,
+    settings: SeasonSettings | None = None,
+    seed: int = 1,
+) -> Iterator[SimulatedDay]:
+    """Simulate a season as `simulate` does, day by day: who is infested, inspected and found.
+
+    Parameters
+    ----------
+    plot, start, sampler, robot, settings, seed
+        As `simulate` takes them.
+
+    Returns
+    -------
+    Iterator of SimulatedDay
+        Each day as it happens.
+
+    Raises
+    ------
+    SettingError
+        If there is no such sampler.
+    PlotError
+        If the start is of another plot.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
+    >>> days = [*fm.simulate_days(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))]
+    >>> np.array([day.infested for day in days]).shape
+    (3, 3825)
+    >>> [int(day.work.found.sum()) == day.found for day in days]
+    [True, True, True]
+    """
+    check_start(plot.aisles, start)
+    decides, chosen = sampler_or_name(sampler), settings or SeasonSettings()
+    return simulated_days(
+        plot.aisles, robot or Robot(), decides, start, chosen, RandomStreams(seed)
     )

@@ -193,6 +193,16 @@ class SimulatedDay:
         the finds.
     sprayed
         What was treated in the evening; None: nothing.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
+    >>> day = next(fm.simulate_days(plot, start, "naive"))
+    >>> found = day.work.plant[day.work.found]
+    >>> day.infested[found].all(), day.in_the_evening[found].any()
+    (np.True_, np.False_)
     """
 
     number: int

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be_in
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.compute.ranges import DAYS, AllowedRange
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import Zones, best_zones, whole_plot
 from fieldmon.errors import SettingError
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 ZONES, WHOLE = "zones", "whole"
+_SHARE = AllowedRange(0.0, 1.0, above=True, below=True)
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,13 @@ class TreatmentRule:
     ------
     SettingError
         If the level is no share, nothing is treated by that name, or the days are below 1.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> rule = fm.TreatmentRule(0.02, costs=fm.TreatmentCosts(per_ha=120))
+    >>> fm.SeasonSettings(treating=rule).treating.every_days
+    7
     """
 
     level: float = 0.05
@@ -54,22 +65,17 @@ class TreatmentRule:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.level < 1.0:
-            raise SettingError(
-                "The share of plants from which it is treated must lie between 0 and 1, but it is "
-                f"{self.level:g}."
-            )
+        must_hold_kinds(self, "A treatment rule's")
+        must_be_in("A treatment rule's level", _SHARE, self.level)
+        must_be_in("A treatment rule's every_days", DAYS, self.every_days)
         if self.treats not in {ZONES, WHOLE}:
             raise SettingError(
-                f"What is treated must be {ZONES!r} or {WHOLE!r}, but it is {self.treats!r}."
-            )
-        if self.every_days < 1:
-            raise SettingError(
-                f"Treatments must be 1 day or more apart, but they are {self.every_days}."
+                f"A treatment rule's treats must be {ZONES!r} or {WHOLE!r}, but it is "
+                f"{self.treats!r}."
             )
 
     def treated(self, grid: PlantGrid, chance: Floats) -> Zones | None:
-        """Return what is treated of a plot believed so ``(n,)``; None: nothing."""
+        """Return what is treated of a `grid` of this `chance` ``(n,)``; None: nothing."""
         if self.treats == WHOLE:
             above = float(chance.mean()) >= self.level
             return whole_plot(grid, chance, self.costs) if above else None
@@ -82,7 +88,7 @@ class TreatmentRule:
         return kept if len(kept) else None
 
     def cleaned(self, zones: Zones, day: int) -> NDArray[np.bool_]:
-        """Return whom a treatment cleans if infested, ``(n,)``."""
+        """Return whom treating `zones` on a `day` cleans if infested, ``(n,)``."""
         draws = RandomStreams(self.seed).of("treat", day).random(len(zones.treated))
         cleaned: NDArray[np.bool_] = zones.treated & (draws < self.costs.works)
         return cleaned

@@ -602,7 +602,6 @@ def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
     place = page.get_by_role("textbox", name=texts.OUTLINE_PLACE)
     place.fill("https://www.openstreetmap.org/#map=17/31.5012/34.9034")
     place.press("Enter")
-    page.get_by_role("button", name=texts.OUTLINE_GO).click()
     until(lambda: view(page)["zoom"] > 15)
     still(page)
     x, y = free(page)
@@ -619,7 +618,10 @@ def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
     area = page.locator(".drawbar span").inner_text()
     page.mouse.move(*start)
     page.mouse.down()
+    edge = page.locator(".label.edge:visible").first
+    before = edge.inner_text()
     page.mouse.move(*end, steps=4)
+    assert edge.inner_text() != before, "the length of an edge follows the finger"
     page.mouse.up()
     until(lambda: page.locator(".drawbar span").inner_text() != area)
     page.reload()
@@ -657,6 +659,10 @@ def test_corners_are_walked_to_with_a_phone_and_a_rough_position_is_none(page, a
     bar = page.locator(".drawbar").bounding_box()
     inside = [(0 < x < 390, 0 < y < bar["y"]) for x, y in pixels(view(page), lonlat)]
     assert all(map(all, inside)), "all corners are in view, none is behind the bar"
+    grip = page.get_by_role("button", name=words["sheet"])
+    for is_seen in (False, True):
+        grip.click()
+        until(lambda: page.locator(".drawbar").is_visible() == is_seen)  # noqa: B023 - at once
     window.set_geolocation({"longitude": 34.9, "latitude": 31.502, "accuracy": 900})
     here.click()
     page.locator(".map .tip", has_text="you are seen to 900 m only").wait_for()
@@ -952,6 +958,12 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     place = said.bounding_box()
     assert place["y"] >= sheet, "what was done is said where one looks"
     assert place["y"] + place["height"] <= 844
+    page.goto(f"{address}/plot?season=My+own+files&lang=he")
+    title = page.locator(".st-key-panel h1")
+    title.wait_for()
+    gap = """(one) => { const words = document.createRange(); words.selectNodeContents(one);
+      return one.getBoundingClientRect().right - words.getBoundingClientRect().right; }"""
+    assert title.evaluate(gap) < 5, "a heading of Latin letters begins where the others do"
 
 
 @pytest.mark.parametrize("page", [((960, 600), None)], indirect=True)

@@ -1,12 +1,19 @@
 """What imports say and ask, at a terminal."""
 
 from dataclasses import replace
-from datetime import date, time
+from datetime import date, datetime, time
 
 import numpy as np
 import pytest
+import shapely
 
-from fieldmon.cli.messages import Terminal, describe, tell_past_midnight, tell_unusable
+from fieldmon.cli.messages import (
+    Terminal,
+    describe,
+    tell_clock_change,
+    tell_past_midnight,
+    tell_unusable,
+)
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
@@ -118,6 +125,15 @@ def test_work_past_midnight_is_doubted(capsys, start, hours, said):
     tell_past_midnight(on, MonitoringSettings(on, robot=Robot(hours=hours), starts=starts))
     err = capsys.readouterr().err
     assert ("counts for 2027-01-01" in err) == said == bool(err)
+
+
+def test_clocks_put_back_in_a_seasons_work_are_told(capsys):
+    field = Field("plot", shapely.MultiPolygon([shapely.box(35.15, 30.36, 35.151, 30.361)]))
+    tell_clock_change(datetime(2026, 10, 25, 0, 30), 4, field)
+    assert "put back by 60 min during this work" in capsys.readouterr().err
+    for start in (datetime(2026, 10, 25, 6), datetime(2027, 3, 26, 1)):
+        tell_clock_change(start, 4, field)
+        assert capsys.readouterr().err == ""
 
 
 def test_work_of_who_starts_late_in_a_team_goes_past_midnight(capsys):

@@ -54,31 +54,69 @@ def test_two_share_the_plots_by_a_table(run, seasons, tmp_path):
     assert "chance to find what is there 69 % (Ann)" in err
 
 
-def test_what_was_just_seen_is_not_due_and_its_route_of_the_morning_is_gone(run, seasons, tmp_path):
-    words = ("share", *seasons, "--hours", 1, "--move", 0, "-o", "day")
-    assert run(*words, "--date", BEGINS)[0] == 0
-    assert len([*(tmp_path / "day").iterdir()]) == 3
-    (tmp_path / "day" / "own.txt").write_text("stays")
+def test_what_was_just_seen_is_not_due(run, seasons, tmp_path):
+    words = ("share", *seasons, "--hours", 1, "--move", 0)
     (tmp_path / "finds.csv").write_text("row,plant,result\n1,1,clean\n")
     assert run("record", seasons[0], "finds.csv", "--date", BEGINS)[0] == 0
-    code, out, err, _ = run(*words, "--date", NEXT)
+    code, out, err, made = run(*words, "--date", NEXT)
     assert code == 0, err
     assert "nursery was inspected 1 day ago and is not due." in out
-    assert {path.name for path in (tmp_path / "day").iterdir()} == {
-        "01-bend.geojson", "plan.csv", "own.txt",
-    }  # fmt: skip
-    code, _, err, _ = run(*words, "--date", NEXT, "--all")
+    assert {path.name for path in made} == {f"day-{NEXT}", "01-bend.geojson", "plan.csv"}
+    code, _, err, _ = run(*words, "--date", NEXT, "--all", "-o", "both")
     assert code == 0, err
-    assert len(table(tmp_path / "day" / "plan.csv")) == 2
+    assert len(table(tmp_path / "both" / "plan.csv")) == 2
 
 
-def test_a_plot_without_time_and_who_has_none_are_said(run, seasons):
+def test_nothing_that_is_in_the_folder_is_touched(run, seasons, tmp_path):
+    (tmp_path / "plan.csv").write_text("file\nnursery.gpkg\n")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    code, _, err, made = run("share", *seasons, "--date", BEGINS, "--hours", 1, "-o", ".")
+    assert code == 2
+    assert "must go into a new or empty folder" in err
+    assert not made
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_the_seasons_robot_works_where_nobody_else_is_told(run, seasons, tmp_path):
+    season, other = seasons
+    words = ("share", season, "--date", BEGINS, "--format", ".geojson")
+    assert run("change", season, "--look", 120)[0] == 0
+    code, _, err, _ = run(*words, "-o", "own")
+    assert code == 0, err
+
+    def stops(folder):
+        (file,) = (tmp_path / folder).glob("01-*.geojson")
+        _, *stops = json.loads(file.read_text())["features"]
+        return {one["properties"]["inspect_s"] for one in stops}
+
+    (own,) = stops("own")
+    assert own >= 120
+    code, _, err, _ = run(*words, "--look", 30, "-o", "told")
+    assert code == 0, err
+    assert stops("told").pop() < 40
+    code, _, err, _ = run(*words, other, "--hours", 1, "-o", "two")
+    assert code == 2
+    assert "must work with one robot, but they have several" in err
+    code, _, err, _ = run(*words, other, "--hours", 1, "--scout", "-o", "two")
+    assert code == 0, err
+
+
+def test_days_of_several_lengths_are_asked_for_one(run, seasons):
+    code, _, err, made = run("share", *seasons, "--date", BEGINS, "-o", "day")
+    assert code == 2
+    assert "The day must have one length, but the seasons have 1 and " in err
+    assert not made
+
+
+def test_a_plot_without_time_and_who_has_none_are_said(run, seasons, tmp_path):
     code, out, err, _ = run("share", *seasons, "--date", BEGINS, "--hours", 0.3, "-o", "day")
     assert code == 0, err
-    assert "No time for nursery." in out or "No time for bend." in out
-    code, out, err, _ = run("share", seasons[0], "--date", BEGINS, "--robots", 2, "-o", "day")
+    (waits,) = (row["plot"] for row in table(tmp_path / "day" / "plan.csv") if not row["file"])
+    assert f"No time for {waits}." in out
+    code, out, err, _ = run("share", seasons[0], "--date", BEGINS, "--robots", 2, "-o", "day2")
     assert code == 0, err
     assert "Without a plot: robot-2." in out
+    assert table(tmp_path / "day2" / "plan.csv")[-1]["who"] == "robot-2"
 
 
 @pytest.mark.parametrize(

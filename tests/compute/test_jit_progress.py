@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 from fieldmon.compute import jit_progress
 from fieldmon.compute.jit_progress import FirstUse
 
@@ -50,6 +52,30 @@ def test_the_clock_of_work_stands_while_loops_are_compiled_or_waited_for(monkeyp
     now[0] += 20.0
     use.waited(20.0)
     assert after(0.5) == 4.0
+
+
+@pytest.mark.parametrize("sees", [True, False])
+def test_a_program_of_ones_own_says_once_that_it_compiles_where_somebody_sees_it(
+    monkeypatch, capsys, sees
+):
+    now = [0.0]
+    monkeypatch.setattr(jit_progress, "monotonic", lambda: now[0])
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: sees)
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+    use = FirstUse()
+    use.began()
+    assert not capsys.readouterr().err
+    for _ in range(2):
+        now[0] += 2.0
+        use.ended()
+        use.began()
+    assert capsys.readouterr().err == (f"{jit_progress.COMPILING}\n" if sees else "")
+    told = FirstUse()
+    told.tell(lambda *_: None)
+    told.began()
+    now[0] += 2.0
+    told.ended()
+    assert not capsys.readouterr().err
 
 
 def test_only_the_first_use_of_an_installation_compiles(tmp_path):

@@ -135,8 +135,8 @@ def test_the_simulation_of_the_tutorial_comes_out_as_it_says(folder, run, capsys
     (words,) = words_of(the_fence(TUTORIAL, "sh", "fieldmon simulate"))
     run(words)
     last = re.findall(r"^ +10 +([\d.]+) ", capsys.readouterr().out, re.MULTILINE)
-    naive, bouncy, dynamic = last
+    adaptive, dynamic, naive, bouncy = last
     told = " ".join(TUTORIAL.split())
-    assert f"Dynamic has found {dynamic} % of all infestations so far, Naive {naive} %" in told
-    assert f"Bouncy {bouncy} %" in told
+    assert f"has found {adaptive} % of all infestations so far, Dynamic {dynamic} %" in told
+    assert f"Naive {naive} % and Bouncy {bouncy} %" in told
     assert (folder / "season.csv").exists()

@@ -172,6 +172,25 @@ def test_a_day_goes_on_past_midnight_as_it_would_by_day(plot, tmp_path, ends):
     assert done.stops
 
 
+@pytest.mark.parametrize("ends", [[10**6], [3, 8, 9, 10**6]])
+def test_a_day_goes_on_over_clocks_put_forward_as_it_would_on_another(plot, tmp_path, ends):
+    """No result has a time that does not exist."""
+    asked = []
+    for on in (date(2027, 3, 25), date(2027, 3, 26)):
+        settings = MonitoringSettings(on, robot=Robot(hours=0.3), starts=time(1, 50))
+        season = Season.create(tmp_path / f"{on}.gpkg", plot, None, settings)
+        for n in ends:
+            day = SeasonDay(Season(season.path), on, "charged")
+            with suppress(KeyboardInterrupt):
+                drive_day(day, plot.aisles, (settings.robot, CrashesAfter(n)))
+        held = season.history.inspections
+        asked.append(held.plant.tolist())
+        hours = {*(held.second // 3600).tolist()}
+        assert hours == ({1.0, 2.0} if on.day == 25 else {1.0, 3.0})
+        assert day.gone_s <= settings.robot.day_s
+    assert asked[0] == asked[1]
+
+
 def test_the_last_second_of_a_day_is_rounded_into_the_next():
     one = as_inspection(0, False, (ON, 86_399.7))
     assert (str(one.date[0]), one.second[0]) == ("2026-04-07", 0.0)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.digest import digest
+from fieldmon.errors import SettingError
 from fieldmon.infestation.pest_in_weather import (
     PestInWeather,
     along_rows,
@@ -37,6 +38,15 @@ def daily(first="2026-06-01", days=3, **measured):
     at = np.datetime64(first, "D") + np.arange(days)
     values = {k: np.resize(np.asarray(v, float), days) for k, v in measured.items()}
     return weather_of(at.astype("datetime64[s]"), 86_400, **values)
+
+
+def test_weather_without_a_day_on_which_it_begins_is_refused():
+    weather = hourly(temperature_c=np.linspace(10.0, 30.0, 24))
+    with pytest.raises(SettingError, match="must begin on a day, but none is given"):
+        PestInWeather(MITE, weather)
+    with pytest.raises(SettingError, match="A pest's weather must be a Weather, but it is 'hot'"):
+        PestInWeather(MITE, "hot")
+    assert PestInWeather(MITE, weather, date(2026, 1, 1)).begins == PestInWeather(MITE).begins
 
 
 def test_an_hour_s_degree_days_add_up_to_the_day_s():

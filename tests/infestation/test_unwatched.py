@@ -121,7 +121,29 @@ def test_plants_that_are_known_to_be_infested_tell_nothing_of_the_number(evening
     unknown = known.chance < 0.99
     first = nights(known, 1)
     grown = np.log(morning.chance[unknown].sum() / first.chance[unknown].sum())
-    assert morning.unwatched.grown == pytest.approx(grown, rel=0.05)
+    # what the known sent out is none of what others became
+    own = morning.unwatched.grown
+    assert own - np.log(1.0 - morning.unwatched.sent) == pytest.approx(grown, rel=0.05)
+    assert 0.5 * grown < own < 0.95 * grown
+
+
+@pytest.mark.parametrize("others", [0.0, 1e-4, 1e-3, 1e-2])
+def test_of_plants_that_are_told_to_be_infested_only_what_they_send_out_is_in_doubt(others):
+    chance = np.full(400, others)
+    chance[::20] = 1.0
+    ahead = forecast(TracedPairs.of(GRID, chance), GRID, [NIGHT] * 14)
+    assert ahead.low[0] == 20
+    assert (ahead.low <= ahead.expected + 0.5).all()
+    assert (ahead.expected <= ahead.high + 0.5).all()
+    assert (np.diff(ahead.low) >= 0).all()
+    assert (np.diff(ahead.high) >= 0).all()
+    assert ahead.high[-1] < 4 * ahead.expected[-1]
+
+
+def test_of_a_plot_that_is_told_to_be_infested_nothing_is_in_doubt():
+    ahead = forecast(TracedPairs.of(GRID, np.full(400, 0.995)), GRID, [NIGHT] * 3)
+    assert ahead.low.tolist() == ahead.high.tolist() == [400] * 4
+    assert verdict(TracedPairs.of(GRID, np.ones(400)), 0.9).chance_above == 1.0
 
 
 def test_it_is_kept_with_a_morning(evening):

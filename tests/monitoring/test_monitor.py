@@ -10,11 +10,14 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 from fieldmon.monitoring.season_file import Season
+from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -278,3 +281,29 @@ def test_it_tells_what_a_season_with_the_same_results_tells(tmp_path, plot, trea
     assert monitor.verdict(0.05).chance_above == season.verdict(on, 0.05).chance_above
     assert monitor.forecast().high.tolist() == season.forecast(on).high.tolist()
     assert monitor.estimate(0.5).high < monitor.estimate().high
+
+
+def test_a_pest_in_its_weather_is_believed_as_a_season_believes_it(tmp_path, plot):
+    robot, on = Robot(hours=1.0), date(2026, 4, 6)
+    days = np.arange("2026-04-01", "2026-04-12", dtype="datetime64[D]").astype("datetime64[s]")
+    weather = weather_of(days, DAY_S, temperature_c=np.full(len(days), 24.0))
+    first, mite = np.full(len(plot.grid), 0.02), shipped_pest("spider-mite")
+    monitor = Monitor(plot, "naive", robot, first, pest=PestInWeather(mite, weather, on))
+    season = Season.create(
+        tmp_path / "s.gpkg", plot, risk=first, begins=on, robot=robot, pest=mite, weather=weather,
+        sampler="naive", prior=PriorSettings(0.0, edge_chance=0.0, path_chance=0.0),
+    )  # fmt: skip
+    with monitor.day() as day:
+        while (stop := day.ask()) is not None:
+            day.tell(found=stop.plant % 9 == 0)
+    season.record(
+        Inspections.of(day.plants, day.found.astype(np.int8), np.datetime64(on, "D")), "x"
+    )
+    assert monitor.forecast().high.tolist() == season.forecast(on).high.tolist()
+    assert monitor.forecast().sentence() == season.forecast(on).sentence()
+    monitor.night()
+    assert monitor.chance == pytest.approx(season.evening(date(2026, 4, 7)), abs=1e-9)
+    without = Monitor(plot, "naive", robot, first)
+    assert not np.allclose(without.forecast().expected, monitor.forecast().expected)
+    with pytest.raises(SettingError, match="A pest needs its finds traced"):
+        Monitor(plot, belief_settings=BeliefSettings(traces=False), pest=PestInWeather(mite))

@@ -1,6 +1,6 @@
 """Routes in a season's file: a revision a change, and the stops of the last one."""
 
-from datetime import datetime, time, timedelta
+from datetime import date, datetime, time, timedelta
 
 import numpy as np
 import pyogrio
@@ -8,8 +8,10 @@ import pytest
 import shapely
 
 from fieldmon.monitoring import Season, routes
+from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import TeamMember
-from tests.monitoring.seasons import BEGINS, ROBOT, a_season, some_results
+from fieldmon.plot.robot import Robot
+from tests.monitoring.seasons import BEGINS, ROBOT, a_plot, a_season, some_results
 
 
 @pytest.fixture
@@ -52,6 +54,20 @@ def test_stops_are_kept_in_order_with_their_times(season):
     begin = today.route.notes.start
     at = begin + timedelta(seconds=round(arrive_s[3]))
     assert datetime.fromisoformat(arrive[3]) == at
+
+
+def test_stops_after_clocks_are_put_forward_are_kept_and_reported_as_they_show(tmp_path):
+    on = date(2027, 3, 26)
+    settings = MonitoringSettings(on, robot=Robot(hours=1.0), starts=time(1, 30))
+    season = Season.create(tmp_path / "spring.gpkg", a_plot(), None, settings)
+    route = season.plan(on).route
+    begin = route.notes.start
+    assert {at[11:13] for (at,) in rows(season, "SELECT arrive FROM stops")} == {"01", "03"}
+    rest = season.plan(on, time(3, 10), keep=False)
+    assert (rest.scene.seconds_left, rest.route.notes.start) == (
+        1200.0,
+        begin.replace(hour=3, minute=10),
+    )
 
 
 def test_the_plants_of_the_latest_revision_are_given(season):

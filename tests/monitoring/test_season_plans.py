@@ -1,7 +1,7 @@
 """A season's days are planned from all that is known, and their routes are kept."""
 
 from dataclasses import replace
-from datetime import date, time
+from datetime import date, datetime, time, timedelta
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from fieldmon.monitoring.routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import person_key, team_of
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.travel import GATE
 from tests.monitoring.seasons import (
     BEGINS,
     ROBOT,
@@ -55,6 +56,67 @@ def test_the_time_of_the_last_result_is_the_time_of_day(season):
     rest = season.plan(BEGINS)
     assert rest.scene.at == results.plant[0]  # the one inspected last, not the one listed last
     assert rest.scene.seconds_left == ROBOT.day_s - 400.0
+
+
+def night_of(season, day, who=""):
+    """Record all of the route that somebody has, at its times; return when it began and ended."""
+    (route,) = (
+        one.route for one in season.plan_each(on(day)) if one.route.notes.who == (who or None)
+    )
+    begins = route.notes.start
+    moments = np.datetime64(begins) + np.round(route.leave_s).astype("timedelta64[s]")
+    days = moments.astype("datetime64[D]")
+    noted = Inspections.of(
+        route.plant, np.full(len(route), CLEAN), days,
+        second=(moments - days) / np.timedelta64(1, "s"), who=np.full(len(route), who, object),
+    )  # fmt: skip
+    season.record(noted, f"{who} {day}")
+    return begins, moments[-1].item()
+
+
+@pytest.mark.parametrize("returns", [True, False])
+@pytest.mark.parametrize("late_s", [None, 0.0, 2400.0])
+def test_each_night_of_a_season_has_its_own_begin_and_all_its_hours(tmp_path, returns, late_s):
+    """Those before went past midnight, too. With `late_s` two of a team, one so much later."""
+    robot, starts = replace(ROBOT, hours=1.0, returns=returns), time(23, 30)
+    season = a_season(tmp_path / "nights.gpkg", robot=robot, starts=starts)
+    late = {"": 0.0}
+    if late_s is not None:
+        one, other = team_of(2, robot)
+        team = (one, replace(other, starts_s=late_s))
+        season.change(replace(season.settings, team=team), season.settings)
+        late = {"robot-1": 0.0, "robot-2": late_s}
+    for day in range(3):
+        for who, after_s in late.items():
+            scene = season.scene(on(day), who=who)
+            assert scene.seconds_left == robot.day_s
+            assert (scene.at == GATE) == (returns or day == 0)
+            begins, ends = night_of(season, day, who)
+            assert begins == datetime.combine(on(day), starts) + timedelta(seconds=after_s)
+            assert ends.date() == on(day + 1)
+            done = season.worked(on(day), who).plant
+            assert done.tolist() == season.kept_route(on(day), who).tolist()
+            assert season.scene(on(day), who=who).seconds_left < 300.0
+        held = season.planned_and_done(on(day))
+        assert (held.left, held.added) == (0, 0)
+
+
+def test_the_time_now_may_be_past_midnight_where_the_work_is(season):
+    season.change(replace(season.settings, starts=time(23)), season.settings)
+    assert season.scene(BEGINS, time(0, 15)).seconds_left == ROBOT.day_s - 75 * 60
+    assert season.scene(BEGINS, time(12)).seconds_left == ROBOT.day_s
+    start = season.plan(BEGINS, time(0, 15)).route.notes.start
+    assert start == datetime.combine(on(1), time(0, 15))
+
+
+def test_a_stray_result_late_in_the_evening_takes_nothing_of_the_next_morning(season):
+    late = some_results(season, n=1)
+    late = Inspections.of(late.plant, late.result, late.date[0], second=np.array([82_800.0]))
+    season.record(late, "by hand")
+    early = Inspections.of(np.array([7]), np.array([CLEAN]), np.datetime64(on(1)),
+                           second=np.array([22_000.0]))  # fmt: skip
+    season.record(early, "phone")
+    assert season.scene(on(1)).seconds_left == ROBOT.day_s - 400.0
 
 
 def test_a_plant_that_could_not_be_inspected_is_left_alone_today_and_comes_back(season):

@@ -59,3 +59,28 @@ def test_arrays_of_other_lengths_and_steps_are_refused():
         weather_of(hours("2026-11-18", 3), HOUR_S, temperature_c=np.arange(2.0))
     with pytest.raises(SettingError, match="by hours or days"):
         weather_of(hours("2026-11-18", 3), 1800)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("temperature_c", 288.15, "temperature_c must be from -70 to 60, .* it is 288.15. .* unit"),
+        ("high_c", 79.0, "high_c must be from -70 to 60"),
+        ("low_c", -np.inf, "low_c .* it is -inf"),
+        ("wind_speed_m_s", -1.0, "wind_speed_m_s must be from 0 to 100"),
+        ("wind_from_deg", 400.0, "wind_from_deg must be from 0 to 360"),
+        ("rain_mm", -1.0, "rain_mm must be from 0 to 2000, but at 2026-11-18T01:00:00 it is -1"),
+        ("humidity_pct", 400.0, "humidity_pct must be from 0 to 100"),
+    ],
+)
+def test_weather_that_no_place_has_is_refused_for_it_is_in_another_unit(name, value, said):
+    at = hours("2026-11-18", 3)
+    with pytest.raises(SettingError, match=said):
+        weather_of(at, HOUR_S, **{name: np.array([np.nan, value, 5.0])})
+    assert len(weather_of(at, HOUR_S, **{name: np.array([np.nan, 0.0, 60.0])})) == 3
+
+
+def test_no_low_is_above_its_high():
+    extremes = {"low_c": np.array([9.0, 21.0]), "high_c": np.array([np.nan, 20.0])}
+    with pytest.raises(SettingError, match="at 2026-11-18T01:00:00 they are 21 and 20"):
+        weather_of(hours("2026-11-18", 2), HOUR_S, **extremes)

@@ -2,10 +2,11 @@
 
 import zoneinfo
 from datetime import UTC, date, datetime, timedelta
+from zoneinfo import ZoneInfo
 
 import pytest
 import tzfpy
-from hypothesis import example, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, box
 
@@ -101,6 +102,35 @@ def test_the_latest_moment_of_a_local_time_is_that_time_or_later(zone, local):
 def test_by_how_much_a_clock_is_put_forward_or_back_during_a_day(zone, start, hours, minutes):
     moved = LocalClock(zone).put_forward(datetime.fromisoformat(start), 3600 * hours)
     assert moved == timedelta(minutes=minutes)
+
+
+@example("Asia/Jerusalem", datetime(2027, 3, 25, 23, 30, tzinfo=UTC), 3600)
+@example("Asia/Jerusalem", datetime(2026, 10, 24, 21, 30, tzinfo=UTC), 12_600)
+@given(ZONES, MOMENTS, st.integers(0, 86_400))
+def test_after_some_seconds_it_is_what_the_clock_then_shows(zone, moment, seconds):
+    clock = LocalClock(zone)
+    start, end = clock.at(moment), moment + timedelta(seconds=seconds)
+    assume(clock.moment(start.date(), start.time()) == moment)  # not the second time it shows it
+    assert clock.after(start, seconds) == clock.at(end)
+    own = moment.astimezone(ZoneInfo(zone))
+    assert LocalClock("Asia/Kolkata").after(own, seconds).isoformat() == (
+        end.astimezone(ZoneInfo(zone)).isoformat()
+    )
+
+
+@pytest.mark.parametrize(
+    ("on", "later_h", "gone_h"),
+    [
+        ("2027-03-26", 4.5, 2.5),  # put forward at two
+        ("2027-03-26", 1.75, 0.75),
+        ("2026-10-25", 4.5, 3.5),  # put back at two: as if it were not
+        ("2026-11-02", 27.5, 26.5),
+    ],
+)
+def test_seconds_of_a_day_skip_what_the_clock_skips(on, later_h, gone_h):
+    clock, day = LocalClock("Asia/Jerusalem"), date.fromisoformat(on)
+    assert clock.second_after(day, 3600.0, 3600.0 * gone_h) == 3600.0 * later_h
+    assert clock.seconds_between(day, 3600.0, 3600.0 * later_h) == 3600.0 * gone_h
 
 
 @pytest.mark.parametrize("zone", ["America/Asuncion", "America/Argentina/Cordoba"])

@@ -13,6 +13,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from shapely import MultiPolygon, Polygon, box
 
+from fieldmon.errors import SettingError
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import grid_from_plants, lay, rectangle
 from fieldmon.plot.obstacles import row_lines
@@ -128,6 +129,16 @@ def test_distances_broadcast_like_numpy():
     assert (table == table.T).all()
     assert table[3, 8] == aisles.distance_m(2, 7)
     assert aisles.distance_m(np.empty(0, int), 3).shape == (0,)
+
+
+@pytest.mark.parametrize("wrong", [108, 10_000_000, -2, 1.5, [0, 108], None])
+def test_no_way_leads_to_what_is_no_plant(wrong):
+    aisles = Aisles.of(SHAPES["rectangle"])
+    with pytest.raises(SettingError, match=r"plants, 0 to 107, and the gate, -1, but one is"):
+        aisles.distance_m(wrong, 0)
+    if np.ndim(wrong) == 0:
+        with pytest.raises(SettingError, match="0 to 107"):
+            aisles.path(0, wrong)
 
 
 def test_compiled_loops_drive_as_far():

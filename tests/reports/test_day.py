@@ -1,7 +1,7 @@
 """A day on one page: what it says, planned or worked."""
 
 from dataclasses import replace
-from datetime import time, timedelta
+from datetime import datetime, time, timedelta
 
 import numpy as np
 import pytest
@@ -59,6 +59,14 @@ def test_a_planned_day_says_what_to_do_first(worked, last, ahead, of_day):
     assert shown["Drive"].value == Units().metres(plan.route.drive_m)
     assert shown["Hours"].note.startswith("06:00 to ")
     assert ahead.route.plant.tolist() == plan.route.plant.tolist()
+
+
+def test_a_day_in_which_clocks_are_put_forward_shows_no_hour_that_is_none(ahead):
+    late = replace(ahead, begins=datetime(2027, 3, 26, 1, 30), team=())
+    said = figures(day_report(late, Units()))["Hours"].note
+    assert late.route.end_s > 1800.0
+    ends = datetime(2027, 3, 26, 2, 30) + timedelta(seconds=round(late.route.end_s))
+    assert said.startswith(f"01:30 to {ends:%H:%M}")
 
 
 def test_a_day_that_is_over_says_what_was_done(worked, last, done, of_worked_day):

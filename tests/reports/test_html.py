@@ -70,6 +70,17 @@ def test_printed_by_a_browser_a_season_begins_each_part_on_a_page(browser, of_se
     assert len(began) >= 4
 
 
+def test_on_a_phone_two_figures_stand_in_a_line(browser, of_season, tmp_path):
+    path = tmp_path / "report.html"
+    path.write_text(html_text(of_season), "utf-8")
+    page = browser.new_page(viewport={"width": 360, "height": 800})
+    page.goto(path.as_uri())
+    widths = "[...document.querySelectorAll('.figures div')].map(one => one.clientWidth)"
+    narrowest = min(page.evaluate(widths))
+    page.close()
+    assert narrowest > 120
+
+
 def test_from_the_right_the_words_of_maps_and_charts_stand_where_they_stand_from_the_left(
     browser, of_season, tmp_path
 ):

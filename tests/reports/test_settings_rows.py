@@ -1,6 +1,7 @@
 """What a day goes by, each value with where it comes from."""
 
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 import pytest
@@ -121,7 +122,9 @@ def test_a_named_pest_and_its_weather_stand_in_the_place_of_the_usual_nights():
     at = np.datetime64("2026-11-01", "s") + 86_400 * np.arange(9)
     weather = weather_of(at, DAY_S, temperature_c=np.full(9, 20.0))
     mite = shipped_pest("spider-mite")
-    with_weather = rows(replace(TOLD, pest_in_weather=PestInWeather(mite, weather)))
+    with_weather = rows(
+        replace(TOLD, pest_in_weather=PestInWeather(mite, weather, date(2026, 6, 1)))
+    )
     assert "Two-spotted spider mite, by degree-days" in str(
         with_weather["Pest, by which nights go"]
     )

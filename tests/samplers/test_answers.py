@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from shapely import MultiPolygon, box
 
 import fieldmon as fm
 from fieldmon.errors import SettingError
 from fieldmon.planning.workday import plan_work, work_day
+from fieldmon.plot.field import Field
 from fieldmon.samplers import sampler
 from fieldmon.samplers.answers import Checked, must_detect
 from fieldmon.samplers.base import InspectionTimes, Stops
@@ -46,6 +48,24 @@ def test_what_a_robot_can_do_is_taken_as_it_is():
     assert work.plant.tolist() == [5, 3, 40]
     waits = Answers(lambda scene, _: honest(scene, 5, 3, late_s=60.0))
     assert len(plan_work(scene(), waits)) == 2
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_who_names_no_plant_is_named_where_hours_reach_one(returns):
+    plot = fm.Plot.of(Field("square", GRIDS["rectangle"].frame.geometry_lonlat(
+        MultiPolygon([box(-30, -30, 30, 30)]))))  # fmt: skip
+    nobody = Told(Stops(np.empty(0, np.int32), np.empty(0)))
+    start = fm.draw_start(plot, np.full(plot.n_plants, 0.1))
+    day, soon = fm.Robot(hours=2.0, returns=returns), fm.Robot(hours=0.001, returns=returns)
+    for asked in (
+        lambda robot: fm.plan_day(plot, on="2026-11-18", robot=robot, sampler=nobody),
+        lambda robot: fm.simulate(plot, start, nobody, robot, fm.SeasonSettings(n_days=2)),
+    ):
+        with pytest.raises(SettingError, match=r"^Told must name plants .*, though 2 h reach some"):
+            asked(day)
+    with pytest.raises(SettingError, match="The working day must be long enough"):
+        fm.plan_day(plot, on="2026-11-18", robot=soon, sampler=nobody)
+    assert fm.simulate(plot, start, nobody, soon, fm.SeasonSettings(n_days=2)).visits == 2
 
 
 def test_lists_and_other_whole_numbers_will_do():

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fieldmon.errors import SettingError
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER, InspectionTimes, Sampler, Stops, resting_place
@@ -85,3 +86,11 @@ def test_what_a_sampler_meets_says_itself_in_a_line():
     assert repr(SCENE) == "<Scene of day 0: 187 plants in 11 rows, 2.00 h left>"
     times = InspectionTimes(np.array([20.0, 40.0]), np.array([0.5, 0.84]))
     assert repr(times) == "<InspectionTimes: 20 s 50%, 40 s 84%>"
+
+
+@pytest.mark.parametrize("wrong", [200, 10_000_000, -2, 1.0, None, np.arange(2), "7", True])
+def test_travel_to_what_is_no_plant_is_a_sentence_with_the_plants_that_there_are(wrong):
+    for legs in ((wrong, 0), (0, wrong)):
+        with pytest.raises(SettingError, match=r"plants, 0 to 186, and the gate, -1, but one is"):
+            SCENE.travel_s(*legs)
+    assert SCENE.travel_s(np.int64(186), GATE) == SCENE.travel_s(np.int32(186), -1) > 0

@@ -12,7 +12,7 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.sweeps import Naive
-from fieldmon.simulation.library import draw_start, simulate
+from fieldmon.simulation.library import draw_start, simulate, simulate_days
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
 
@@ -52,6 +52,18 @@ def test_a_season_is_the_one_that_is_simulated_day_by_day():
     assert len(days) == len(season.left) == 4
 
 
+def test_each_plant_of_a_season_is_told_day_by_day():
+    start = draw_start(PLOT, CHANCE, 0.1)
+    season = simulate(PLOT, start, "naive", ROBOT, SHORT, seed=5)
+    days = [*simulate_days(PLOT, start, "naive", ROBOT, SHORT, seed=5)]
+    infested = np.array([day.infested for day in days])
+    assert (infested[0] == start.infested).all()
+    assert [day.in_the_evening.sum() for day in days] == season.left.tolist()
+    assert [infested[i, day.work.plant[day.work.found]].sum() for i, day in enumerate(days)] == (
+        season.found.tolist()
+    )
+
+
 def test_a_sampler_of_ones_own_is_taken_as_one_by_name():
     start = draw_start(PLOT, CHANCE, 0.1)
     named, own = (simulate(PLOT, start, who, ROBOT, SHORT) for who in ("naive", Naive()))
@@ -71,5 +83,7 @@ def test_a_start_of_another_plot_and_an_unknown_sampler_are_refused():
     other = Start(np.zeros(3, np.bool_), np.full(3, 0.1))
     with pytest.raises(PlotError):
         simulate(PLOT, other, "naive", ROBOT, SHORT)
+    with pytest.raises(PlotError):  # before the first day is asked for
+        simulate_days(PLOT, other, "naive", ROBOT, SHORT)
     with pytest.raises(SettingError, match="but it is 'best'"):
         simulate(PLOT, draw_start(PLOT, CHANCE), "best", ROBOT, SHORT)

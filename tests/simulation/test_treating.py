@@ -69,11 +69,11 @@ def test_only_sprayed_plants_are_cleaned_and_the_map_hears_of_it():
 @pytest.mark.parametrize(
     ("made", "said"),
     [
-        (lambda: TreatmentRule(0.0), "between 0 and 1"),
-        (lambda: TreatmentRule(1.0), "between 0 and 1"),
-        (lambda: TreatmentRule(1.2), "between 0 and 1"),
+        (lambda: TreatmentRule(0.0), "level must be (above 0|below 1), but"),
+        (lambda: TreatmentRule(1.0), "level must be (above 0|below 1), but"),
+        (lambda: TreatmentRule(1.2), "level must be (above 0|below 1), but"),
         (lambda: TreatmentRule(treats="half"), "'zones' or 'whole'"),
-        (lambda: TreatmentRule(every_days=0), "1 day or more"),
+        (lambda: TreatmentRule(every_days=0), "every_days must be 1 or more"),
     ],
 )
 def test_rules_that_cannot_be_are_refused(made, said):

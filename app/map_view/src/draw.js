@@ -169,6 +169,18 @@ export class Drawing {
     this.tell(this.mode, done);
   }
 
+  // Return the numbers of a plot's corners, outside of them, and the lengths of its edges, also while one is dragged.
+  labels() {
+    const corners = this.points, n = corners.length, sum = (k) => corners.reduce((all, p) => all + p[k], 0);
+    const numbers = corners.map((p, k) => (
+      { p, t: `${k + 1}`, k: "leg", tight: true, gap: 9, away: [2 * p[0] - sum(0) / n, 2 * p[1] - sum(1) / n] }));
+    const edges = corners.slice(0, n > 2 ? n : Math.max(n - 1, 0)).map((p, k) => {
+      const q = corners[(k + 1) % n];
+      return { p: [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2], t: lengthOf(metresBetween(p, q), this.mode.lengths), k: "edge" };
+    });
+    return [...numbers, ...edges];
+  }
+
   // Return the drawing so far as layers in pydeck's JSON.
   layers(colour) {
     if (!this.points.length) return [];
@@ -185,6 +197,19 @@ export class Drawing {
       getLineWidth: 2, lineWidthUnits: "pixels",
     }];
   }
+}
+
+// Write a length as the server does: `ways` are [from how many metres on, a unit's metres, a number's form, text].
+function lengthOf(metres, ways) {
+  const [, one, form, text] = ways.findLast(([from]) => metres >= from);
+  const [, mark, decimals] = /^0(?:(.)(0+))?$/.exec(form);
+  return text.replace("{n}", (metres / one).toFixed(decimals?.length ?? 0).replace(".", mark ?? "."));
+}
+
+// Return how far two near places are from each other on WGS 84, by the length of a degree between them.
+function metresBetween([a, b], [c, d]) {
+  const at = ((b + d) * Math.PI) / 360, east = 111412.84 * Math.cos(at) - 93.5 * Math.cos(3 * at) + 0.118 * Math.cos(5 * at);
+  return Math.hypot((c - a) * east, (d - b) * (111132.954 - 559.822 * Math.cos(2 * at) + 1.175 * Math.cos(4 * at)));
 }
 
 // Return how far a place is from an edge, in pixels; beyond its ends, and near them, it is not on it.

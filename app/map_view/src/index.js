@@ -266,7 +266,8 @@ class MapPage {
     const viewport = this.viewport();
     if (!viewport) return;
     this.scale.draw(viewport, { lengths: this.data.lengths, alt: this.data.words.scale });
-    this.labels.draw(withHot(this.data.labels ?? NONE, this.frames.of(this.jsons)), viewport, new Set(this.off()), ...this.around());
+    const labels = this.drawing.outlines ? this.drawing.labels() : withHot(this.data.labels ?? NONE, this.frames.of(this.jsons));
+    this.labels.draw(labels, viewport, new Set(this.off()), ...this.around());
     if (!this.cross.hidden) this.pointAtMiddle();
     const { longitude, latitude, zoom, width, height } = viewport;
     this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, width, height });

@@ -4,7 +4,7 @@ import { element } from "./chrome.js";
 import style from "./shape.css";
 
 // where a phone's sheet begins, and how far up a tap pulls it
-const HALF = 0.58, UP = 0.14;
+const HALF = 0.58, UP = 0.14, LOW = 0.3;
 // a window made narrow has its list of pages a moment later
 const LATER_MS = 500;
 const KEY = "fieldmon panel";
@@ -68,6 +68,8 @@ export function keepShape(words, told = () => {}) {
     Object.assign(shape, change);
     keep(shape);
     page.toggleAttribute("data-panel-folded", Boolean(shape.folded));
+    // above a sheet that is pulled up there is room for the legend alone: the rest lay on it, or was cut off
+    page.style.setProperty("--above-sheet", (shape.sheet ?? HALF) > LOW ? "visible" : "hidden");
     page.style.setProperty("--sheet-top", `${Math.round(100 * (shape.sheet ?? HALF))}dvh`);
     tell();
     setTimeout(() => { listed(); tell(); }, LATER_MS); // the panel may only just be there
@@ -101,12 +103,12 @@ function pull(grip, shape, set) {
   });
   grip.addEventListener("pointerup", () => {
     // a tap pulls the sheet up, or lets it down again
-    if (from && !from.moved) set({ sheet: (shape.sheet ?? HALF) > 0.3 ? UP : HALF });
+    if (from && !from.moved) set({ sheet: (shape.sheet ?? HALF) > LOW ? UP : HALF });
     from = null;
   });
   grip.addEventListener("keydown", (event) => {
     const step = { ArrowUp: -0.1, ArrowDown: 0.1 }[event.key];
-    if (event.key === "Enter" || event.key === " ") set({ sheet: (shape.sheet ?? HALF) > 0.3 ? UP : HALF });
+    if (event.key === "Enter" || event.key === " ") set({ sheet: (shape.sheet ?? HALF) > LOW ? UP : HALF });
     else if (step) set({ sheet: Math.min(0.85, Math.max(0.1, (shape.sheet ?? HALF) + step)) });
   });
 }

@@ -190,3 +190,16 @@ test("the outline of a plot is closed from three corners on", () => {
   assert.equal(path(2).length, 2);
   assert.deepEqual(path(3), [...SQUARE.slice(0, 3), SQUARE[0]]);
 });
+
+test("the edges of a plot say how long they are while a corner is dragged", () => {
+  const lengths = [[0, 1, "0", "{n} m"], [1000, 1000, "0,00", "{n} km"]];
+  const { drawing } = begun({ ...OUTLINE, lengths, points: [[34.9, 31.5], [34.902, 31.5], [34.902, 31.502]] });
+  const said = () => drawing.labels().map(({ t }) => t);
+  assert.deepEqual(said(), ["1", "2", "3", "190 m", "222 m", "292 m"]);
+  drawing.points = drawing.points.with(1, [34.92, 31.5]);
+  assert.deepEqual(said().slice(3), ["1,90 km", "1,72 km", "292 m"]);
+  drawing.points = drawing.points.slice(0, 2);
+  assert.deepEqual(said(), ["1", "2", "1,90 km"]);
+  drawing.points = [];
+  assert.deepEqual(said(), []);
+});

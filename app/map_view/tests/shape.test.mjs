@@ -56,8 +56,11 @@ test("a tap pulls the sheet up and lets it down; arrows move it, never off the s
   keepShape(() => WORDS);
   const [, grip] = made.body.children.at(-1).shadow.children, top = () => Number.parseInt(made.documentElement.style["--sheet-top"]);
   const half = top(), tap = () => { grip.fire("pointerdown", { clientY: 500, pointerId: 1 }); grip.fire("pointerup"); };
+  const above = () => made.documentElement.style["--above-sheet"];
+  assert.equal(above(), "visible");
   tap();
   assert.ok(top() < half / 2);
+  assert.equal(above(), "hidden", "scale and playback lay on the legend");
   tap();
   assert.equal(top(), half);
   for (let k = 0; k < 20; k++) grip.fire("keydown", { key: "ArrowDown" });

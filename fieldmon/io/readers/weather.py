@@ -259,6 +259,7 @@ def _units_of(
     for column, values in cells.items():
         kind = KIND_OF[column.measure]
         told = column.unit.casefold().replace(" ", "") or options.unit(kind)
+        said += _about_other_unit(column, options.unit(kind))
         if kind == "temperature" and not told:
             bare[column] = values
             continue
@@ -271,6 +272,20 @@ def _units_of(
         said += about
         units |= dict.fromkeys(bare, unit)
     return units, said
+
+
+def _about_other_unit(column: WeatherColumn, chosen: str) -> list[ImportMessage]:
+    """Return a doubt about a unit that was chosen for a column which states another."""
+    stated, wanted = UNITS.get(column.unit.casefold().replace(" ", "")), UNITS.get(chosen)
+    if stated is None or wanted is None or stated == wanted:
+        return []
+    said = worded(
+        "{name} was read in {unit!r}, its own unit, and not in {chosen!r}, which was chosen.",
+        name=column.name,
+        unit=column.unit,
+        chosen=chosen,
+    )
+    return [doubtful(said)]
 
 
 def _unit_of(column: WeatherColumn, kind: str, told: str) -> tuple[str, list[ImportMessage]]:

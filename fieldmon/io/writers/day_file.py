@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from datetime import timedelta
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -167,7 +167,8 @@ class RouteNotes:
     sampler
         Who chose the plants.
     start
-        Local date and time of the start, or None: only seconds are given then.
+        Local date and time of the start, or None: only seconds are given then. Later times are
+        what the clock on the plot shows, though it be put forward or back.
     who
         Who of a team drives it; None: it is the only one.
     ahead
@@ -268,7 +269,9 @@ class HandoffPlan:
     def clock(self, seconds: float) -> str:
         """Return date and local time so many seconds after the start; empty if it is not known."""
         start = self.notes.start
-        return "" if start is None else (start + timedelta(seconds=round(seconds))).isoformat()
+        if start is None:
+            return ""
+        return grid_clock(self.grid).after(start, round(seconds)).isoformat()
 
 
 def faces(grid: PlantGrid, plants: NDArray[np.integer]) -> NDArray[np.int64]:

@@ -4,26 +4,30 @@ from __future__ import annotations
 
 import json
 import math
-from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fieldmon.io.writers.day_file import DECIMALS
 from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.projection import goes_round
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from numpy.typing import NDArray
 
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.io.writers.day_file import DrivenRoute, HandoffPlan, RouteNotes
+    from fieldmon.plot.grid import PlantGrid
 
 _AHEAD = ("expected", "low", "high")
 
 
 def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
     """Return the figures of a route: stops, seconds, metres, expected finds, their bound."""
+    grid = route.aisles.grid
     return {
         "plot": notes.plot,
         "sampler": notes.sampler,
@@ -34,8 +38,8 @@ def summary(route: DrivenRoute, notes: RouteNotes) -> dict[str, Any]:
         "inspect_s": round(float((route.leave_s - route.arrive_s).sum()), 3),
         "infested_expected": round(route.expected_finds, 3),
         **_bound(route),
-        **({} if notes.start is None else {"start": _clock(notes.start, 0.0)}),
-        **({} if notes.start is None else {"end": _clock(notes.start, route.end_s)}),
+        **({} if notes.start is None else {"start": _clock(grid, notes.start, 0.0)}),
+        **({} if notes.start is None else {"end": _clock(grid, notes.start, route.end_s)}),
     }
 
 
@@ -133,7 +137,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 **({"row_name": names.get(row, "")} if names else {}),
                 "number": number,
                 "arrive_s": round(arrive_s, 3),
-                **({} if notes.start is None else {"arrive": _clock(notes.start, arrive_s)}),
+                **({} if notes.start is None else {"arrive": _clock(grid, notes.start, arrive_s)}),
                 "inspect_s": round(leave_s - arrive_s, 3),
                 "chance": round(chance, 6),
                 "line_vertex": vertex,
@@ -149,5 +153,5 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
     ]
 
 
-def _clock(start: datetime, seconds: float) -> str:
-    return (start + timedelta(seconds=round(seconds))).isoformat()
+def _clock(grid: PlantGrid, start: datetime, seconds: float) -> str:
+    return grid_clock(grid).after(start, round(seconds)).isoformat()

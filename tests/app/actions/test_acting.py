@@ -24,7 +24,7 @@ def test_a_find_said_of_a_day_is_none_of_the_day_chosen_just_before(season_app, 
     boxed(season_app.segmented_control, "one_result").set_value(1)
     day = next(box for box in season_app.date_input if box.key.startswith("day "))
     day.set_value(date(2026, 11, 17))
-    next(one for one in season_app.button if one.label == "Record" and one.form_id).click().run()
+    season_app.button(key="record_one").click().run()
     assert not season_app.exception
     assert "must be said" in season_app.error[0].value
     assert not len(season().history.inspections)

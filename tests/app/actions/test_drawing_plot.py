@@ -7,7 +7,8 @@ import pytest
 from app.actions import drawing_plot
 from app.state import drawn_plot, plot_source, web_maps, widget_memory
 from app.words import texts
-from tests.app.driving import go, map_of, metric, opened, plot_name, press, tap, texts_of
+from fieldmon.monitoring import Season
+from tests.app.driving import begun, go, map_of, metric, opened, plot_name, press, tap, texts_of
 
 SQUARE = ((34.9, 31.5), (34.902, 31.5), (34.902, 31.502), (34.9, 31.502))
 
@@ -60,10 +61,39 @@ def test_corners_so_far_survive_a_reload_and_what_is_used_can_be_corrected(drawi
     assert metric(again, "Area") == "4.21 ha"
 
 
-def test_too_few_corners_and_crossed_ones_are_refused_in_a_sentence_and_stay(drawing):
-    corners(drawing, SQUARE[:2])
+def test_another_season_of_one_opened_by_its_address_has_its_boundary_gate_and_no_go(
+    drawing, seasons_folder
+):
+    corners(drawing, SQUARE)
     press(drawing, texts.OUTLINE_USE)
-    assert "needs three corners or more, but 2 are set" in drawing.error[0].value
+    drawn = {"gate": "34.9,31.5", "no_go": "34.9005,31.5005 34.901,31.5005 34.901,31.501"}
+    for kind, places in drawn.items():
+        drawing.selectbox(key="draw_kind").set_value(kind).run()
+        drawing.text_input(key="draw_typed").set_value(places).run()
+        press(drawing, "Add")
+    plants = metric(go(drawing, "plot"), "Plants")
+    begun(drawing, "Drawn 2026")
+    another = go(opened("Drawn 2026"), "plot")
+    assert metric(another, "Plants") == plants
+    press(another, texts.ANOTHER)
+    assert not another.exception
+    assert another.selectbox(key="season").value == plot_source.FILES
+    assert (metric(another, "Area"), metric(another, "Plants")) == ("4.21 ha", plants)
+    assert "the gate: 1" in texts_of(another)
+    assert texts.OUTLINE_CORRECT in [one.label for one in another.button]
+    begun(another, "Drawn again")
+    kept = [
+        Season(seasons_folder / f"{name}.gpkg").plot.field for name in ("Drawn 2026", "Drawn again")
+    ]
+    assert kept[0].boundary.equals_exact(kept[1].boundary, 1e-7, normalize=True)
+    assert kept[0].no_go.equals_exact(kept[1].no_go, 1e-7, normalize=True)
+
+
+def test_too_few_corners_and_crossed_ones_are_refused_in_a_sentence_and_stay(drawing):
+    for n in (0, 2):
+        corners(drawing, SQUARE[:n])
+        assert drawing.button(key="outline_use").disabled
+        assert f"needs three corners or more, but {n} are set" in texts_of(drawing)
     corners(drawing, (SQUARE[3], SQUARE[2]))
     press(drawing, texts.OUTLINE_USE)
     assert "must not cross itself" in drawing.error[0].value

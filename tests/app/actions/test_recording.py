@@ -3,12 +3,11 @@
 import json
 import shutil
 import uuid
-from datetime import date
+from datetime import date, time
 from pathlib import Path
 
 import numpy as np
 import pytest
-import streamlit as st
 
 from app.actions import recording
 from app.state.fresh_boxes import FreshBoxes
@@ -26,10 +25,7 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
     boxed(season_app.number_input, "one_row").set_value(3)
     boxed(season_app.number_input, "one_plant").set_value(4)
     boxed(season_app.segmented_control, "one_result").set_value(1)
-    next(
-        b for b in season_app.button if b.label == "Record" and "one_plant" in b.proto.form_id
-    ).click()
-    season_app.run()
+    send(season_app, "one")
     assert "1 recorded" in season_app.success[0].value
     (plant,) = season().history.inspections.plant
     label = season().label
@@ -47,11 +43,11 @@ def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_ta
     for name, value in {"one_row": "2", "one_plant": 5, "one_result": FOUND}.items():
         app.session_state[key_of(app, name)] = value
     app.run()
-    send(app, "one_plant")
+    send(app, "one")
     assert "2 may be any of rows 2–3 here" in app.error[0].value
     assert not len(season_named.history.inspections)
     app.session_state[key_of(app, "one_row").replace("one_row", "one_tapped")] = ("2", 5)
-    send(app, "one_plant")
+    send(app, "one")
     assert "1 recorded" in app.success[0].value
     (plant,) = season_named.history.inspections.plant
     assert season_named.label.line[plant] == 2
@@ -66,7 +62,7 @@ def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_
         for name, value in {"one_row": "5A", "one_plant": plant, "one_result": FOUND}.items():
             app.session_state[key_of(app, name)] = value
         app.run()
-        send(app, "one_plant")
+        send(app, "one")
         assert [error in one.value for one in app.error] == ([True] if error else [])
     (plant,) = season_named.history.inspections.plant
     label = season_named.label
@@ -89,18 +85,10 @@ def treated(app):
     assert "treatment of the plot" not in texts_of(app)
 
 
-def test_enter_in_a_box_records_nothing(season_app, monkeypatch):
-    made = {}
-    form = st.form
-
-    def watched(key, **more):
-        made[key] = more
-        return form(key, **more)
-
-    monkeypatch.setattr(st, "form", watched)
+def test_enter_in_a_box_records_nothing(season_app):
     go(season_app, "record")
-    for key in ("one_plant_form", "treatment_form", "route_form"):
-        assert made[key].get("enter_to_submit") is False, key
+    boxes = [*season_app.number_input, *season_app.text_input]
+    assert not [box.key for box in boxes if box.proto.form_id], "a form may be sent by Enter"
 
 
 def test_a_treatment_lowers_what_is_expected_and_is_taken_back(season_app):
@@ -206,11 +194,7 @@ def test_ten_days_in_the_app_give_the_digits_of_the_same_days_without_it(
         season_app.date_input(key="day Gate 2026").set_value(on).run()
         go(season_app, "record")
         boxed(season_app.number_input, "stops_done").set_value(30)
-        next(
-            b for b in season_app.button if b.label == "Record" and "route" in b.proto.form_id
-        ).click()
-        season_app.run()
-        assert not season_app.exception
+        send(season_app, "route")
         record_clean(twin, on, 30)
         kept = season()
         assert kept.morning(on).tolist() == twin.morning(on).tolist()
@@ -235,13 +219,12 @@ def key_of(app, name):
 
 
 def send(app, form):
-    """Press the button of a form."""
-    next(b for b in app.button if form in b.proto.form_id).click()
-    app.run()
+    """Press the button of some boxes."""
+    app.button(key="treat" if form == "treatment" else f"record_{form}").click().run()
     assert not app.exception
 
 
-@pytest.mark.parametrize("form", ["route", "one_plant", "treatment"])
+@pytest.mark.parametrize("form", ["route", "one", "treatment"])
 def test_a_click_on_an_untouched_form_records_nothing(season_app, season, form):
     go(season_app, "record")
     before = season().revision
@@ -285,7 +268,7 @@ def fill(app):
 
 def test_what_was_recorded_does_not_stay_in_the_boxes(season_app, season):
     go(season_app, "record")
-    for form, of in (("one_plant", slice(4)), ("route", slice(4, None))):
+    for form, of in (("one", slice(4)), ("route", slice(4, None))):
         fill(season_app)
         send(season_app, form)
         assert season_app.success[0].value
@@ -463,3 +446,29 @@ def test_what_a_phone_saved_as_not_sent_is_recorded_by_uploading_it(season_app, 
     assert "1 recorded" in season_app.success[0].value
     seen = season().history.inspections
     assert (seen.plant.tolist(), seen.who.tolist()) == ([3], ["Ann"])
+
+
+def reloaded(app, **more):
+    """Return a new session at the address at which this one stands."""
+    words = {**app.query_params, **more}
+    return go(opened(**{k: v[0] if isinstance(v, list) else v for k, v in words.items()}), "record")
+
+
+def test_what_was_not_recorded_yet_is_there_again_after_a_reload(season_app, season):
+    go(season_app, "record")
+    boxed(season_app.text_input, "product").set_value("soap")
+    boxed(season_app.get("time_input"), "treat began").set_value(time(7, 30))
+    fill(season_app)
+    filled = said(season_app)[:5]
+    again = reloaded(season_app, season="Gate 2026")
+    assert not again.exception
+    assert said(again)[:5] == filled
+    assert again.session_state[key_of(again, "marked")] == [5]
+    assert boxed(again.text_input, "product").value == "soap"
+    assert boxed(again.get("time_input"), "treat began").value == time(7, 30)
+    send(again, "route")
+    assert season().history.inspections.result.tolist().count(FOUND) == 1
+    assert said(again)[4] is None
+    assert said(go(go(again, "season"), "record"))[:4] == filled[:4], "and on another page"
+    later = reloaded(again, season="Gate 2026", day="2026-11-17")
+    assert said(later)[:5] == EMPTY[:5]

@@ -26,6 +26,8 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
     worked = table[table[texts.PLAN_ALL_COLUMNS["who"]].notna()]
     assert len(worked) == len(layer(app, "route")["data"]) > 3
     assert sum("robot 1" in one["t"] for one in map_of(app)["labels"]) == len(worked)
+    boxes = [box.key for box in app.number_input if box.key.startswith("crew_")]
+    assert boxes[:4] == ["crew_robots", "crew_robot_hours", "crew_scouts", "crew_scout_hours"]
     app.number_input(key="crew_scouts").set_value(1).run()
     assert not app.exception
     (table,) = (frame.value for frame in app.dataframe)
@@ -33,7 +35,9 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
     app.number_input(key="crew_scouts").set_value(0).run()
     app.number_input(key="crew_robots").set_value(0).run()
     assert not app.exception
-    assert "No time today" in texts_of(app)
+    assert texts.PLAN_ALL_NOBODY in texts_of(app)
+    assert "0 plants" not in texts_of(app)
+    assert "No time today" not in texts_of(app)
     press(app, texts.PLAN_ALL_OFF)
     assert layer(app, "route") is None
 
@@ -66,7 +70,7 @@ def said(monkeypatch):
 def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
     for n, words in ((2, "No time today: \u2068Plot 0\u2069"), (96, "No time today for 96 plots")):
         waiting = tuple(SimpleNamespace(name=f"Plot {k}") for k in range(n))
-        sharing_plots._say(shared_plots.SharedPlots((), waiting), EstateCrew())
+        sharing_plots._say(shared_plots.SharedPlots((), waiting))
         (told,) = (one for one in said if one.startswith("No time today"))
         assert told.startswith(words)
         assert len(told) < 120
@@ -74,6 +78,13 @@ def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
 
 
 def test_who_has_no_plot_is_said_to_be_free(said):
-    sharing_plots._say(shared_plots.SharedPlots((), (), ("broken",)), EstateCrew(robots=2))
+    free = shared_plots.planned([], EstateCrew(robots=2), lambda *_: None).free
+    sharing_plots._say(
+        shared_plots.SharedPlots((), (), ("broken",), free=free, n_members=2, several_kinds=True)
+    )
+    assert texts.PLAN_ALL_KINDS in said
     assert "Free today: robot 1, robot 2." in said
+    many = tuple(f"robot {k}" for k in range(40))
+    sharing_plots._say(shared_plots.SharedPlots((), free=many, n_members=40))
+    assert said[-1] == "Free today: 40 of 40.", "no wall of names"
     assert "broken" in said

@@ -74,6 +74,17 @@ def test_water_is_noted_by_the_area_in_which_the_plot_is_said(season_app, season
     assert one.application.water_l_ha == 800.0
 
 
+def test_a_dose_stands_beside_its_unit_on_a_phone_too(season_app):
+    go(season_app, "record")
+    kinds = {"number_input", "text_input", "time_input"}
+    boxes = [one.key for one in season_app.main if one.type in kinds]
+    boxes = [key.split(" treatment ")[0] for key in boxes if key and " treatment " in key]
+    at = boxes.index("treat dose")
+    assert boxes[at : at + 2] == ["treat dose", "treat unit"]
+    began = boxes.index("treat began")
+    assert boxes[began : began + 2] == ["treat began", "treat ended"]
+
+
 def test_a_dose_without_a_unit_is_asked_for(season_app, season):
     noted(season_app, dose=0.5)
     assert "must have a number and a unit" in season_app.error[0].value

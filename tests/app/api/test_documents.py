@@ -190,3 +190,23 @@ def test_the_hours_of_today_run_by_the_clock_from_when_work_began(served, scout,
     after = loaded_after(24.0)
     assert (after["past"], after["begun"]) == (True, False)
     assert after["seconds_left"] == pytest.approx(3600 * hours - 120)
+
+
+def test_the_evening_after_a_shift_past_midnight_has_its_own_begin_and_hours(
+    served, scout, monkeypatch
+):
+    season = served.season
+    season.change(replace(season.settings, starts=time(23, 30)), season.settings)
+    route, next_day = season.plan(BEGINS).route, BEGINS + timedelta(days=1)
+    plants, second = route.plant[:2], np.array([85_000.0, 1800.0])
+    season.record(Inspections.of(plants, np.zeros(2, np.int8),
+                                 np.array([BEGINS, next_day], "datetime64[D]"), second=second,
+                                 who=np.full(2, scout.name, object)), "f", scout.name)  # fmt: skip
+    starts = local_clock(season.plot.field).moment(next_day, season.settings.starts)
+    now = starts - timedelta(hours=2)
+    for module in ("fieldmon.plot.local_clock", "app.api.documents"):
+        monkeypatch.setattr(f"{module}.utc_now", lambda: now)
+    day = json.loads(day_document(season, scout, None))
+    assert (day["day"], day["live"], day["begun"]) == (str(next_day), True, False)
+    assert datetime.fromisoformat(day["begins"]) == starts
+    assert day["seconds_left"] == season.settings.robot.day_s

@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from datetime import timedelta
+from datetime import datetime, timedelta
 
 import numpy as np
 import pandas as pd
@@ -67,6 +67,15 @@ def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
         (pd.Timestamp(f"2026-11-16 {at}") - begins).total_seconds() for at in table["arrive"]
     ]
     assert seconds == pytest.approx(plan.route.arrive_s, abs=0.51)
+
+
+def test_no_stop_is_shown_at_an_hour_that_clocks_leave_out():
+    plot = a_plot()
+    plan = chosen(plot, records_at(plot, [50], [1])).plan()
+    shown = DayRoute(plan.route, datetime(2027, 3, 26, 1, 30))
+    assert [f"{shown.at(s):%H:%M}" for s in (0, 1799, 1801)] == ["01:30", "01:59", "03:00"]
+    noted = replace(shown, worked=True)  # from one time noted to another
+    assert f"{noted.at(7200):%H:%M}" == "03:30"
 
 
 def test_stops_of_a_day_that_was_worked_say_what_was_found_there(worked):

@@ -72,19 +72,16 @@ def test_what_is_tapped_does_not_move_the_map():
     )
 
 
-def test_corners_have_numbers_and_edges_their_lengths():
+def test_what_is_drawn_is_said_with_its_area_and_how_its_edges_are_written():
     content = made(DrawnCorners(SQUARE))
-    said = [one["t"].replace("\u00a0", " ") for one in content.labels]
-    assert said == ["1", "2", "3", "4", "190 m", "222 m", "190 m", "222 m"]
-    assert content.labels[4]["p"] == pytest.approx([34.901, 31.5])
     assert content.draw.hint.replace("\u00a0", " ") == "4 corners, 4.21 ha"
     assert (content.draw.kind, content.draw.points) == ("outline", SQUARE)
+    assert content.draw.lengths == (
+        (0.0, 1.0, "0", "{n}\u00a0m"),
+        (1e3, 1e3, "0.00", "{n}\u00a0km"),
+    )
     assert all(holds(content.bounds, *corner) for corner in SQUARE)
-    assert [one["t"].replace("\u00a0", " ") for one in made(DrawnCorners(SQUARE[:2])).labels][
-        2:
-    ] == ["190 m"]
     assert "ha" not in made(DrawnCorners(SQUARE[:2])).draw.hint
-    assert made().labels == []
 
 
 def test_a_map_of_the_world_that_was_agreed_to_lies_below_and_the_grid_gives_way():

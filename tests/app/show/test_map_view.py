@@ -67,6 +67,7 @@ def test_what_is_drawn_has_its_kind_its_hint_and_where_it_snaps(sent):
         "hint": "Click.",
         "snap": [[1.0, 2.0]],
         "points": [],
+        "lengths": [],
     }
 
 

@@ -16,6 +16,7 @@ from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.estate_day import EstatePlot, share_estate
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 
 OUTLINE = shapely.MultiPolygon([shapely.box(0, 0, 1, 1)])
@@ -38,6 +39,10 @@ def test_a_crew_has_names_and_hours():
     assert [one.name for one in members] == ["robot 1", "scout 1", "scout 2"]
     assert [one.robot.hours for one in members] == [5, 3, 3]
     assert members[1].robot.speed_m_s != members[0].robot.speed_m_s
+    slow = Robot(look_s=120.0, hours=1.0)
+    members = EstateCrew(robots=1, robot_hours=5, scouts=1).members(slow)
+    assert members[0].robot == replace(slow, hours=5)
+    assert members[1] == EstateCrew(scouts=1).members()[1]
 
 
 @pytest.mark.usefixtures("session")
@@ -78,7 +83,8 @@ def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
     assert turn.state is own
     assert turn.sampler == "bouncy"
     on = turn.begins.date()
-    members = EstateCrew(robot_hours=1).members()
+    assert not made.several_kinds
+    members = EstateCrew(robot_hours=1).members(settings.robot)
     (alone,) = share_estate([EstatePlot.of(project, on)], members, time(6)).turns
     by_itself = plan_in(alone.scene, sampler("bouncy", every=6)).route.plant
     assert turn.route.plant.tolist() == by_itself.tolist()

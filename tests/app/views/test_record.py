@@ -19,8 +19,7 @@ def test_what_was_recorded_shows_at_once_with_its_undo(season_app, season):
     boxed(season_app.number_input, "one_row").set_value(3)
     boxed(season_app.number_input, "one_plant").set_value(4)
     boxed(season_app.segmented_control, "one_result").set_value(1)
-    next(b for b in season_app.button if b.label == "Record" and "one" in b.proto.form_id).click()
-    season_app.run()
+    season_app.button(key="record_one").click().run()
     assert len(season().history.inspections) == 1
     press(season_app, "Undo")
     assert len(season().history.inspections) == 0

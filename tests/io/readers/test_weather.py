@@ -112,6 +112,16 @@ def test_temperatures_without_a_unit_tell_it_or_are_asked_for(read):
     assert kept.value.temperature_c.tolist() == pytest.approx([10, 5])
 
 
+def test_a_chosen_unit_that_the_file_contradicts_is_said(read):
+    table = "date,temp (C),wind (km/h)\n2026-11-18,12,36\n2026-11-19,14,36"
+    kelvin = read(table, WeatherOptions(temperature_unit="K", wind_unit="kn"))
+    assert "temp (C) was read in 'c', its own unit, and not in 'k'" in said(kelvin)
+    assert "wind (km/h) was read in 'km/h', its own unit, and not in 'kn'" in said(kelvin)
+    assert kelvin.value.temperature_c.tolist() == [12, 14]
+    agreed = read(table, WeatherOptions(temperature_unit="C", wind_unit="km/h", rain_unit="in"))
+    assert "its own unit" not in said(agreed)
+
+
 def test_all_temperatures_without_a_unit_tell_it_together(read):
     """Lows of 4 to 13 °F were Celsius beside highs of 45 to 62 °F."""
     rows = "\n".join(f"2026-01-{day},{day - 10},{day + 42}" for day in range(14, 22))

@@ -1,8 +1,10 @@
 """One door for every format: told by its name, read back by readers that are none of ours."""
 
 import json
+import re
 import sys
 from dataclasses import replace
+from datetime import datetime
 from io import BytesIO
 from types import ModuleType
 from xml.etree import ElementTree as ET
@@ -19,7 +21,8 @@ from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import FORMATS, write_handoff
 from fieldmon.io.writers.handoff import HandoffFormat
-from tests.io.writers.handed import DAYS, crooked, usual
+from fieldmon.plot.layout import rectangle
+from tests.io.writers.handed import DAYS, crooked, day, usual
 from tests.pages import Page
 
 
@@ -90,6 +93,23 @@ def test_a_file_with_room_for_it_says_what_no_other_route_can_expect(name):
             whole = archive.read("route.dbf")
     assert b"no route of these hours can expect more than" in whole
     assert b"no route of these hours" not in b"".join(FORMATS[name].make(plan).values())
+
+
+@pytest.mark.parametrize("name", ["csv", "geojson", "kml", "gpx", "sheet"])
+@pytest.mark.parametrize(
+    ("start", "shown", "never"),
+    [
+        (datetime(2027, 3, 26, 1, 15), "03:", "02:"),  # hours that do not exist
+        (datetime(2026, 10, 25, 0, 45), "01:", "02:"),  # an hour that comes twice
+    ],
+)
+def test_arrivals_after_clocks_are_put_forward_or_back_are_what_they_show(
+    name, start, shown, never
+):
+    plan = day(rectangle(9, 14), start=start)
+    whole = b"".join(FORMATS[name].make(plan).values()).decode("utf-8", "replace")
+    times = re.findall(r"[T>](\d\d:)\d\d", whole)
+    assert (shown in times, never in times) == (True, False)
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -9,8 +9,8 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, Remedy, guessed
 from fieldmon.io.parse.clock import as_clocks, clock_time, is_clock_alone, local_time, zone_of
-from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.values import dates, is_missing, is_written_as_day
+from fieldmon.io.parse.columns import find, plain
+from fieldmon.io.parse.values import dates, is_missing, is_written_as_day, numbers
 from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
 from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
 
@@ -34,9 +34,9 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     """Return local times and days.
 
     A record that says no day is of the day of its planned arrival, which stands in the route files
-    given out; else of the day told by hand, or of the day of the work where no record says one;
-    else its day is left open. One that says a day that is none (30 February) is left open too:
-    nothing is put in its place.
+    given out, or, with no time either, of the day on which that route begins; else of the day told
+    by hand, or of the day of the work where no record says one; else its day is left open. One that
+    says a day that is none (30 February) is left open too: nothing is put in its place.
     """
     days, clocks = _cells(layer, columns, options)
     own = dates(_object(clocks), options.date_order).day
@@ -46,7 +46,10 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
         for said, clock, day in zip(days, clocks, own, strict=True)
     ]
     read = dates(_object(on), options.date_order)
-    planned = dates(_object(arrivals_in(layer, columns).tolist())).day
+    at = [clock or said for said, clock in zip(days, clocks, strict=True)]
+    read_clocks = {cell: clock_time(cell) for cell in set(at)}
+    timed = np.array([read_clocks[cell] is not None for cell in at], bool)
+    planned = _planned_days(layer, columns, timed)
     unsaid = np.array([is_missing(cell) for cell in on], bool)
     told = options.day
     if told is None and unsaid.all() and np.isnat(planned).all():
@@ -54,8 +57,6 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     told = np.datetime64("NaT", "D") if told is None else told
     otherwise = np.where(np.isnat(planned), told, planned)
     day = np.where(unsaid, otherwise, read.day).astype("datetime64[D]")
-    at = [clock or said for said, clock in zip(days, clocks, strict=True)]
-    read_clocks = {cell: clock_time(cell) for cell in set(at)}
     when = np.full(len(layer), "NaT", dtype="datetime64[s]")
     zone = None if options.zone is None else zone_of(options.zone)
     n_utc, broken = 0, []
@@ -71,6 +72,23 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     day = np.where(np.isnat(when), day, when.astype("datetime64[D]")).astype("datetime64[D]")
     about = _about_times(broken, read.is_ambiguous, n_utc)
     return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *about])
+
+
+def _planned_days(
+    layer: Layer, columns: InspectionColumns, timed: NDArray[np.bool_]
+) -> NDArray[np.datetime64]:
+    """Return the days of planned arrivals; of records that are not timed, those of the begin."""
+    arrivals = arrivals_in(layer, columns).tolist()
+    days = dates(_object(arrivals)).day
+    gone = next((name for name in layer.columns if plain(name) == plain("arrive_s")), None)
+    if gone is None:
+        return days
+    gone_s = np.nan_to_num(numbers(layer.column(gone)))
+    for i in np.flatnonzero(~timed & ~np.isnat(days)):
+        if (clock := clock_time(arrivals[i])) is not None:
+            begun = local_time(days[i], clock, None) - np.timedelta64(round(gone_s[i]), "s")
+            days[i] = begun.astype("datetime64[D]")
+    return days
 
 
 def _about_times(

@@ -52,6 +52,13 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
     assert np.isnat(read(colour=["red"]).day).all()
 
 
+def test_what_a_shift_past_midnight_finds_is_of_the_day_on_which_it_began():
+    plan = {"arrive": ["2026-11-18T23:59:00", "2026-11-19T00:31:00"], "arrive_s": ["60", "1980"]}
+    assert read(**plan).day.astype(str).tolist() == ["2026-11-18", "2026-11-18"]
+    timed = read(time=["", "00:32"], **plan)
+    assert timed.day.astype(str).tolist() == ["2026-11-18", "2026-11-19"]
+
+
 @pytest.mark.parametrize("clock", ["8.31", "0831", "8h31", "noon", "25:00", "8:31:99", "8:30 EST"])
 def test_a_time_that_is_none_leaves_the_day_beside_it_and_is_shown(clock):
     times = read(date=["2026-11-18"], time=[clock])

@@ -61,7 +61,7 @@ VALUES: dict[str, Any] = {
     "point": shapely.Point(0, 0),
 }  # fmt: skip
 
-_DATES = {"date", "first date", "last date"}
+_DATES = {"date", "first date", "last date", "moment"}
 _TEXTS = {"text", "empty text", "NUL"}
 #: what each annotation allows; whatever else is taken is taken for something that it is not
 _RIGHT = {
@@ -91,7 +91,7 @@ _COLUMNS = {
     "second": {"tuple", "list of 10^30", "array of nan", "array of 1e30", "array of -1"},
     "count": {"tuple", "list of 10^30", "array of nan", "array of 1e30", "array of -1"},
     "plant": {"tuple", "array of -1"},
-    "result": {"tuple", "array of -1", "mask"},
+    "result": {"tuple", "mask"},
     "date": {"array of dates"},
     "on": {"array of dates", "moment", "numpy's NaT"},
     **{name: {"list of 10^30"} for name in ("who", "notes")},

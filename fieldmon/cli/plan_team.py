@@ -16,7 +16,6 @@ from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.cli.team_files import (
     files_of_each,
     members_of,
-    refuse_far_gates,
     tell_member,
     write_member,
 )
@@ -39,6 +38,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.planning import team
     from fieldmon.planning.assumptions import assumed_by_team
+    from fieldmon.planning.members import refuse_far_gates
 
     for name in ("sampler", "every", "every_plot"):
         source = context.get_parameter_source(name)

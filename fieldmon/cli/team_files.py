@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from fieldmon.cli.options import WorkerOptions
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
-    from fieldmon.plot.field import Field
     from fieldmon.plot.robot import Robot
 
 _NOT_IN_A_NAME = re.compile(r"[^\w-]+")
@@ -56,17 +55,6 @@ def members_of(
     ]
     _tell_team(members, [worker.scout or one.scout for one in stated])
     return tuple(members), first
-
-
-def refuse_far_gates(team: tuple[TeamMember, ...], plot: Field) -> None:
-    """Refuse a member whose gate lies where nobody drives from in a day."""
-    from fieldmon.io.prepare import refuse_far_gate
-
-    for member in team:
-        try:
-            refuse_far_gate(member.gate, plot)
-        except SettingError as error:
-            raise SettingError(f"{member.name}: {error}") from None
 
 
 def _tell_team(members: list[TeamMember], on_foot: list[bool]) -> None:

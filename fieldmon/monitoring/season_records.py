@@ -361,7 +361,6 @@ class SeasonRecords(OpenSeason):
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
         with self._lock, self.store.writing() as db:
-            numbers = batches.numbers(db)
             held = self._inspections(db)
             with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
@@ -373,12 +372,12 @@ class SeasonRecords(OpenSeason):
             self._refresh(db)
             # what either copy took back or corrected contradicts nothing
             contradict = contradict.still(self._inspections(db))
-            moved = not numbers.items() <= batches.numbers(db).items()
+            moved = bool(taken.numbers)
             states = season_log.states(db)
             if states != was:
                 season_log.append(
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
-                    moved=moved,
+                    moved=moved, numbers=taken.numbers,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
         said = *contradict.sentences(self.label), *taken.differing

@@ -132,7 +132,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     "routes.best": {"others": {"ragged"}},
     "Pest.infests_per_day": {"temperature_c": {"empty array"}},
     "Season.create": {
-        "path": {"text", "path"}, "messages": {"empty list", "empty array"},
+        "path": {"text", "path"}, "messages": {"None", "empty list", "empty array"},
         **{name: {"None"} for name in ("observations", "settings", "risk")},
     },
     "SeasonSettings": {"believe": {"class", "function"}, "pests": {"class", "function"}},

@@ -178,7 +178,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
-            tables.write_messages(db, messages or ())
+            tables.write_messages(db, () if messages is None else messages)
             if risk is not None:
                 tables.write_array(db, "risk", risk)
             settings_log.write(db, as_json(settings))

@@ -11,8 +11,10 @@ import logging
 import os
 import socket
 import sys
+from collections import deque
 from html import escape
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import SettingError
@@ -34,6 +36,14 @@ PASSWORD = "FIELDMON_PASSWORD"  # noqa: S105 - where it stands, not what it is
 #: where the authority's key is kept
 FOLDER = "FIELDMON_AUTHORITY"
 _CERTIFICATE = "/fieldmon.crt"
+# a browser sends what it asks at once; a line without a question keeps others out
+_HEAD_S = 20.0
+# of one device, and of all: a browser takes up to seven; a router may stand for many devices
+_MOST_OF_ONE, _MOST_LINES = 100, 400
+# this machine's own browser, seasons and plots need open files beside those of other devices
+_FILES = 4096
+_LINES_OF_LOG, _LOG_S = 10, 60.0
+_LOG = logging.getLogger(__name__)
 
 
 class TrustPage:
@@ -96,11 +106,14 @@ def serve(app: Application, port: int, line: socket.socket, settings: dict[str, 
     password = os.environ.get(PASSWORD) or new_password()
     own = f"https://{_host(address)}:{port}"
     os.environ.setdefault(scout_page.ADDRESS, own)
-    lines = [line, _listening(address, port), _listening(address, port + 1)]
+    most = min(_MOST_LINES, _open_files() // 4)
+    lines = [line, *(_Listening(_listening(address, port + k), most) for k in (0, 1))]
     _say(own, f"http://{_host(address)}:{port + 1}", password, made)
-    encrypted = {"ssl_certfile": made.chain, "ssl_keyfile": made.key, "lifespan": "off"}
-    apps = [(app, settings), (Gate(app, password), settings | encrypted),
-            (TrustPage(made), settings | {"lifespan": "off"})]  # fmt: skip
+    others = settings | {"lifespan": "off", "http": _prompt()}
+    encrypted = {"ssl_certfile": made.chain, "ssl_keyfile": made.key}
+    apps: list[tuple[Application, dict[str, Any]]] = [
+        (app, settings), (Gate(app, password), others | encrypted), (TrustPage(made), others),
+    ]  # fmt: skip
     asyncio.run(_all(apps, lines))
 
 
@@ -123,6 +136,9 @@ async def _all(apps: list[tuple[Application, dict[str, Any]]], lines: list[socke
         for k, (app, settings) in enumerate(apps)
     )
     logging.getLogger("uvicorn.access").disabled = True  # each server's settings switch it on
+    seldom = _Seldom()
+    for name in ("uvicorn.error", "asyncio", __name__):
+        logging.getLogger(name).addFilter(seldom)
     tasks = [
         asyncio.create_task(other.serve(sockets=[line]))
         for other, line in zip(others, lines[1:], strict=True)
@@ -131,6 +147,88 @@ async def _all(apps: list[tuple[Application, dict[str, Any]]], lines: list[socke
     for other in others:
         other.should_exit = True
     await asyncio.gather(*tasks)
+
+
+def _prompt() -> type[asyncio.Protocol]:
+    """Return uvicorn's protocol, closing whoever does not say within seconds what is asked."""
+    from uvicorn.protocols.http.h11_impl import H11Protocol  # noqa: PLC0415 - as late
+
+    class _Prompt(H11Protocol):
+        def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+            super().connection_made(transport)
+            self._wait(self.cycle)
+
+        def on_response_complete(self) -> None:
+            answered = self.cycle
+            super().on_response_complete()
+            self._wait(answered)
+
+        def _wait(self, last: object) -> None:
+            self.loop.call_later(_HEAD_S, self._give_up, last)
+
+        def _give_up(self, last: object) -> None:
+            # a WebSocket is among them by another protocol
+            if self.cycle is last and self in self.connections:
+                self.transport.abort()
+
+    return _Prompt
+
+
+class _Listening(socket.socket):
+    """A line on which others come, so many at once; on Windows, which asks nobody, any number."""
+
+    def __init__(self, line: socket.socket, most: int) -> None:
+        super().__init__(fileno=line.detach())
+        self._most, self._taken = most, list[tuple[socket.socket, str]]()
+
+    def accept(self) -> tuple[socket.socket, Any]:
+        """Take a connection, or close it where there are too many."""
+        taken, address = super().accept()
+        self._taken = [one for one in self._taken if one[0].fileno() >= 0]
+        own = sum(device == address[0] for _, device in self._taken)
+        if len(self._taken) < self._most and own < _MOST_OF_ONE:
+            self._taken.append((taken, address[0]))
+            return taken, address
+        taken.close()
+        _LOG.warning(
+            "At most %d connections of other devices and %d of one are taken at once, but %s asks "
+            "for more. It was refused.", self._most, _MOST_OF_ONE, address[0],
+        )  # fmt: skip
+        raise ConnectionAbortedError
+
+
+def _open_files() -> int:
+    """Return how many files may be open, after asking for enough."""
+    try:
+        import resource  # noqa: PLC0415
+    except ImportError:  # Windows has no such limit
+        return _FILES
+    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+    soft, hard = (_FILES if n == resource.RLIM_INFINITY else n for n in limits)
+    if soft < _FILES:
+        soft = min(_FILES, hard)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, limits[1]))
+    return soft
+
+
+class _Seldom(logging.Filter):
+    """Let each place in a program write so many lines a minute: others decide how often it does."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said: dict[tuple[str, int], deque[float]] = {}
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Tell whether a line is written; the last one says that more are left out."""
+        said = self._said.setdefault((record.pathname, record.lineno), deque())
+        while said and monotonic() - said[0] >= _LOG_S:
+            said.popleft()
+        if len(said) >= _LINES_OF_LOG:
+            return False
+        said.append(monotonic())
+        if len(said) == _LINES_OF_LOG:
+            record.msg = f"{record.msg} (More of these within the minute are left out.)"
+        return True
 
 
 def _listening(address: str, port: int) -> socket.socket:

@@ -92,7 +92,7 @@ class Server:
             send = _closed_in(send, scope)
         if is_upload(scope["path"]):
             await self._loaded.wait()
-            await self._streamlit(scope, self._uploads.timed(receive), send)
+            await self._uploads.passed_on(self._streamlit, scope, receive, send)
         elif scope.get("method") == "GET" and is_page(scope["path"]):
             await self._hand_out("/", send)
         elif scope["path"] in self._files and scope.get("method") == "GET":

@@ -17,8 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
 
     Receive = Callable[[], Awaitable[dict[str, Any]]]
+    Send = Callable[[dict[str, Any]], Awaitable[None]]
+    Application = Callable[[dict[str, Any], Receive, Send], Awaitable[None]]
+    Headers = list[tuple[bytes, bytes]]
 
 _PATH = re.compile(r"/_stcore/upload_file/([^/]+)/[^/]+")
+_SENDING = frozenset({"PUT", "POST"})
 _MB = 10**6
 
 
@@ -54,15 +58,15 @@ class Uploads:
         self._taken: deque[tuple[float, str, int]] = deque()
         self._lock = threading.Lock()
 
-    def refusal(self, method: str, path: str, headers: list[tuple[bytes, bytes]]) -> str | None:
+    def refusal(self, method: str, path: str, headers: Headers) -> str | None:
         """Count an upload and return None, or why it is refused, in a sentence; others are none."""
         found = _PATH.fullmatch(path)
-        if found is None or method not in {"PUT", "POST"}:
+        if found is None or method not in _SENDING:
             return None
-        length = dict(headers).get(b"content-length", b"")
-        if not length.isdigit():
+        length = _length(headers)
+        if length is None:
             return "An upload must say how long it is, but this one does not."
-        window, size, now = found[1], int(length), monotonic()
+        window, size, now = found[1], length, monotonic()
         most = self.limits
         with self._lock:
             while self._taken and now - self._taken[0][0] > most.within_s:
@@ -82,6 +86,32 @@ class Uploads:
             self._taken.append((now, window, size))
         return None
 
+    async def passed_on(
+        self, app: Application, scope: dict[str, Any], receive: Receive, send: Send
+    ) -> None:
+        """Pass on an upload that was counted; one that the app does not take counts no more."""
+        taken = False
+
+        async def seen(message: dict[str, Any]) -> None:
+            nonlocal taken
+            if message["type"] == "http.response.start":
+                taken = 200 <= message["status"] < 300
+            await send(message)
+
+        try:
+            await app(scope, self.timed(receive), seen)
+        finally:
+            if not taken and scope.get("method") in _SENDING:
+                self._give_back(scope["path"], scope["headers"])
+
+    def _give_back(self, path: str, headers: Headers) -> None:
+        found, size = _PATH.fullmatch(path), _length(headers)
+        with self._lock:
+            for one in reversed(self._taken):
+                if found and one[1:] == (found[1], size):
+                    self._taken.remove(one)
+                    return
+
     def timed(self, receive: Receive) -> Receive:
         """Return `receive` for an upload: one that trickles in for too long is given up."""
         until = monotonic() + self.limits.seconds
@@ -98,3 +128,10 @@ class Uploads:
 def is_upload(path: str) -> bool:
     """Tell whether an address is one that files are sent to."""
     return _PATH.fullmatch(path) is not None
+
+
+def _length(headers: Headers) -> int | None:
+    """Return how long an upload says it is; one in chunks is as long as it likes."""
+    said = dict(headers)
+    length = said.get(b"content-length", b"")
+    return int(length) if length.isdigit() and b"transfer-encoding" not in said else None

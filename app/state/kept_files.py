@@ -14,6 +14,7 @@ import os
 import re
 import secrets
 import shutil
+import stat
 import tempfile
 import time
 from contextlib import suppress
@@ -32,6 +33,8 @@ from .brought_files import File
 KEY = "files"
 KEEP_S = 86_400.0
 _WORD = re.compile(r"[\w-]{22}")
+# what is made in the folder: of sessions, and maps in tiles (`written`)
+_MADE = re.compile(rf"{_WORD.pattern}|ground-.+")
 _SESSION, _CAME_BY, _SAVED = "files key", "files came by", "files saved"
 _MANIFEST = "files.json"
 #: boxes that say how files are read and plants are laid
@@ -51,17 +54,26 @@ def sync() -> None:
 
 
 def folder() -> Path:
-    """Return the folder of all sessions' files, which nobody else on this machine can read."""
-    path = Path(tempfile.gettempdir()) / f"fieldmon-files-{getpass.getuser()}"
-    path.mkdir(mode=0o700, exist_ok=True)
-    return path
+    """Return the folder of all sessions' files, which nobody else on this machine can read.
+
+    Its name can be known in advance: where somebody else put something there, it is another.
+    """
+    parent = Path(tempfile.gettempdir())
+    path = parent / f"fieldmon-files-{getpass.getuser()}"
+    with suppress(FileExistsError):
+        path.mkdir(mode=0o700)
+    if _is_ours(path):
+        return path
+    others = (other for other in parent.iterdir() if other.name.startswith(f"{path.name}-"))
+    own = next(filter(_is_ours, others), None)
+    return own or Path(tempfile.mkdtemp(prefix=f"{path.name}-"))
 
 
 def clean(now: float) -> None:
-    """Remove what nobody came back to for a day."""
+    """Remove what was kept here and nobody came back to for a day."""
     for kept in folder().iterdir():
         with suppress(OSError):
-            if now - kept.stat().st_mtime > KEEP_S:
+            if _MADE.fullmatch(kept.name) and now - kept.lstat().st_mtime > KEEP_S:
                 shutil.rmtree(kept)
 
 
@@ -77,7 +89,7 @@ def written(name: str, file: str, data: bytes) -> Path:
 
 def _restore(word: str) -> None:
     """Take the files that this word leads to, and what was said of them."""
-    if not _WORD.fullmatch(word) or not _is_ours():
+    if not _WORD.fullmatch(word) or not _can_keep():
         return
     here = folder() / word
     try:
@@ -111,7 +123,7 @@ def _keep() -> None:
     """Write what changed since it was written last; nothing to keep: remove it."""
     files = brought_files.brought()
     said = _said(files)
-    if st.session_state.get(_SAVED) == said or not _is_ours():
+    if st.session_state.get(_SAVED) == said or not _can_keep():
         return
     word, came_by = st.session_state[_SESSION], st.session_state.pop(_CAME_BY, "")
     if not files and not said["unfinished"]:
@@ -162,13 +174,23 @@ def _parts(file: File) -> tuple[Upload, ...]:
     return source if isinstance(source, tuple) else (source,)  # type: ignore[return-value]
 
 
-def _is_ours() -> bool:
-    """Return whether the folder is this person's own: another's could read or forge files."""
+def _is_ours(path: Path) -> bool:
+    """Return whether a folder is this person's own: in another's, files could be read or forged."""
     try:
-        owner = folder().stat().st_uid
+        found = path.lstat()
     except OSError:
         return False
-    return not hasattr(os, "getuid") or owner == os.getuid()
+    if not stat.S_ISDIR(found.st_mode):  # also a link: it may lead to a folder of ours
+        return False
+    return not hasattr(os, "getuid") or (found.st_uid == os.getuid() and not found.st_mode & 0o077)
+
+
+def _can_keep() -> bool:
+    try:
+        folder()
+    except OSError:
+        return False
+    return True
 
 
 def _keep_in_address() -> None:

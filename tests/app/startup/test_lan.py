@@ -1,7 +1,11 @@
 """Other devices reach the app encrypted and behind a password; the certificate is beside it."""
 
+import asyncio
+import logging
 import socket
 import ssl
+import subprocess
+import sys
 import threading
 import urllib.request
 from types import SimpleNamespace
@@ -9,6 +13,7 @@ from urllib.error import HTTPError
 
 import pytest
 import uvicorn
+from websockets.sync.client import connect
 
 from app.startup import lan
 from app.startup.certificates import certificates
@@ -39,6 +44,14 @@ async def inside(scope, receive, send):
         await receive()
         await send({"type": "lifespan.shutdown.complete"})
         return
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.accept"})
+        await asyncio.sleep(1)
+        await send({"type": "websocket.send", "text": "inside"})
+        return
+    if scope["path"].endswith("/slow"):
+        await asyncio.sleep(1)
     await send({"type": "http.response.start", "status": 200, "headers": []})
     await send({"type": "http.response.body", "body": b"inside"})
 
@@ -131,6 +144,116 @@ def test_the_window_says_password_fingerprint_and_both_codes(served):
 def test_behind_a_server_of_ones_own_the_password_is_said(capsys):
     lan.say_password("a-b", "https://field.example")
     assert "https://field.example   password: a-b" in capsys.readouterr().out
+
+
+def opened(port, count, said=b"GET / HTTP/1.1\r\nHost: a\r\n"):
+    """Open connections to this address that begin to ask."""
+    lines = [socket.create_connection((HERE, port), timeout=5) for _ in range(count)]
+    for one in lines:
+        one.sendall(said)
+    return lines
+
+
+def is_closed(line, within_s=5.0):
+    line.settimeout(within_s)
+    try:
+        while line.recv(4096):
+            pass
+    except TimeoutError:
+        return False
+    except ConnectionError:
+        pass
+    return True
+
+
+@pytest.mark.parametrize("said", [b"", b"GET / HTTP/1.1\r\nHost: a\r\n"])
+def test_who_does_not_say_what_is_asked_is_closed(served, monkeypatch, said):
+    monkeypatch.setattr(lan, "_HEAD_S", 0.5)
+    with opened(served.port + 1, 1, said)[0] as line:
+        assert is_closed(line)
+
+
+def test_who_asked_once_must_say_as_soon_what_is_asked_next(served, monkeypatch):
+    monkeypatch.setattr(lan, "_HEAD_S", 1.0)
+    with opened(served.port + 1, 1, b"GET /none HTTP/1.1\r\nHost: a\r\n\r\n")[0] as line:
+        assert line.recv(4096).startswith(b"HTTP/1.1 404")
+        line.sendall(b"GET / HTTP/1.1\r\n")
+        assert is_closed(line)
+
+
+def test_who_waits_for_a_slow_answer_or_has_a_websocket_is_not_closed(served, monkeypatch):
+    monkeypatch.setattr(lan, "_HEAD_S", 0.2)
+    slow = f"{HERE}:{served.port}/scouting/slow"
+    assert got(f"https://{slow}", trusting(served))[2] == b"inside"
+    with connect(f"wss://{slow}", ssl=trusting(served), proxy=None) as socket_:
+        assert socket_.recv(timeout=5) == "inside"
+
+
+@pytest.mark.parametrize("beside", [0, 1])
+def test_one_device_that_opens_many_connections_keeps_nobody_out(served, caplog, beside):
+    port = served.port + beside
+    lines = opened(port, lan._MOST_OF_ONE + 30, b"")
+    try:
+        assert sum(is_closed(one, 0.01) for one in lines[lan._MOST_OF_ONE - 5 :]) >= 30
+        assert not any(is_closed(one, 0.001) for one in lines[: lan._MOST_OF_ONE - 5])
+        assert got(f"http://127.0.0.1:{served.own}/")[2] == b"inside"
+        with socket.create_connection((HERE, port), 5, ("127.0.0.3", 0)) as other:
+            assert not is_closed(other, 0.2)
+    finally:
+        for one in lines:
+            one.close()
+
+    def taken_again():
+        with socket.create_connection((HERE, port), 5) as one:
+            return not is_closed(one, 0.2)
+
+    until(taken_again)
+    refused = [one for one in caplog.records if "asks for more" in one.getMessage()]
+    assert len(refused) <= lan._LINES_OF_LOG, "the log stays short"
+
+
+def test_a_line_takes_so_many_connections_of_all_devices():
+    with lan._Listening(socket.create_server((HERE, 0)), 2) as line:
+        others = [socket.create_connection(line.getsockname(), 5) for _ in range(3)]
+        taken = [line.accept()[0], line.accept()[0]]
+        with pytest.raises(ConnectionAbortedError):
+            line.accept()
+        assert is_closed(others[2])
+        taken[0].close()
+        others.append(socket.create_connection(line.getsockname(), 5))
+        taken.append(line.accept()[0])
+        for one in [*taken, *others]:
+            one.close()
+
+
+def test_each_place_writes_few_lines_into_the_log_and_says_that_there_are_more(monkeypatch, caplog):
+    log = logging.getLogger("tests.flooded")
+    log.addFilter(lan._Seldom())
+    for k in range(50):
+        log.warning("device %d", k)
+    log.warning("from another place")
+    said = [one.getMessage() for one in caplog.records if one.name == log.name]
+    assert said[:9] == [f"device {k}" for k in range(9)]
+    assert said[9:] == [
+        "device 9 (More of these within the minute are left out.)", "from another place"
+    ]  # fmt: skip
+    monkeypatch.setattr(lan, "_LOG_S", 0.0)
+    for k in range(50):
+        log.warning("device %d", k)
+    assert len([one for one in caplog.records if one.name == log.name]) == 61
+
+
+def test_enough_files_may_be_open():
+    resource = pytest.importorskip("resource")
+    code = (
+        "import resource as r; from app.startup import lan;"
+        "r.setrlimit(r.RLIMIT_NOFILE, (256, 1000)); print(lan._open_files());"
+        "print(r.getrlimit(r.RLIMIT_NOFILE));"
+        "r.setrlimit(r.RLIMIT_NOFILE, (500, 500)); print(lan._open_files())"
+    )
+    if resource.getrlimit(resource.RLIMIT_NOFILE)[1] not in range(1000):
+        said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+        assert said.stdout.split(b"\n")[:3] == [b"1000", b"(1000, 1000)", b"500"]
 
 
 def test_a_port_that_somebody_else_has_is_a_sentence(served):

@@ -195,6 +195,22 @@ def test_a_socket_of_a_foreign_page_is_closed_before_it_is_open():
     assert [message["type"] for message in sent] == ["websocket.close"]
 
 
+def test_uploads_that_streamlit_refuses_keep_nobody_from_uploading():
+    server, answers = Server(), iter([403] * 5 + [204])
+
+    async def streamlit(_scope, _receive, send):
+        await send({"type": "http.response.start", "status": next(answers), "headers": []})
+        await send({"type": "http.response.body", "body": b""})
+
+    server._streamlit = streamlit
+    server._loaded.set()
+    headers = [*HOST, (b"content-length", b"1000000000")]
+    for window in "abcdef":
+        path = f"/_stcore/upload_file/{window}/file"
+        status = asked(server, path, "PUT", headers=headers)[0]
+    assert status == 204
+
+
 def test_an_upload_without_a_length_is_refused_with_a_sentence():
     status, _, body = asked(Server(), "/_stcore/upload_file/a/b", "PUT")
     assert status == 413

@@ -1,9 +1,12 @@
 """What a session brought is found again after a reload, by whoever has the address."""
 
+import getpass
 import os
 import shutil
+import tempfile
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -97,6 +100,67 @@ def test_what_nobody_came_back_to_for_a_day_is_removed():
     kept_files.clean(time.time())
     assert not old.exists()
     assert new.exists()
+
+
+@pytest.fixture
+def parent(tmp_path, monkeypatch):
+    """Give a folder of temporary files of its own, and the name that is known in advance."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    return tmp_path, tmp_path / f"fieldmon-files-{getpass.getuser()}"
+
+
+def test_what_a_link_in_the_folders_place_leads_to_stays(parent):
+    shared, known = parent
+    home = shared / "home"
+    old = home / ("a" * 22)
+    old.mkdir(parents=True)
+    home.chmod(0o700)
+    long_ago = time.time() - kept_files.KEEP_S - 60
+    os.utime(old, (long_ago, long_ago))
+    known.symlink_to(home)
+    kept_files.clean(time.time())
+    kept_files.written("ground-x", "map.mbtiles", b"tiles")
+    assert list(home.iterdir()) == [old]
+    assert kept_files.folder().stat().st_mode & 0o077 == 0
+    assert kept_files.folder() == kept_files.folder(), "found again, also after a restart"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no modes of this kind")
+@pytest.mark.parametrize("made", ["open", "file", "another's", "another's, both"])
+def test_a_folder_that_others_may_write_to_or_own_is_not_used(parent, made, monkeypatch):
+    _, known = parent
+    others = []
+    if made == "file":
+        known.touch()
+        others = [known]
+    elif made == "open":
+        known.mkdir()
+        known.chmod(0o777)
+        others = [known]
+    else:
+        others = [known, Path(f"{known}-x")][: 1 + made.endswith("both")]
+        for one in others:
+            one.mkdir(mode=0o700)
+        inodes, lstat = {one.lstat().st_ino for one in others}, Path.lstat
+
+        def seen(path):
+            found = lstat(path)
+            owner = os.getuid() + (found.st_ino in inodes)
+            return SimpleNamespace(st_mode=found.st_mode, st_uid=owner)
+
+        monkeypatch.setattr(Path, "lstat", seen)
+    assert kept_files.folder() not in others
+    assert kept_files.folder().is_dir()
+
+
+def test_what_was_not_made_here_stays_in_the_folder(parent):  # noqa: ARG001 - the place
+    long_ago = time.time() - kept_files.KEEP_S - 60
+    kept_files.written("ground-x", "map.mbtiles", b"tiles")
+    for name in ("Documents", ".ssh", "ground-x"):
+        (kept_files.folder() / name).mkdir(exist_ok=True)
+        os.utime(kept_files.folder() / name, (long_ago, long_ago))
+    kept_files.clean(time.time())
+    assert {one.name for one in kept_files.folder().iterdir()} == {"Documents", ".ssh"}
 
 
 def test_half_a_folder_is_none(brought):

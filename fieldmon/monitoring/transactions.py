@@ -78,6 +78,21 @@ def is_season(path: str | Path) -> bool:
     return False
 
 
+def glance(path: Path, query: str, values: tuple[object, ...]) -> tuple[object, ...] | None:
+    """Return a file's first answer to a query; None: there is none, or it cannot be read.
+
+    The file is left as it is, of an older version too. It is not waited for: what another program
+    holds is read as it stands on the disk.
+    """
+    for how in ("mode=ro", "mode=ro&immutable=1"):
+        address = f"{path.absolute().as_uri()}?{how}"
+        with suppress(sqlite3.Error, FileProblem), closing(connect(address, 0.0)) as db:
+            _refuse_views(db, path)
+            row: tuple[object, ...] | None = db.execute(query, values).fetchone()
+            return row
+    return None
+
+
 class Store:
     """The file of a season.
 
@@ -328,8 +343,11 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     # another file of the same name is another season
     of_file = path, path.stat().st_ino
     # one that is at work belongs to whoever reads around this
-    db = files.pop(of_file) if of_file in files else connect(path)
-    _limit(db)
+    db = files.pop(of_file, None)
+    if db is None:
+        db = connect(path)
+    else:
+        _limit(db)
     try:
         yield db
     finally:
@@ -416,11 +434,15 @@ def _sentences(path: Path, into: Path | None = None) -> AbstractContextManager[N
     return sentences(path, _patience_s(), into)
 
 
-def connect(path: Path, patience_s: float | None = None) -> sqlite3.Connection:
-    """Open a file that may be a stranger's: whatever it makes SQLite do comes to an end."""
+def connect(path: Path | str, patience_s: float | None = None) -> sqlite3.Connection:
+    """Open a file that may be a stranger's: whatever it makes SQLite do comes to an end.
+
+    A text is its address, as SQLite takes it.
+    """
     # autocommit: transactions begin and end where the code says so
     patience_s = _patience_s() if patience_s is None else patience_s
-    db = sqlite3.connect(path, timeout=patience_s, isolation_level=None)
+    is_address = isinstance(path, str)
+    db = sqlite3.connect(path, timeout=patience_s, isolation_level=None, uri=is_address)
     db.execute("PRAGMA trusted_schema = OFF")
     _limit(db)
     return db

@@ -229,7 +229,7 @@ def _arrays(morning: Belief) -> Arrays | None:
     }
 
 
-def _arrays_in(chances: bytes) -> Arrays:
+def _arrays_in(chances: bytes) -> dict[str, NDArray[Any]]:
     """Return the arrays that bytes hold, which are never pressed: pressed ones may be endless."""
     with np.load(io.BytesIO(unpacked(chances, len(chances))), allow_pickle=False) as file:
         if any(part.compress_type for part in file.zip.infolist()):

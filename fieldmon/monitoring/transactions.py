@@ -46,9 +46,9 @@ _GLANCE_S = 0.5
 _ASK_AGAIN_S, _MOMENT_S = 0.25, 1.0
 #: how a file of SQLite begins
 MAGIC = b"SQLite format 3\x00"
-# nothing that is done with a season at once takes a tenth of so many steps of SQLite; a stranger's
-# view or trigger may never end
-_MOST_STEPS, _STEPS = 1_000_000_000, 1_000_000
+# to merge a million inspections takes half of so many steps of SQLite, which last a minute; a
+# stranger's view or trigger may never end
+_MOST_STEPS, _STEPS = 3_000_000_000, 1_000_000
 # the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
 _KEPT = threading.local()
 # how long is waited for others at most within `waiting_at_most`, in its threads, too
@@ -343,11 +343,11 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     # another file of the same name is another season
     of_file = path, path.stat().st_ino
     # one that is at work belongs to whoever reads around this
-    db = files.pop(of_file, None)
-    if db is None:
-        db = connect(path)
-    else:
+    if of_file in files:
+        db = files.pop(of_file)
         _limit(db)
+    else:
+        db = connect(path)
     try:
         yield db
     finally:

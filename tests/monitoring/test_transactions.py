@@ -359,7 +359,7 @@ def a_view_instead(path, name):
         for kind, one in db.execute(of_it).fetchall():
             db.execute(f"DROP {kind} {one}")
         db.execute(f"DROP TABLE {name}")
-        made = ", ".join(f"x AS {column}" for column in columns)
+        made = ", ".join(f"x + {k} AS {column}" for k, column in enumerate(columns, 1))
         db.execute(f"CREATE VIEW {name} AS SELECT {made} FROM ({_ENDLESS}) WHERE x < 0")  # noqa: S608
         db.commit()
 

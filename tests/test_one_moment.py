@@ -38,14 +38,14 @@ def worked(tmp_path_factory):
 @pytest.fixture
 def moments(monkeypatch):
     """List the transactions that are begun."""
-    begun, connect = [], transactions._connect
+    begun, connect = [], transactions.connect
 
     def listening(*of):
         db = connect(*of)
         db.set_trace_callback(lambda sql: begun.append(sql) if sql.startswith("BEGIN") else None)
         return db
 
-    monkeypatch.setattr(transactions, "_connect", listening)
+    monkeypatch.setattr(transactions, "connect", listening)
     return begun
 
 

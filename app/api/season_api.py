@@ -5,9 +5,11 @@ What is answered with 200 is on the disk. No Streamlit in here.
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import hashlib
 import logging
+import time
 from functools import cache
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Any
@@ -53,6 +55,8 @@ _HEADERS = {
 }
 # a phone waits for an answer for half a minute, and tries again by itself
 _PATIENCE_S = 3.0
+# longer than it takes to look for a key in any file
+_REFUSED_S = 0.1
 _CODES = {AccessError: 401, LimitError: 429, FileProblem: 503}
 
 
@@ -133,13 +137,21 @@ def _key(request: Request) -> str:
 
 
 async def _asked_by(request: Request) -> tuple[Season, Scout]:
-    """Return the season and who asks; who has no key does not learn which seasons there are."""
-    return await run_in_threadpool(_opened, request.path_params["season"], _key(request))
+    """Return the season and who asks; who has no key does not learn which seasons there are.
+
+    Neither from how long it takes: each refusal takes as long.
+    """
+    began = time.monotonic()
+    try:
+        return await run_in_threadpool(_opened, request.path_params["season"], _key(request))
+    except AccessError:
+        await asyncio.sleep(_REFUSED_S - (time.monotonic() - began))
+        raise
 
 
 def _opened(name: str, key: str) -> tuple[Season, Scout]:
     path = _path_of(name) if key else None
-    if path is None:
+    if path is None or not _may_hold(path, key):
         raise AccessError(
             "There must be a key that holds for this season, but there is none. Ask whoever leads "
             "the season for a new one."
@@ -154,18 +166,25 @@ def _opened(name: str, key: str) -> tuple[Season, Scout]:
             "The season's file must be within reach, but it is not just now; nothing is lost. Try "
             "again later."
         ) from error
-    heard.note(season.path, scout.name)
+    heard.note(path, scout.name)
+    heard.note_key(path, key)
     return season, scout
 
 
 def _path_of(name: str) -> Path | None:
-    """Return the file of a season; None unless it is there, was, or its folder is out of reach."""
+    """Return the file that a season of this name would have; None: no season is named so."""
     try:
-        path = seasons_folder.path_of(name)
+        return seasons_folder.path_of(name)
     except SettingError:
         return None
-    is_known = path.is_file() or opened_seasons.was_open(path) or not path.parent.is_dir()
-    return path if is_known else None
+
+
+def _may_hold(path: Path, key: str) -> bool:
+    """Tell whether a key holds, or may: nothing is opened or brought up to date for a stranger.
+
+    One that held holds while the file is out of reach; any may while the folder of all is.
+    """
+    return scouts.holds(path, key) or heard.knew_key(path, key) or not path.parent.is_dir()
 
 
 def _is_foreign(request: Request) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.digest import digest
 from fieldmon.plot.local_clock import utc_now
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ class LastHeard(NamedTuple):
 
 # by file and name
 _HEARD: dict[tuple[Path, str], LastHeard] = {}
+# digests of keys that held, by file
+_KEYS: set[tuple[Path, str]] = set()
 
 
 def note(path: Path, name: str, day: date | None = None, plan: int | None = None) -> None:
@@ -46,3 +49,13 @@ def note(path: Path, name: str, day: date | None = None, plan: int | None = None
 def last(path: Path, name: str) -> LastHeard | None:
     """Return when somebody was heard last; None: not since the app was started."""
     return _HEARD.get((path, name))
+
+
+def note_key(path: Path, key: str) -> None:
+    """Note that a key holds on a season."""
+    _KEYS.add((path, digest(key)))
+
+
+def knew_key(path: Path, key: str) -> bool:
+    """Tell whether a key held on a season since the app was started."""
+    return (path, digest(key)) in _KEYS

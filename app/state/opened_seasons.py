@@ -31,12 +31,6 @@ def is_open(path: Path) -> bool:
     return opening is not None and opening.done()
 
 
-def was_open(path: Path) -> bool:
-    """Return whether a season of this path is open, though its file may be out of reach now."""
-    with _LOCK:
-        return any(file[0] == path for file in _OPEN)
-
-
 def opened(path: Path) -> Season:
     """Return a season that all share; each call of it reads what is new in its file."""
     file = _file(path)

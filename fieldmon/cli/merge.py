@@ -36,8 +36,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         done = kept.merge(Season(copy))
     gone = f", {done.taken_back} were taken back there" if done.taken_back else ""
     parts = [counted(done.new, "inspection")]
-    parts += [counted(n, thing) for n, thing in ((done.treatments, "treatment"),
-                                                 (done.codes, "scout's code")) if n]  # fmt: skip
+    more = (done.treatments, "treatment"), (len(done.codes), "scout's code")
+    parts += [counted(n, thing) for n, thing in more if n]
     were = "was" if len(parts) == 1 and done.new == 1 else "were"
     typer.echo(f"{other.name}: {joined(', ', parts)} {were} new{gone}")
     if done.moved:
@@ -46,6 +46,11 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         )
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")
+    if done.codes:
+        typer.echo(
+            f"  codes: of {joined(', ', [*dict.fromkeys(done.codes)])}. They read this season and "
+            "record into it: take back in the app what you do not know."
+        )
     for sentence in done.overlaps:
         typer.echo(f"  codes: {sentence}")
     typer.echo("\n".join(lines(kept, kept.status(kept.day_meant()))))

@@ -24,6 +24,7 @@ from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.prepare import lay
 from fieldmon.io.sources import PlantingChoices
+from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
 from fieldmon.planning.assumptions import assumed_by
@@ -135,11 +136,12 @@ def _finished(folder: Path, files: dict[str, str], digests: dict[str, str]) -> d
             f"{folder / SUMMARY} must be readable, but it is not: {why}. Delete it, and all plots "
             "are planned anew."
         ) from error
-    same = {
-        name: row | {"file": name}
-        for row in csv.DictReader(io.StringIO(text))
-        if "digest" in row and (name := files.get(row["plot"]))
-    }
+    written = {safe_cell(plot): (plot, name) for plot, name in files.items()}
+    same = {}
+    for row in csv.DictReader(io.StringIO(text)):
+        if "digest" in row and row["plot"] in written:
+            plot, name = written[row["plot"]]
+            same[name] = row | {"plot": plot, "file": name}
     return {
         name: row
         for name, row in same.items()
@@ -260,12 +262,19 @@ def _write(folder: Path, order: Iterable[str], rows: dict[str, Row]) -> None:
     table.writeheader()
     # no file is written for a plot that was refused
     table.writerows(
-        rows[name] | ({"file": ""} if rows[name]["state"] == "refused" else {})
+        _safe(rows[name] | ({"file": ""} if rows[name]["state"] == "refused" else {}))
         for name in order
         if name in rows
     )
     # the mark at the beginning tells a spreadsheet that names may be in any script
     write_whole(folder / SUMMARY, text.getvalue().encode("utf-8-sig"))
+
+
+def _safe(row: Row) -> Row:
+    """Return a row whose texts no spreadsheet runs."""
+    return {
+        key: safe_cell(value) if isinstance(value, str) else value for key, value in row.items()
+    }
 
 
 def _tell(rows: dict[str, Row], folder: Path) -> None:

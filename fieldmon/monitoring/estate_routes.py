@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
 from fieldmon.plot.local_clock import grid_clock
@@ -86,10 +87,12 @@ def plan_table(
     for file, one in files.items():
         hours = (when.isoformat(timespec="seconds") for when in (one.begins, one.ends))
         finds = round(one.route.expected_found, 2)
-        table.writerow(
-            (file, one.plot, one.who, *hours, len(one.route), finds, " ".join(one.closed))
-        )
-    table.writerows(("", plot, *[""] * 5, " ".join(said)) for plot, said in waiting.items())
-    table.writerows(("", "", who, *[""] * 5) for who in free)
+        names, said = map(safe_cell, (one.plot, one.who)), safe_cell(" ".join(one.closed))
+        table.writerow((file, *names, *hours, len(one.route), finds, said))
+    table.writerows(
+        ("", safe_cell(plot), *[""] * 5, safe_cell(" ".join(said)))
+        for plot, said in waiting.items()
+    )
+    table.writerows(("", "", safe_cell(who), *[""] * 5) for who in free)
     # the mark at the beginning tells a spreadsheet that names may be in any script
     return text.getvalue().encode("utf-8-sig")

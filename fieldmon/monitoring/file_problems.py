@@ -46,6 +46,14 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
                     path=path,
                 )
             ) from error
+        if "interrupted" in text:
+            raise FileProblem(
+                worded(
+                    "Work on a season must come to an end, but a view or a trigger in {path} "
+                    "does not. Open only seasons of people whom you know.",
+                    path=path,
+                )
+            ) from error
         if "locked" in text:
             raise FileHeld(
                 worded(

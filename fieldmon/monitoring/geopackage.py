@@ -6,6 +6,8 @@ Source: OGC 12-128r18, GeoPackage Encoding Standard 1.3.1, clauses 1.1, 2.1 and 
 
 from __future__ import annotations
 
+import sqlite3
+import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +15,6 @@ import numpy as np
 import shapely
 
 if TYPE_CHECKING:
-    import sqlite3
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
@@ -171,6 +172,22 @@ def blob(geometry: shapely.Geometry) -> bytes:
     flags = 0x01 | (0x10 if shapely.is_empty(geometry) else 0)
     wkb: bytes = shapely.to_wkb(geometry, byte_order=1)
     return b"GP\x00" + bytes([flags]) + WGS84.to_bytes(4, "little") + wkb
+
+
+def unpacked(packed: bytes, most: int) -> bytes:
+    """Return what bytes of zlib unpack to.
+
+    Raise `sqlite3.DatabaseError`, as SQLite does of a damaged file, if that is cut short or more
+    than `most` bytes: of a stranger's file it may be more than the memory holds.
+    """
+    unpack = zlib.decompressobj()
+    try:
+        data = unpack.decompress(packed, max(most, 0) + 1)
+    except zlib.error as error:
+        raise sqlite3.DatabaseError(f"what is packed is no zlib: {error}") from error
+    if len(data) > most or not unpack.eof:
+        raise sqlite3.DatabaseError(f"what is packed is cut short, or more than {most} bytes")
+    return data
 
 
 def geometry(blob: bytes) -> Any:  # noqa: ANN401 - whatever geometry it is

@@ -7,6 +7,7 @@ when one of its rows is changed, see `fieldmon.monitoring.schema`: whichever pro
 from __future__ import annotations
 
 import json
+import sqlite3
 import zlib
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -16,10 +17,9 @@ import numpy as np
 from fieldmon.compute.digest import digest
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import insert
+from fieldmon.monitoring.geopackage import insert, unpacked
 
 if TYPE_CHECKING:
-    import sqlite3
     from collections.abc import Iterable, Iterator
     from datetime import date
 
@@ -34,17 +34,22 @@ _LEAST, _MOST = -(1 << 63), (1 << 63) - 1
 # in the order of `Inspections`, but with numbers of days
 _NUMBERS = {"plant": "<i4", "result": "<i1", "day": "<i4", "second": "<f8", "count": "<f8"}
 _TEXTS = ("who", "notes")
+# what all lots may unpack to: notes of 500 letters for each of a million rows
+_MOST_BYTES = 1 << 29
 
 
 def load(db: sqlite3.Connection, begins: date) -> Inspections:
     """Return the inspections that count, by day; within a day by time, untimed ones last."""
-    unpacked = {
-        lot: _unpacked(mark, packed)
-        for lot, mark, packed in db.execute(
-            "SELECT lot, content, columns FROM inspection_lots ORDER BY lot"
-        )
-    }
-    kept = {lot: columns for lot, columns in unpacked.items() if columns is not None}
+    kept, left = {}, _MOST_BYTES
+    lots = "SELECT lot, content, columns FROM inspection_lots ORDER BY lot"
+    for lot, mark, packed in db.execute(lots):
+        if digest(packed) == mark:  # else it is not what was kept
+            try:
+                data = unpacked(packed, left)
+            except sqlite3.DatabaseError:
+                continue
+            left -= len(data)
+            kept[lot] = _columns(data)
     pieces = []
     for rows, lot in _between(kept):
         pieces.append(_read(db, rows))
@@ -131,11 +136,8 @@ def _packed(columns: Columns) -> bytes | None:
     return zlib.compress(head + b"\n" + b"".join(array.tobytes() for array in arrays), 1)
 
 
-def _unpacked(mark: str, packed: bytes) -> Columns | None:
-    """Return the columns that bytes hold, or None: they are not what was kept."""
-    if digest(packed) != mark:
-        return None
-    data = zlib.decompress(packed)
+def _columns(data: bytes) -> Columns:
+    """Return the columns that bytes hold."""
     at = data.index(b"\n") + 1
     n, *said = json.loads(data[:at])
     columns: Columns = []

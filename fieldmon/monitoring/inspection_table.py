@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
 from contextlib import closing
 from hashlib import sha256
 from typing import TYPE_CHECKING
@@ -16,9 +15,10 @@ from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.replaced import as_it_was
-from fieldmon.monitoring.transactions import copy_season
+from fieldmon.monitoring.transactions import connect, copy_season
 
 if TYPE_CHECKING:
+    import sqlite3
     from collections.abc import Iterable
     from datetime import date
     from pathlib import Path
@@ -41,10 +41,11 @@ def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Pa
     """
     copy = folder / season.name
     copy_season(season, copy)
-    with closing(sqlite3.connect(copy)) as db:
+    with closing(connect(copy)) as db:
+        db.execute("BEGIN")
         db.execute("DELETE FROM inspections WHERE undone <> 0")
         db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
-        db.commit()
+        db.execute("COMMIT")
     return copy
 
 

@@ -163,6 +163,9 @@ def _fit(path: Path, more: Path) -> bool:
 
 
 def _revision(db: sqlite3.Connection) -> int:
+    kind = db.execute("SELECT rootpage FROM sqlite_master WHERE name = 'fieldmon'").fetchone()
+    if kind == (0,):
+        raise sqlite3.DatabaseError("what says what the file is must not be a view")  # of no end
     row = db.execute("SELECT value FROM fieldmon WHERE key = 'revision'").fetchone()
     return 0 if row is None else int(row[0])
 

@@ -73,9 +73,10 @@ class Merged:
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
         Whether batches have other numbers now than they had.
-    treatments, codes
-        Treatments that count now and did not before, and keys of scouts that hold and were not
-        there.
+    treatments
+        Treatments that count now and did not before.
+    codes
+        Names of those whose keys hold and were not there, one for each key.
     overlaps
         A sentence for each two codes whose rows overlap.
     """
@@ -85,7 +86,7 @@ class Merged:
     taken_back: int = 0
     moved: bool = False
     treatments: int = 0
-    codes: int = 0
+    codes: tuple[str, ...] = ()
     overlaps: tuple[str, ...] = ()
 
 
@@ -109,7 +110,7 @@ class MergedCopy(NamedTuple):
     taken_back: int
     differing: tuple[str, ...]
     treatments: int
-    codes: int
+    codes: tuple[str, ...]
     numbers: Numbers
 
 
@@ -128,7 +129,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         for copied in copies
     ]
     stay = _n_staying((db, other), numbers)
-    before, applied = _counting(db, stay), treatments.counting(db)
+    before, keys, applied = _counting(db, stay), _keys(db), treatments.counting(db)
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])
@@ -150,8 +151,8 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     for batch, _ in phone_tables.bring_together(db, phones):
         close_if_empty(db, batch)
     now = _counting(db, stay)
-    new, codes = (len(one - was) for one, was in zip(now, before, strict=True))
-    taken_back = len(before[0] - now[0])
+    new, taken_back = len(now - before), len(before - now)
+    codes = tuple(sorted(name for key, name in _keys(db).items() if key not in keys))
     known = frozenset().union(*applied)
     n_treated = sum(known.isdisjoint(marks) for marks in treatments.counting(db))
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
@@ -161,15 +162,15 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     return MergedCopy(new, taken_back, said, n_treated, codes, anew)
 
 
-def _counting(db: sqlite3.Connection, stay: int) -> list[set[str]]:
-    """Return inspections that count, and keys that hold, by their digests.
-
-    Inspections that `stay` are left out.
-    """
+def _counting(db: sqlite3.Connection, stay: int) -> set[str]:
+    """Return inspections that count by their digests; those that `stay` are left out."""
     counts = "SELECT digest FROM inspections WHERE undone = 0 AND digest NOTNULL AND fid > ?"
-    keys = "SELECT key_digest FROM scouts WHERE ended IS NULL"
-    rows = db.execute(counts, (stay,)), db.execute(keys)
-    return [{mark for (mark,) in found} for found in rows]
+    return {mark for (mark,) in db.execute(counts, (stay,))}
+
+
+def _keys(db: sqlite3.Connection) -> dict[str, str]:
+    """Return whose keys hold, by the digests of these."""
+    return dict(db.execute("SELECT key_digest, name FROM scouts WHERE ended IS NULL"))
 
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sqlite3
 import zipfile
 import zlib
 from dataclasses import dataclass, field, replace
@@ -23,11 +24,9 @@ from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.unwatched import Unwatched
 from fieldmon.monitoring import history as causes_of_a_morning
 from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import insert
+from fieldmon.monitoring.geopackage import insert, unpacked
 
 if TYPE_CHECKING:
-    import sqlite3
-
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
@@ -230,12 +229,19 @@ def _arrays(morning: Belief) -> Arrays | None:
     }
 
 
+def _arrays_in(chances: bytes) -> dict[str, NDArray[Any]]:
+    """Return the arrays that bytes hold, which are never pressed: pressed ones may be endless."""
+    with np.load(io.BytesIO(unpacked(chances, len(chances))), allow_pickle=False) as file:
+        if any(part.compress_type for part in file.zip.infolist()):
+            raise ValueError("A kept morning must not be pressed, but it is.")
+        return dict(file)
+
+
 def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     """Return a kept morning of the season that began with `first`, or None: it is of another."""
     try:
-        with np.load(io.BytesIO(zlib.decompress(chances)), allow_pickle=False) as file:
-            arrays = dict(file)
-    except (zlib.error, zipfile.BadZipFile, ValueError, OSError, EOFError):
+        arrays = _arrays_in(chances)
+    except (sqlite3.DatabaseError, zipfile.BadZipFile, ValueError, OSError, EOFError):
         return None
     # one that ends with a find that is left where it is holds none
     ancestry = _taken_out(arrays, _ANCESTRY)

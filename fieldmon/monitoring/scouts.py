@@ -18,6 +18,7 @@ from fieldmon.monitoring import phone_tables, season_log
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import written_in
+from fieldmon.monitoring.transactions import glance
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import utc_text
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable
     from datetime import date
+    from pathlib import Path
 
     from fieldmon.monitoring.open_season import OpenSeason
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -107,7 +109,7 @@ def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -
                 )
             )
         _end(db, name)
-        row = (name, _key_digest(season, key), utc_text(), None, first, last)
+        row = (name, _key_digest(season.path, key), utc_text(), None, first, last)
         insert(db, phone_tables.SCOUTS, [row])
         touch(db, phone_tables.SCOUTS.name)
     return key
@@ -223,6 +225,11 @@ def _last(scouts: Iterable[Scout]) -> tuple[Scout, ...]:
     return tuple(sorted(last.values(), key=lambda one: one.made))
 
 
+def holds(path: Path, key: str) -> bool:
+    """Tell whether a key holds on the season of a file, which is only looked at."""
+    return glance(path, f"SELECT 1 {_HELD}", (_key_digest(path, key),)) is not None
+
+
 def key_owner(season: OpenSeason, key: str) -> Scout:
     """Return whose key it is; raise `AccessError` unless it holds on this season."""
     with season.store.reading() as db:
@@ -232,8 +239,8 @@ def key_owner(season: OpenSeason, key: str) -> Scout:
 def key_owner_in(db: sqlite3.Connection, season: OpenSeason, key: str) -> Scout:
     """Return whose key it is, within a transaction: who is taken back writes nothing more."""
     row = db.execute(
-        f"SELECT {_COLUMNS} FROM scouts WHERE key_digest = ? AND ended IS NULL",  # noqa: S608 - ours
-        (_key_digest(season, key),),
+        f"SELECT {_COLUMNS} {_HELD}",
+        (_key_digest(season.path, key),),
     ).fetchone()
     if row is None:
         raise AccessError(
@@ -247,6 +254,7 @@ def key_owner_in(db: sqlite3.Connection, season: OpenSeason, key: str) -> Scout:
 
 
 _COLUMNS = "name, first_row, last_row, made, ended"
+_HELD = "FROM scouts WHERE key_digest = ? AND ended IS NULL"
 
 
 def _scout(row: tuple[str, int | None, int | None, str, str | None]) -> Scout:
@@ -262,5 +270,5 @@ def _end(db: sqlite3.Connection, name: str) -> int:
     return db.executemany(ended, names).rowcount if names else 0
 
 
-def _key_digest(season: OpenSeason, key: str) -> str:
-    return digest(season.path.name, key)
+def _key_digest(path: Path, key: str) -> str:
+    return digest(path.name, key)

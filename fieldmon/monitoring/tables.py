@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import zlib
 from dataclasses import dataclass, fields
 from itertools import pairwise
@@ -17,7 +18,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, touch
+from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, touch, unpacked
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
@@ -40,6 +41,8 @@ _FRAME, _IN_ROWS = "frame", "in_rows"
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 _ASSUMED = ("row_spacing_m", "plant_spacing_m")
 _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
+# what all arrays of a season may unpack to: those of a million plants take a third of it
+_MOST_BYTES = 1 << 30
 _NAMES = ("plant_rows", "plant_blocks", "plant_names")
 
 
@@ -79,11 +82,13 @@ def write_array(db: sqlite3.Connection, name: str, values: NDArray[Any]) -> None
 
 def read_arrays(db: sqlite3.Connection, like: str = "%") -> dict[str, NDArray[Any]]:
     """Return the arrays kept whose names are like an SQL pattern, by name."""
-    arrays = {}
+    arrays, left = {}, _MOST_BYTES
     wanted = "SELECT name, dtype, shape, data FROM arrays WHERE name LIKE ?"
     for name, dtype, shape, data in db.execute(wanted, (like,)):
-        flat = np.frombuffer(zlib.decompress(data), dtype=np.dtype(dtype))
-        arrays[name] = flat.reshape(json.loads(shape))
+        kind, sizes = np.dtype(dtype), json.loads(shape)
+        flat = unpacked(data, min(kind.itemsize * math.prod(sizes), left))
+        left -= len(flat)
+        arrays[name] = np.frombuffer(flat, kind).reshape(sizes)
     return arrays
 
 

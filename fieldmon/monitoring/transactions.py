@@ -26,6 +26,7 @@ from fieldmon.monitoring.schema import (
     LOGS_SINCE,
     NEEDS,
     OPEN,
+    TABLES,
     VERSION,
     WRITTEN,
     lay_out,
@@ -45,6 +46,9 @@ _GLANCE_S = 0.5
 _ASK_AGAIN_S, _MOMENT_S = 0.25, 1.0
 #: how a file of SQLite begins
 MAGIC = b"SQLite format 3\x00"
+# to merge a million inspections takes half of so many steps of SQLite, which last a minute; a
+# stranger's view or trigger may never end
+_MOST_STEPS, _STEPS = 3_000_000_000, 1_000_000
 # the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
 _KEPT = threading.local()
 # how long is waited for others at most within `waiting_at_most`, in its threads, too
@@ -60,7 +64,7 @@ def is_season(path: str | Path) -> bool:
             return False
         # through SQLite: whoever else opens and closes a database takes away the locks that other
         # threads of the same program hold on it
-        with closing(_connect(Path(path), _GLANCE_S)) as db:
+        with closing(connect(Path(path), _GLANCE_S)) as db:
             mark = db.execute("PRAGMA application_id").fetchone()[0]
             return mark == APPLICATION_ID and _version(db) is not None
     except sqlite3.Error as error:
@@ -72,6 +76,21 @@ def is_season(path: str | Path) -> bool:
         head = file.read(1 << 16)
         return head.startswith(MAGIC) and b"fieldmon" in head
     return False
+
+
+def glance(path: Path, query: str, values: tuple[object, ...]) -> tuple[object, ...] | None:
+    """Return a file's first answer to a query; None: there is none, or it cannot be read.
+
+    The file is left as it is, of an older version too. It is not waited for: what another program
+    holds is read as it stands on the disk.
+    """
+    for how in ("mode=ro", "mode=ro&immutable=1"):
+        address = f"{path.absolute().as_uri()}?{how}"
+        with suppress(sqlite3.Error, FileProblem), closing(connect(address, 0.0)) as db:
+            _refuse_views(db, path)
+            row: tuple[object, ...] | None = db.execute(query, values).fetchone()
+            return row
+    return None
 
 
 class Store:
@@ -90,6 +109,7 @@ class Store:
         journals.refuse_foreign_journal(self.path)
         with self.reading() as db:
             version = _version(db)
+            _refuse_views(db, self.path)
             is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
             needs = get_meta(db, "needs") if version else None
         self._checked: tuple[int, str] | None = None
@@ -142,7 +162,7 @@ class Store:
         _refuse_old(target, path)
         with _draft_folder(target) as folder:
             draft = Path(folder) / "season.gpkg"
-            with _sentences(target), closing(_connect(draft)) as db:
+            with _sentences(target), closing(connect(draft)) as db:
                 db.execute("BEGIN")
                 lay_out(db)
                 set_meta(db, "kind", KIND)
@@ -191,7 +211,7 @@ class Store:
         if self.path in _still():  # it would wait for itself
             raise RuntimeError("What is read as of one moment must not be written within it.")
         _must_be_there(self.path)
-        with _sentences(self.path), closing(_connect(self.path, patience_s)) as db:
+        with _sentences(self.path), closing(connect(self.path, patience_s)) as db:
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")
             _into_one_file(db)
@@ -317,13 +337,17 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     _must_be_there(path)
     files = _kept()
     if files is None:
-        with closing(_connect(path)) as db:
+        with closing(connect(path)) as db:
             yield db
         return
     # another file of the same name is another season
     of_file = path, path.stat().st_ino
     # one that is at work belongs to whoever reads around this
-    db = files.pop(of_file) if of_file in files else _connect(path)
+    if of_file in files:
+        db = files.pop(of_file)
+        _limit(db)
+    else:
+        db = connect(path)
     try:
         yield db
     finally:
@@ -344,8 +368,8 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
     written = named or to
     with (
         _sentences(path, written),
-        closing(_connect(path)) as db,
-        closing(_connect(to)) as copy,
+        closing(connect(path)) as db,
+        closing(connect(to)) as copy,
     ):
         db.backup(copy)
         copy.execute("PRAGMA journal_mode = DELETE")
@@ -410,12 +434,40 @@ def _sentences(path: Path, into: Path | None = None) -> AbstractContextManager[N
     return sentences(path, _patience_s(), into)
 
 
-def _connect(path: Path, patience_s: float | None = None) -> sqlite3.Connection:
+def connect(path: Path | str, patience_s: float | None = None) -> sqlite3.Connection:
+    """Open a file that may be a stranger's: whatever it makes SQLite do comes to an end.
+
+    A text is its address, as SQLite takes it.
+    """
     # autocommit: transactions begin and end where the code says so
     patience_s = _patience_s() if patience_s is None else patience_s
-    db = sqlite3.connect(path, timeout=patience_s, isolation_level=None)
+    is_address = isinstance(path, str)
+    db = sqlite3.connect(path, timeout=patience_s, isolation_level=None, uri=is_address)
     db.execute("PRAGMA trusted_schema = OFF")
+    _limit(db)
     return db
+
+
+def _limit(db: sqlite3.Connection) -> None:
+    """Let what is done with a file from now on, until its next transaction, come to an end."""
+    left = iter(range(_MOST_STEPS // _STEPS))
+    db.set_progress_handler(lambda: next(left, None) is None, _STEPS)
+
+
+def _refuse_views(db: sqlite3.Connection, path: Path) -> None:
+    """Refuse a file in which what must be a table of the season is a view, which may be endless."""
+    ours = {table.name for table in TABLES}
+    # a virtual table may be as endless, and has no page of its own either
+    others = db.execute("SELECT lower(name) FROM sqlite_master WHERE rootpage = 0")
+    for name in sorted(ours & {name for (name,) in others}):
+        raise FileProblem(
+            worded(
+                "Each layer of a season must be a table, but {name} is none in {path}: it was not "
+                "made by fieldmon init. Open only seasons of people whom you know.",
+                name=name,
+                path=path,
+            )
+        )
 
 
 def _into_one_file(db: sqlite3.Connection) -> None:
@@ -429,7 +481,8 @@ def _into_one_file(db: sqlite3.Connection) -> None:
 
 
 def _version(db: sqlite3.Connection) -> int | None:
-    known = db.execute("SELECT 1 FROM sqlite_master WHERE name = 'fieldmon'").fetchone()
+    wanted = "SELECT 1 FROM sqlite_master WHERE name = 'fieldmon' AND rootpage > 0"  # no view
+    known = db.execute(wanted).fetchone()
     if known is None or get_meta(db, "kind") != KIND:
         return None
     return int(get_meta(db, "version") or 0)

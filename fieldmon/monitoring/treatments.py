@@ -14,7 +14,7 @@ from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import irac_groups
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.geopackage import blob, geometry, touch
+from fieldmon.monitoring.geopackage import blob, geometry, touch, unpacked
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.monitoring.waiting_periods import WaitingPeriod, end_of
@@ -314,7 +314,7 @@ def _kept(row: dict[str, Any], inside: Inside, clock: LocalClock) -> KeptTreatme
     by_plant = row["of_plants"] is not None
     plants = inside(area)
     if by_plant:
-        bits = np.frombuffer(zlib.decompress(row["of_plants"]), np.uint8)
+        bits = np.frombuffer(unpacked(row["of_plants"], -(-len(plants) // 8)), np.uint8)
         plants = np.unpackbits(bits, count=len(plants)).astype(bool)
     began, ended = (_read(row[name]) for name in ("began", "ended"))
     more: dict[str, Any] = {name: row[name] or "" for name in _TEXTS}

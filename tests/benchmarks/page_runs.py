@@ -42,8 +42,8 @@ def begun(path: Path, n_plants: int) -> int:
 def main() -> None:
     """Print the processor time of each part."""
     n_plants = int(sys.argv[1]) if len(sys.argv) > 1 else N_PLANTS
-    connect, files = transactions._connect, []
-    transactions._connect = lambda *of: files.append(of[0]) or connect(*of)
+    connect, files = transactions.connect, []
+    transactions.connect = lambda *of: files.append(of[0]) or connect(*of)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["FIELDMON_SEASONS"] = folder
         sys.stdout.write(f"{begun(Path(folder) / 'Timed.gpkg', n_plants):,} plants\n")

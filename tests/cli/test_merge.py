@@ -38,6 +38,7 @@ def test_treatments_and_codes_that_came_in_are_counted_and_hours_have_a_unit(run
     code, out, err, _ = run("merge", season, other)
     assert code == 0, err
     assert "0 inspections, 1 treatment, 1 scout's code were new" in out
+    assert "codes: of Ann. They read this season and record into it: take back" in out
     assert "robot differs: 1.5 h here, 2 h there" in out
 
 

@@ -119,6 +119,16 @@ def test_what_is_finished_is_not_planned_again_unless_something_changed(run, par
     assert "not: it is no text in UTF-8. Delete it" in " ".join(run(*words)[2].split())
 
 
+def test_no_name_in_the_summary_is_run_by_a_spreadsheet(run, tmp_path, summary):
+    write_geojson(tmp_path / "evil.geojson", many(SHAPES, 2), name=['=HYPERLINK("x")', "+cmd"])
+    words = "plan", tmp_path / "evil.geojson", "--all", "-o", "routes", "--date", "2026-11-02"
+    assert run(*words)[0] == 0
+    before = summary()
+    assert list(before) == ['\'=HYPERLINK("x")', "'+cmd"]
+    assert "2 of 2 plots were planned already" in run(*words)[1]
+    assert summary() == before
+
+
 def test_a_day_that_starts_later_is_planned_again_with_its_own_times(run, parcels, summary):
     words = ["plan", parcels, "--all", "-o", "routes", "--hours", 2, "--date", "2026-11-02"]
     run(*words)

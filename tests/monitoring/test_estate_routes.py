@@ -46,6 +46,15 @@ def test_the_table_tells_where_nobody_goes_and_who_goes_nowhere():
     assert rows[2]["closed"] == "Closed until 06:30."
 
 
+def test_no_name_in_the_table_is_run_by_a_spreadsheet():
+    named = replace(a_route("=1+1"), who="+cmd", closed=["@a is closed."])
+    data = plan_table({"01-a.gpx": named}, {"-b": ("=c is closed.",)}, ["\t=d"])
+    rows = [*csv.DictReader(io.StringIO(data.decode("utf-8-sig")))]
+    assert [(one["plot"], one["who"], one["closed"]) for one in rows] == [
+        ("'=1+1", "'+cmd", "'@a is closed."), ("'-b", "", "'=c is closed."), ("", "'\t=d", ""),
+    ]  # fmt: skip
+
+
 def test_a_turn_over_a_change_of_clocks_ends_when_the_clock_says():
     late = replace(a_route("a"), begins=datetime(2027, 3, 26, 1, 30))
     (row,) = csv.DictReader(io.StringIO(plan_table({"a.gpx": late}).decode("utf-8-sig")))

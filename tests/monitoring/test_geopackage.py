@@ -3,6 +3,7 @@
 import inspect
 import shutil
 import sqlite3
+import zlib
 from contextlib import closing
 from dataclasses import replace
 
@@ -26,6 +27,7 @@ from fieldmon.monitoring.geopackage import (
     insert,
     point_blobs,
     touch,
+    unpacked,
 )
 from fieldmon.monitoring.photos_asked import ask_no_more, ask_photo
 from tests.monitoring.phone import JPEG, NOW, a_finding
@@ -221,3 +223,12 @@ def test_a_layer_that_a_piece_of_work_changed_says_so_and_holds_what_it_shows(pa
             assert all(whole.contains(one) for one in shapes), name
     silent = {name for name in after if before[name] != after[name] and changed[name] < "2001"}
     assert silent == set()
+
+
+@given(st.binary(max_size=50))
+def test_what_is_packed_unpacks_to_no_more_than_may_be_and_never_in_part(data):
+    packed = zlib.compress(data)
+    assert unpacked(packed, len(data)) == unpacked(packed, 1000) == data
+    for one, most in ((packed, len(data) - 1), (packed[:-1], 1000), (b"x" + packed, 1000)):
+        with pytest.raises(sqlite3.DatabaseError, match="what is packed"):
+            unpacked(one, most)

@@ -124,6 +124,18 @@ def test_a_lot_that_is_not_what_it_was_is_read_row_by_row(path, change):
     assert_the_same(as_it_is(path), row_by_row(path))
 
 
+def test_lots_that_unpack_to_more_than_all_may_are_read_row_by_row(path, monkeypatch):
+    monkeypatch.setattr(inspection_lots, "_MOST_BYTES", 1000)  # room for two or three
+    made, columns = [], inspection_lots._columns
+    monkeypatch.setattr(
+        inspection_lots, "_columns", lambda data: made.append(len(data)) or columns(data)
+    )
+    read = as_it_is(path)
+    assert 0 < sum(made) <= 1000
+    assert len(made) < len(lots(path))
+    assert_the_same(read, row_by_row(path))
+
+
 def test_row_numbers_of_another_program_may_be_any(path):
     with closing(sqlite3.connect(path)) as db:
         for number, fid in enumerate((-5, 0, 1 << 40)):

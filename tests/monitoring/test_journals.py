@@ -5,6 +5,7 @@ import sqlite3
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from itertools import takewhile
+from multiprocessing import get_context
 from time import sleep
 
 import numpy as np
@@ -15,6 +16,7 @@ from fieldmon.monitoring import Season
 from fieldmon.monitoring.journals import _is_of_the_last_transaction, _reaches
 from tests.monitoring.open_elsewhere import as_qgis, beside, left_by_a_crash
 from tests.monitoring.seasons import a_plot, a_season, state, three_results
+from tests.monitoring.test_transactions import a_view_instead
 
 
 def test_what_another_program_left_beside_the_season_is_taken_in_and_the_file_is_one_again(
@@ -28,6 +30,21 @@ def test_what_another_program_left_beside_the_season_is_taken_in_and_the_file_is
     assert beside(crashed) == ["season.gpkg"]
     with closing(sqlite3.connect(crashed)) as db:
         assert db.execute("PRAGMA journal_mode").fetchone() == ("delete",)
+
+
+def test_a_view_that_never_ends_is_not_read_with_changes_beside_it_either(path, tmp_path):
+    a_view_instead(path, "fieldmon")
+    crashed = left_by_a_crash(path, tmp_path / "crashed")
+    opened = get_context("fork").Process(target=refused, args=(crashed,))
+    opened.start()
+    opened.join(20)
+    ended, _ = opened.exitcode, opened.kill()
+    assert ended == 0
+
+
+def refused(path):
+    with pytest.raises(FileProblem, match="must belong together"):
+        Season(path)
 
 
 def test_while_another_program_has_the_season_open_both_go_on(path):

@@ -1,7 +1,9 @@
 """Mornings: the same whether worked out from the first, from those at hand, or from the file's."""
 
+import io
 import shutil
 import sqlite3
+import zlib
 from contextlib import closing
 from dataclasses import replace
 from datetime import timedelta
@@ -15,7 +17,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import Season, day_figures
 from fieldmon.monitoring.history import Treatment
-from fieldmon.monitoring.mornings import Mornings, _causes, _packed, _unpacked
+from fieldmon.monitoring.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS
 
@@ -134,6 +136,17 @@ def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, damage
     change(path, damage)
     season = Season(path)
     assert the_same(of_day(season, LAST), all_over(season)[LAST])
+
+
+def test_a_kept_morning_that_is_pressed_is_not_unpacked(path):
+    season = Season(path)
+    first, kept_one = season.history.first_morning, _packed(of_day(season, LAST))
+    assert the_same(_unpacked(first, kept_one), of_day(season, LAST))
+    plain = zlib.decompress(kept_one)
+    assert _unpacked(first, zlib.compress(plain, 9)) is None
+    file = io.BytesIO()
+    np.savez_compressed(file, **_arrays_in(kept_one))
+    assert _unpacked(first, zlib.compress(file.getvalue(), 0)) is None
 
 
 def test_a_plan_that_is_kept_already_keeps_the_mornings_of_a_new_version(path, monkeypatch):

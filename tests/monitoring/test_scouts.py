@@ -63,7 +63,7 @@ def test_who_got_a_key_in_each_of_two_copies_is_one_person_and_both_keys_hold(se
     first = scouts.let_in(season, "Ann", (1, 9))
     last = scouts.let_in(other, "ann", (5, 12))
     done = season.merge(other)
-    assert (done.codes, done.overlaps) == (1, ())
+    assert (done.codes, done.overlaps) == (("Ann",), ())
     (one,) = scouts.scouts_of(season)
     assert one.rows == (5, 12)
     assert [scouts.key_owner(season, key) for key in (first, last)] == [one, one]

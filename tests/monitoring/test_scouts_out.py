@@ -92,9 +92,9 @@ def test_a_person_is_one_though_an_older_file_writes_the_name_in_two_ways(fresh)
 
 
 def test_the_file_is_read_as_often_for_many_people_as_for_one(fresh, monkeypatch):
-    opened, connect = [], transactions._connect
+    opened, connect = [], transactions.connect
     monkeypatch.setattr(
-        transactions, "_connect", lambda *told: opened.append(told) or connect(*told)
+        transactions, "connect", lambda *told: opened.append(told) or connect(*told)
     )
     times = []
     for k in range(3):

@@ -2,6 +2,8 @@
 
 import re
 import sqlite3
+import tracemalloc
+import zlib
 from contextlib import closing
 from dataclasses import fields, replace
 
@@ -45,6 +47,29 @@ def test_a_season_whose_plants_are_lost_says_so_without_a_word_of_python(path, l
     with pytest.raises(FileProblem, match="not all that says where they stand") as problem:
         Season(path)
     assert re.search(r"__|None|'|argument", str(problem.value).replace("season's", "")) is None
+
+
+def test_an_array_that_unpacks_to_more_than_it_says_is_refused_and_not_unpacked(path):
+    with closing(sqlite3.connect(path)) as db:
+        bomb = zlib.compress(bytes(300_000_000), 9)
+        db.execute("UPDATE arrays SET data = ? WHERE name = 'stated'", (bomb,))
+        db.commit()
+    del bomb
+    tracemalloc.start()
+    with pytest.raises(FileProblem, match=r"is damaged \(.*more than 24 bytes"):
+        Season(path)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 100e6
+
+
+def test_all_arrays_together_unpack_to_a_limit(db, monkeypatch):
+    monkeypatch.setattr(tables, "_MOST_BYTES", 1000)
+    for name in "abc":
+        tables.write_array(db, name, np.zeros(50))
+    assert len(tables.read_arrays(db, "a")) == 1
+    with pytest.raises(sqlite3.DatabaseError, match="more than 200 bytes"):
+        tables.read_arrays(db)
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

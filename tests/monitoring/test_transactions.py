@@ -243,7 +243,7 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
 
 
 def test_a_full_disk_is_that_of_the_file_that_is_written(path, tmp_path, monkeypatch):
-    connect = transactions._connect
+    connect = transactions.connect
 
     def small(file, patience_s=None):
         db = connect(file, patience_s)
@@ -251,19 +251,19 @@ def test_a_full_disk_is_that_of_the_file_that_is_written(path, tmp_path, monkeyp
             db.execute("PRAGMA max_page_count = 8")
         return db
 
-    monkeypatch.setattr(transactions, "_connect", small)
+    monkeypatch.setattr(transactions, "connect", small)
     with pytest.raises(FileProblem, match=r"room on the disk for \S*copy.gpkg, but it is full"):
         Store(path).back_up(tmp_path / "copy.gpkg")
     assert not (tmp_path / "copy.gpkg").exists()
 
 
 def test_what_is_kept_open_is_opened_once_says_what_is_new_and_locks_nothing(path, monkeypatch):
-    season, opened, connect = Season(path), [], transactions._connect
+    season, opened, connect = Season(path), [], transactions.connect
     monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)
     with kept_open():
         before = season.revision
         monkeypatch.setattr(
-            transactions, "_connect", lambda *of: opened.append(of[0]) or connect(*of)
+            transactions, "connect", lambda *of: opened.append(of[0]) or connect(*of)
         )
         assert season.settings.begins == BEGINS
         with season.store.reading() as db, season.store.reading() as inner:
@@ -346,3 +346,53 @@ def test_the_wait_is_over_when_the_other_program_lets_go(path, monkeypatch):
 def test_nobody_waits_for_a_file_that_is_not_there(tmp_path):
     assert transactions.wait_until_free(tmp_path / "none.gpkg", print, to_write=True)
     assert not [*tmp_path.iterdir()]
+
+
+_ENDLESS = "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x FROM c"
+
+
+def a_view_instead(path, name):
+    """Let a layer be a view that never ends, as a stranger may."""
+    with closing(sqlite3.connect(path)) as db:
+        columns = [row[1] for row in db.execute(f"PRAGMA table_info({name})")]
+        of_it = "SELECT type, name FROM sqlite_master WHERE type IN ('trigger', 'view')"
+        for kind, one in db.execute(of_it).fetchall():
+            db.execute(f"DROP {kind} {one}")
+        db.execute(f"DROP TABLE {name}")
+        made = ", ".join(f"x + {k} AS {column}" for k, column in enumerate(columns, 1))
+        db.execute(f"CREATE VIEW {name} AS SELECT {made} FROM ({_ENDLESS}) WHERE x < 0")  # noqa: S608
+        db.commit()
+
+
+def test_a_layer_that_is_an_endless_view_is_refused_and_never_read(path):
+    a_view_instead(path, "arrays")
+    began = time.process_time()
+    with pytest.raises(FileProblem, match=r"must be a table, but arrays is none in \S*season.gpkg"):
+        Season(path)
+    a_view_instead(path, "fieldmon")
+    assert not is_season(path)
+    with pytest.raises(FileProblem, match="is none in"):
+        Season(path)
+    assert time.process_time() - began < 5
+
+
+def test_a_trigger_that_never_ends_is_given_up_and_nothing_is_changed(path, monkeypatch):
+    monkeypatch.setattr(transactions, "_MOST_STEPS", 20_000_000)
+    with closing(sqlite3.connect(path)) as db:
+        never = f"DELETE FROM hot_spots WHERE fid IN ({_ENDLESS})"  # noqa: S608
+        db.execute(f"CREATE TRIGGER x AFTER INSERT ON inspections BEGIN {never}; END")
+        db.commit()
+    season = Season(path)
+    with pytest.raises(FileProblem, match="come to an end, but a view or a trigger in"):
+        season.record(three_results(), "monday")
+    assert state(path) == 12
+
+
+def test_of_a_kept_file_each_transaction_may_take_as_many_steps(path, monkeypatch):
+    store = Store(path)
+    monkeypatch.setattr(transactions, "_MOST_STEPS", 3_000_000)
+    counted = f"SELECT count(*) FROM (SELECT x FROM ({_ENDLESS} LIMIT 100000))"  # noqa: S608
+    with kept_open():
+        for _ in range(5):
+            with store.reading() as db:
+                assert db.execute(counted).fetchone() == (100_000,)

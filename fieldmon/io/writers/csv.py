@@ -57,4 +57,4 @@ def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
 def safe_cell(text: str) -> str:
     """Return a text that no spreadsheet runs as a formula."""
     plain = plain_text(text)
-    return f"'{plain}" if plain.startswith(_FORMULA) else plain
+    return f"'{plain}" if plain.lstrip().startswith(_FORMULA) else plain

@@ -81,15 +81,15 @@ class _at_the_server:  # noqa: N801 - reads as what it is
         self.ending, self.steps = ending, chance.randrange(1, 60)
 
     def __enter__(self):
-        self.kept = transactions._connect
+        self.kept = transactions.connect
         if self.ending in {"full disk", "stopped"}:
-            transactions._connect = self._connect
+            transactions.connect = self._connect
 
     def __exit__(self, *_):
-        transactions._connect = self.kept
+        transactions.connect = self.kept
 
-    def _connect(self, path):
-        db = self.kept(path)
+    def _connect(self, *of):
+        db = self.kept(*of)
         if self.ending == "full disk":
             pages = db.execute("PRAGMA page_count").fetchone()[0]
             db.execute(f"PRAGMA max_page_count = {pages}")

@@ -4,6 +4,7 @@ import base64
 import hashlib
 import shutil
 import sqlite3
+import time
 import uuid
 from contextlib import closing
 
@@ -12,7 +13,7 @@ import pytest
 from app.api import description, season_api
 from app.api.season_api import application
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Season, photos, scouts
+from fieldmon.monitoring import Season, photos, schema, scouts
 from tests.app.api.asking import Cut, as_sent, ask, exchange, in_own_loop, of_season, scope_of
 from tests.monitoring.phone import JPEG, a_finding, told
 from tests.monitoring.seasons import BEGINS
@@ -99,6 +100,44 @@ def test_a_stranger_reads_nothing_and_writes_nothing(served, way):
         assert answer.status in {401, 404}
         assert b"no key" in answer.body or b"there is none" in answer.body or answer.status == 404
     assert digest(served.season.path) == before
+
+
+def test_what_a_stranger_is_answered_does_not_tell_which_seasons_there_are(served):
+    path = served.season.path
+    for name in ("held", "wal", "away"):
+        shutil.copy(path, served.folder / f"{name}.gpkg")
+    key = scouts.let_in(Season(served.folder / "away.gpkg"), "Ann")
+    assert ask("GET", of_season("plot", "away"), key=key).status == 200
+    (served.folder / "away.gpkg").unlink()
+    (served.folder / "damaged.gpkg").write_bytes(path.read_bytes()[:50_000])
+    (served.folder / "noseason.gpkg").write_bytes(b"SQLite format 3\0" + bytes(4000))
+    with (
+        closing(sqlite3.connect(served.folder / "held.gpkg", isolation_level=None)) as other,
+        closing(sqlite3.connect(served.folder / "wal.gpkg")) as qgis,
+    ):
+        qgis.execute("PRAGMA journal_mode = WAL")
+        other.execute("BEGIN EXCLUSIVE")
+        names = ["season", "nothing", "held", "wal", "away", "damaged", "noseason"]
+        answers, took_s = [], []
+        for name in names:
+            began = time.monotonic()
+            answers.append(ask("GET", of_season("plot", name), key="nonsense"))
+            took_s.append(time.monotonic() - began)
+    assert {answer.status for answer in answers} == {401}
+    assert len({answer.body for answer in answers}) == 1
+    assert min(took_s) >= season_api._REFUSED_S
+
+
+def test_for_a_key_that_is_made_up_no_older_season_is_brought_up_to_date(served):
+    with closing(sqlite3.connect(served.season.path)) as db:
+        older = str(schema.VERSION - 1)
+        db.execute("UPDATE fieldmon SET value = ? WHERE key = 'version'", (older,))
+        db.commit()
+    before, there = digest(served.season.path), sorted(served.folder.iterdir())
+    assert ask("GET", of_season("plot"), key="nonsense").status == 401
+    assert (digest(served.season.path), sorted(served.folder.iterdir())) == (before, there)
+    assert ask("GET", of_season("plot"), key=served.key).status == 200
+    assert digest(served.season.path) != before
 
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)

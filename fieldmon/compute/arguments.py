@@ -349,7 +349,7 @@ def must_be_rate(rate_l_ha: float) -> None:
             worded(
                 "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "
                 "is {rate_l_ha:g}.",
-                rate_l_ha=rate_l_ha,
+                rate_l_ha=max(min(rate_l_ha, 1e300), -1e300),  # a whole number may be no float
             )
         )
 

@@ -135,6 +135,18 @@ def harvest_from(
     return max(days, key=lambda item: item[0], default=None)
 
 
+def counts_no_more(one: KeptTreatment, label: ProductLabel | None, *, here: bool) -> str:
+    """Return that a treatment that counted here, or in another copy, was undone in the other."""
+    counted_in, undone_in = ("here", "there") if here else ("there", "here")
+    first = waits(one, label).harvest_from
+    wait = "" if first is None else f", and harvest does not wait for it until {first}"
+    return (
+        f"The treatment with {one.application.product or 'a product that nobody named'} on "
+        f"{one.on} counted {counted_in}, but was undone {undone_in}: it does not count. Nothing "
+        f"warns of it any more{wait}. If it was done, record it again with: fieldmon treat"
+    )
+
+
 def _longer(one: _Wait | None, other: _Wait | None) -> _Wait | None:
     return max((wait for wait in (one, other) if wait is not None), default=None)
 

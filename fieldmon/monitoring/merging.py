@@ -2,7 +2,8 @@
 
 A row is known again by what it says and by the batch it came with, never by its number. What was
 taken back in one copy is taken back. What both recorded for themselves counts once; the later one
-stands back for the first until that one is taken back. A treatment is known again whatever labels
+stands back for the first until that one is taken back; where each copy took back another recording
+of a treatment, one counts. A treatment is known again whatever labels
 added to it (`treatments.known_by`). Everything is put in the order in which it was recorded, so
 that it does not matter which copy takes in the other; what a copy recorded later stays so, whatever
 its clock said. Inspections that both copies begin with, and that come out where they are, are left
@@ -68,7 +69,8 @@ class Merged:
         Inspections that count now and did not before.
     contradictions
         A sentence for each result that the copies tell differently, for each setting, for the table
-        of labels, and for treatments that are alike but for what a label may add.
+        of labels, for treatments that are alike but for what a label may add, and for each
+        treatment that counted in one copy and was undone in the other.
     taken_back
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
@@ -101,6 +103,8 @@ class MergedCopy(NamedTuple):
         treatments that are alike but for what a label may add.
     treatments, codes
         As `Merged` has them.
+    gone
+        Numbers of treatments that counted here, and of those that counted there, and do not now.
     """
 
     new: int
@@ -108,6 +112,7 @@ class MergedCopy(NamedTuple):
     differing: tuple[str, ...]
     treatments: int = 0
     codes: int = 0
+    gone: tuple[frozenset[int], ...] = ()
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -125,13 +130,16 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         for copied in copies
     ]
     stay = _n_staying((db, other), numbers)
-    before, applied = _counting(db, stay), treatments.counting(db)
+    before = _counting(db, stay)
+    applied = [treatments.counted(copied["treatments"]) for copied in copies]
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])
     _merge_inspections((db, other), numbers, gone, stay)
     own = [copied["treatments"] for copied in copies]
     treated = _merged_findings(own, numbers, set(), set())
+    known, theirs = (frozenset().union(*one.values()) for one in applied)
+    left = treatments.leave_one(treated, known & theirs)
     treatments.settle(treated)
     _write(db, schema.TREATMENTS, treated)
     _count(db, batches)
@@ -145,15 +153,19 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _write(db, schema.LABELS, labels)
     for batch, _ in phone_tables.bring_together(db, phones):
         close_if_empty(db, batch)
-    now = _counting(db, stay)
-    new, codes = (len(one - was) for one, was in zip(now, before, strict=True))
-    taken_back = len(before[0] - now[0])
-    known = frozenset().union(*applied)
-    n_treated = sum(known.isdisjoint(marks) for marks in treatments.counting(db))
+    after = _counting(db, stay)
+    new, codes = (len(one - was) for one, was in zip(after, before, strict=True))
+    taken_back = len(before[0] - after[0])
+    count = treatments.counting(db)
+    n_treated = sum(known.isdisjoint(marks) for marks in count)
+    now = frozenset().union(*count)
+    no_more = tuple(frozenset(n for n, marks in one.items() if marks.isdisjoint(now))
+                    for one in applied)  # fmt: skip
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
             for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
-    said = *_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held)
-    return MergedCopy(new, taken_back, said, n_treated, codes)
+    said = (*_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held),
+            *map(_left, left))  # fmt: skip
+    return MergedCopy(new, taken_back, said, n_treated, codes, no_more)
 
 
 def _counting(db: sqlite3.Connection, stay: int) -> list[set[str]]:
@@ -581,6 +593,14 @@ def _alike_but_for_labels(
                 f"Treatments with {named}, batches {one['batch']} and {other['batch']}, say the "
                 f"same but for {differ}{why}. Both count; if they are one, undo a batch."
             )
+
+
+def _left(row: Row) -> str:
+    return (
+        f"Each copy undid another recording of the treatment with "
+        f"{row['product'] or 'a product that nobody named'} on {row['date']}, which counted once "
+        f"in both: batch {row['batch']} counts. If it was not done, undo that, too."
+    )
 
 
 def _or_none(value: object) -> str:

@@ -77,7 +77,8 @@ class LogEntry:
             more = ["..."] if len(said) > _MOST_NAMED else []
             what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
-        return _SAID[self.kind].format_map(what) + anew
+        undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
+        return _SAID[self.kind].format_map(what) + undone + anew
 
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""

@@ -793,3 +793,56 @@ def test_another_season_is_no_copy_of_this_one(path, tmp_path):
         assert db.execute("PRAGMA quick_check").fetchone() == ("ok",)
     assert Season(path).batches() == Season(path).batches()
     assert len(path.read_bytes()) == len(before)
+
+
+def test_a_spraying_undone_in_one_copy_is_named_with_the_wait_that_ends(path, other):
+    here = Season(path)
+    here.treat(BEGINS, 0.5, application=replace(SPRAYED, waiting_days=14))
+    there = Season(shutil.copy(path, other))
+    there.undo()
+    done = there.merge(here)
+    said = (
+        f"The treatment with Acarol on {BEGINS} counted {{}}, but was undone {{}}: it does not "
+        f"count. Nothing warns of it any more, and harvest does not wait for it until "
+        f"{BEGINS + timedelta(days=15)}. If it was done, record it again with: fieldmon treat"
+    )
+    assert done.contradictions == (said.format("there", "here"),)
+    n = len(there.log())
+    done = here.merge(there)
+    assert done.contradictions == (said.format("here", "there"),)
+    assert here.treatments() == ()
+    assert f"; undone there: Acarol on {BEGINS}" in here.log()[-1].sentence()
+    assert (here.merge(there).contradictions, len(there.log())) == ((), n)
+    here.treat(BEGINS, 0.5, application=replace(SPRAYED, waiting_days=14))
+    assert there.merge(here).contradictions == ()
+    assert len(there.treatments()) == 1
+
+
+@pytest.mark.parametrize("first", ["here", "there"])
+def test_of_a_spraying_that_both_recorded_one_counts_after_each_undid_another(path, other, first):
+    for copy in (path, other):
+        Season(copy).treat(BEGINS, 0.5, application=SPRAYED)
+    here = Season(path)
+    here.merge(Season(other))
+    there = Season(shutil.copy(path, other))
+    before = {one.number for one in here.batches() if one.kind == "treatment"}
+    here.undo(min(before))
+    there.undo(max(before))
+    one, another = (here, there) if first == "here" else (there, here)
+    done = one.merge(another)
+    said = (
+        f"Each copy undid another recording of the treatment with Acarol on {BEGINS}, which "
+        f"counted once in both: batch {min(before)} counts. If it was not done, undo that, too."
+    )
+    assert done.contradictions == (said,)
+    (kept,) = one.treatments()
+    undone = {batch.number for batch in one.batches() if batch.undone}
+    assert (kept.batch, undone, done.treatments) == (min(before), {max(before)}, 0)
+    another.merge(one)
+    one.merge(another)
+    assert [each.batch for each in one.treatments()] == [min(before)]
+    assert [each.batch for each in another.treatments()] == [min(before)]
+    assert (one.verify(), another.verify()) == ((), ())
+    one.undo(min(before))
+    another.merge(one)
+    assert another.treatments() == ()

@@ -112,6 +112,14 @@ def waits(one: KeptTreatment, label: ProductLabel | None) -> WaitingPeriod:
     )
 
 
+def groups(one: KeptTreatment, label: ProductLabel | None) -> tuple[str, ...]:
+    """Return the mode-of-action groups: as people said, else those of its label, then and now."""
+    kept = one.application.irac_groups
+    if label is None or (kept and one.groups_said):
+        return kept
+    return tuple(dict.fromkeys((*kept, *label.irac_groups)))
+
+
 def closed_until(
     one: KeptTreatment, label: ProductLabel | None, starts: time, on: date
 ) -> datetime | None:
@@ -213,7 +221,7 @@ _Said = tuple["KeptTreatment", "ProductLabel | None"]
 def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
     """Yield uses of one mode-of-action group after another on the same plants."""
     row: dict[str, NDArray[np.int64]] = {}
-    of = {one.batch: _groups(one, label) for one, label in said}
+    of = {one.batch: groups(one, label) for one, label in said}
     for _, same_day in groupby((one for one, _ in said if of[one.batch]), lambda one: one.on):
         today = list(same_day)
         any_group = np.logical_or.reduce([one.place.plants for one in today])
@@ -233,10 +241,6 @@ def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
                         n=uses, group=group, plants=counted(n, "plant"), **_named(one, units),
                     )  # fmt: skip
                     yield Caution("group", sentence, one.batch)
-
-
-def _groups(one: KeptTreatment, label: ProductLabel | None) -> tuple[str, ...]:
-    return one.application.irac_groups or (label.irac_groups if label else ())
 
 
 def _uses(said: list[_Said], units: Units) -> Iterator[Caution]:

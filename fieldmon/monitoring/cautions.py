@@ -80,7 +80,8 @@ def cautions(
 
     Those whose mode-of-action group nobody said are no use of any group, and end no row of uses.
     """
-    done = [one for one in treatments if one.on <= on]
+    # one that went on over midnight is of the day on which it began
+    done = sorted((one for one in treatments if one.on <= on), key=lambda one: one.on)
     said = [(one, label_of(one, rules.labels)) for one in done]
     return (
         *(caution for one, label in said for caution in _of_waits(one, label, rules, on)),

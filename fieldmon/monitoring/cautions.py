@@ -6,7 +6,7 @@ Labels are the user's own table; where it does not say, nothing is made up.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import datetime
+from datetime import date, datetime
 from itertools import groupby
 from typing import TYPE_CHECKING, TypeVar
 
@@ -18,7 +18,7 @@ from fieldmon.decisions.labels import label_for, plain_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from datetime import date, time
+    from datetime import time
 
     from numpy.typing import NDArray
 
@@ -89,6 +89,21 @@ def cautions(
         *_uses(said, rules.units),
         *(caution for one, label in said for caution in _of_dose(one, label, rules)),
     )
+
+
+def because_of(
+    treatments: Sequence[KeptTreatment], batch: int, rules: RulesToKeep, on: date
+) -> tuple[Caution, ...]:
+    """Return what to beware of on a day because of one treatment, and what it adds to later ones.
+
+    One that is entered late may make a later use one too many.
+    """
+    own = [one for one in cautions(treatments, rules, on) if one.batch == batch]
+    others = [one for one in treatments if one.batch != batch]
+    without = {one.sentence for one in cautions(others, rules, date.max)}
+    added = [one for one in cautions(treatments, rules, date.max)
+             if one.batch != batch and one.sentence not in without]  # fmt: skip
+    return (*own, *added)
 
 
 def label_of(one: KeptTreatment, labels: Iterable[ProductLabel]) -> ProductLabel | None:

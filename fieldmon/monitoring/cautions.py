@@ -163,11 +163,11 @@ def counts_no_more(one: KeptTreatment, label: ProductLabel | None, *, here: bool
     """Return that a treatment that counted here, or in another copy, was undone in the other."""
     counted_in, undone_in = ("here", "there") if here else ("there", "here")
     first = waits(one, label).harvest_from
-    wait = "" if first is None else f", and harvest does not wait for it until {first}"
+    wait = "" if first is None else f" and its wait (harvest from {first})"
     return (
         f"The treatment with {one.application.product or 'a product that nobody named'} on "
-        f"{one.on} counted {counted_in}, but was undone {undone_in}: it does not count. Nothing "
-        f"warns of it any more{wait}. If it was done, record it again with: fieldmon treat"
+        f"{one.on} counted {counted_in}, but was undone {undone_in}: it does not count, nor do its "
+        f"warnings{wait}. If it was done, record it again with: fieldmon treat"
     )
 
 

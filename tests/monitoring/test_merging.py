@@ -803,8 +803,8 @@ def test_a_spraying_undone_in_one_copy_is_named_with_the_wait_that_ends(path, ot
     done = there.merge(here)
     said = (
         f"The treatment with Acarol on {BEGINS} counted {{}}, but was undone {{}}: it does not "
-        f"count. Nothing warns of it any more, and harvest does not wait for it until "
-        f"{BEGINS + timedelta(days=15)}. If it was done, record it again with: fieldmon treat"
+        f"count, nor do its warnings and its wait (harvest from {BEGINS + timedelta(days=15)}). "
+        f"If it was done, record it again with: fieldmon treat"
     )
     assert done.contradictions == (said.format("there", "here"),)
     n = len(there.log())

@@ -61,7 +61,7 @@ VALUES: dict[str, Any] = {
     "point": shapely.Point(0, 0),
 }  # fmt: skip
 
-_DATES = {"date", "first date", "last date"}
+_DATES = {"date", "first date", "last date", "moment"}
 _TEXTS = {"text", "empty text", "NUL"}
 #: what each annotation allows; whatever else is taken is taken for something that it is not
 _RIGHT = {
@@ -91,7 +91,7 @@ _COLUMNS = {
     "second": {"tuple", "list of 10^30", "array of nan", "array of 1e30", "array of -1"},
     "count": {"tuple", "list of 10^30", "array of nan", "array of 1e30", "array of -1"},
     "plant": {"tuple", "array of -1"},
-    "result": {"tuple", "array of -1", "mask"},
+    "result": {"tuple", "mask"},
     "date": {"array of dates"},
     "on": {"array of dates", "moment", "numpy's NaT"},
     **{name: {"list of 10^30"} for name in ("who", "notes")},
@@ -132,7 +132,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     "routes.best": {"others": {"ragged"}},
     "Pest.infests_per_day": {"temperature_c": {"empty array"}},
     "Season.create": {
-        "path": {"text", "path"}, "messages": {"empty list", "empty array"},
+        "path": {"text", "path"}, "messages": {"None", "empty list", "empty array"},
         **{name: {"None"} for name in ("observations", "settings", "risk")},
     },
     "SeasonSettings": {"believe": {"class", "function"}, "pests": {"class", "function"}},

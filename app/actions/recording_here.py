@@ -18,7 +18,7 @@ from . import recording
 if TYPE_CHECKING:
     from ..state.choices import Choices
 
-# what was recorded here last: of which season, as which batch
+# what was recorded here last: of which season, and when; merging changes numbers of batches
 _LAST = "recorded here"
 
 
@@ -53,14 +53,15 @@ def _record(choices: Choices, plant: int, result: int) -> str:
     results = Inspections.of(np.array([plant]), np.array([result]), np.datetime64(choices.day))
     done = recording.recorded(choices, results, recording.TYPED_IN)
     if done is not None and done.batch is not None:
-        st.session_state[_LAST] = choices.key, done.batch
+        at = {one.number: one.at for one in choices.season.batches()}
+        st.session_state[_LAST] = choices.key, at[done.batch]
     return recording.said_of(done)
 
 
 def _last(choices: Choices) -> int | None:
     """Return the batch that was recorded here last, unless it was taken back."""
-    key, number = st.session_state.get(_LAST, ("", None))
-    if key != choices.key or number is None:
+    key, at = st.session_state.get(_LAST, ("", None))
+    if key != choices.key or at is None:
         return None
-    kept = {one.number for one in choices.season.batches() if not one.undone}
-    return number if number in kept else None
+    kept = (one.number for one in choices.season.batches() if one.at == at and not one.undone)
+    return next(kept, None)

@@ -9,6 +9,7 @@ import streamlit as st
 from fieldmon.io import plot_records, prepare, read
 from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
 from fieldmon.io.rasters.read import read_backdrop, read_relief
+from fieldmon.io.readers import nearby
 from fieldmon.plot.row_detection import rows_from_plants
 
 from .cached import FEW, WORKING
@@ -92,6 +93,12 @@ def measured_plants(
 ) -> Imported[Plants]:
     """Return measured plants: positions, and labels if the file has any."""
     return read.read_plants(_source, options)
+
+
+@st.cache_resource(max_entries=FEW, show_spinner=WORKING)
+def plants_on(key: str, far: str | None, _measured: Plants, _field: Field) -> Imported[Plants]:
+    """Return which measured plants are those of a plot."""
+    return nearby.plants_on(_measured, _field, far)
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)

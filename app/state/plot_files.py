@@ -129,7 +129,11 @@ def outline(files: Files, which: Which) -> Outline:
     read = cached_files.plots(files.plot.key, options, files.plot.source)
     number = which(files.plot, read.value)
     field = read.value[number]
-    if measured is not None:
+    key = f"{key}{files.plot.key}{options}{number}"
+    if measured is not None and files.plants is not None:
+        far = settled(files.plants, ReadOptions()).far
+        own = cached_files.plants_on(key, far, measured, field)
+        measured, heard = own.value, (*heard, *messages_of(files.plants, own))
         field = with_plants(field, measured)
     field, drawn_there, longer = _with_drawn(files, field)
     if files.plot.key.startswith(_SAMPLE):
@@ -139,8 +143,7 @@ def outline(files: Files, which: Which) -> Outline:
     said = messages_of(files.plot, read)
     own = tuple(one for one in said if one.message.feature in (None, field.name))
     said = (*own, *heard, *drawn_there)
-    key = f"{key}{files.plot.key}{options}{number}{longer}"
-    return Outline(key, field, read.value, measured, said)
+    return Outline(f"{key}{longer}", field, read.value, measured, said)
 
 
 def _measured(file: File | None) -> tuple[Plants | None, tuple[FileMessage, ...], str]:

@@ -19,6 +19,7 @@ from pathlib import Path
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
+from fieldmon.compute import wording
 from fieldmon.compute.wording import Worded, estimate, joined, worded, written
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 ENGLISH = "en"
 #: each by its own name
-LANGUAGES = {ENGLISH: "English", "he": "עברית", "ar": "العربية", "es": "Español"}
+LANGUAGES = wording.LANGUAGES
 RIGHT_TO_LEFT = frozenset({"he", "ar"})
 # languages that set the sign of a share apart from its number
 _SHARE_APART = frozenset({ENGLISH, "es"})

@@ -22,7 +22,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
-from fieldmon.cli.team_files import members_of, refuse_far_gates
+from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import CHANCE
 from fieldmon.errors import SettingError
@@ -212,8 +212,6 @@ def change(options: ChangeOptions) -> None:
     season = Season(options.season)
     seen = season.settings
     new = options.changed(seen, season.plot.field)
-    if options.robots is not None:
-        refuse_far_gates(new.team, season.plot.field)
     if new == seen:
         typer.echo("Nothing was changed.")
         return

@@ -32,7 +32,7 @@ from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
-from fieldmon.cli.team_files import members_of, refuse_far_gates
+from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.compute.wording import counted, estimate
@@ -181,7 +181,6 @@ def init(options: InitOptions) -> None:
     starts = WorkStart(day(options.begins, "--begins"), at)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
-    refuse_far_gates(team, known.plot.field)
     begins = starts.on_plot(known.plot.field)
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins.date())
     settings = options.settings(begins, team, pest_in_weather)

@@ -42,8 +42,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     typer.echo(f"{other.name}: {joined(', ', parts)} {were} new{gone}")
     if done.moved:
         typer.echo(
-            "  numbered anew: batches have other numbers now than the log said before; see "
-            "fieldmon status --batches"
+            "  numbered anew: batches have other numbers now than before; the log shows both"
         )
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot
 
+ROUTE = Path("route.geojson")
 _RASTERS = (".tif", ".tiff")
 # what commands call the files that they write; all other files are read
 _WRITTEN = ("output", "chance_map", "bag")
@@ -67,7 +68,7 @@ def check_outputs(outputs: list[Path] | None, chance_map: Path | None) -> None:
 
 def write_routes(route: Route, outputs: list[Path] | None) -> None:
     """Write a route in every format asked for, and say where."""
-    for output in outputs or [Path("route.geojson")]:
+    for output in outputs or [ROUTE]:
         for path in route.to_file(output):
             typer.echo(f"Route written to {path}")
 

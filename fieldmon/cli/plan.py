@@ -14,6 +14,7 @@ from fieldmon.cli.options import (
     sampler_of,
 )
 from fieldmon.cli.outputs import (
+    ROUTE,
     check_outputs,
     day_in_words,
     write_chance_map,
@@ -24,6 +25,7 @@ from fieldmon.cli.plan_options import PlanOptions
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.plan_team import plan_team
 from fieldmon.cli.preparing import estate, prepared
+from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -106,6 +108,7 @@ def _plan_one(options: PlanOptions) -> None:
     from fieldmon.planning.day_bound import with_bound
     from fieldmon.planning.plan import PlanSettings, first_day
 
+    refuse_unrecorded(None, options.output or [ROUTE])
     robot, starts = options.pest_options.seen(options.worker.robot()), options.starts()
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)

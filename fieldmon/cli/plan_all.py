@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from fieldmon.cli.messages import assumed_in_words, tell_assumed_of_plots
+from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.cli.waiting import progress
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
@@ -90,6 +91,7 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
     files = {task.plot.name: name for name, task in tasks.items()}
     rows = _finished(day.folder, files, digests)
     left = {name: task for name, task in tasks.items() if name not in rows}
+    refuse_unrecorded(None, (day.folder / name for name in left))
     if len(left) < len(tasks):
         typer.echo(f"{len(tasks) - len(left)} of {len(tasks)} plots were planned already.")
     try:

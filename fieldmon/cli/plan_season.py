@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_drafts, tell_past_midnight
-from fieldmon.cli.outputs import day_in_words, write_chance_map, write_routes
+from fieldmon.cli.outputs import ROUTE, day_in_words, write_chance_map, write_routes
 from fieldmon.cli.season_files import learnt_of_each, refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
@@ -56,7 +56,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     if settings.team:
         _plan_team(season, options, on, settings)
         return
-    refuse_unrecorded(season, options.output or ())
+    refuse_unrecorded(season, options.output or [ROUTE])
     today = season.plan(on, None if now is None else clock(now, "--now"))
     if options.bound and len(today.route):
         today = with_bound(today)

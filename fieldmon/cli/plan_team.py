@@ -12,10 +12,10 @@ from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.pest_options import prior_of
 from fieldmon.cli.preparing import prepared
+from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.cli.team_files import (
     files_of_each,
     members_of,
-    refuse_far_gates,
     tell_member,
     write_member,
 )
@@ -38,6 +38,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.planning import team
     from fieldmon.planning.assumptions import assumed_by_team
+    from fieldmon.planning.members import refuse_far_gates
 
     for name in ("sampler", "every", "every_plot"):
         source = context.get_parameter_source(name)
@@ -46,6 +47,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
             raise SettingError(f"--robots plans best routes on one plot: leave out --{flag}.")
     members, first = members_of(robots, options.starts().at, options.worker)
     starts, files = WorkStart(options.starts().on, first), files_of_each(options.output, members)
+    refuse_unrecorded(None, (file for each in files for file in each))
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
     refuse_far_gates(members, known.plot.field)
     plot, begins = known.plot, starts.on_plot(known.plot.field)

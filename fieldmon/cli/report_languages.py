@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from fieldmon.cli.app_package import app_words
-from fieldmon.compute.wording import worded
-from fieldmon.errors import SettingError
+from fieldmon.compute.arguments import must_be_language
+from fieldmon.compute.wording import LANGUAGES
 
 if TYPE_CHECKING:
     from fieldmon.compute.units import Units
@@ -22,16 +22,8 @@ Language = Annotated[
 
 def checked_language(code: str) -> str:
     """Return a language's code; raise `SettingError` where nobody has translated into it."""
-    known: Any = app_words("language").LANGUAGES
     low = code.strip().lower()
-    if low not in known:
-        raise SettingError(
-            worded(
-                "A language must be one of {known}, but it is {code!r}.",
-                known=", ".join(known),
-                code=code,
-            )
-        )
+    must_be_language(low)
     return low
 
 
@@ -40,7 +32,7 @@ def spoken(asked: str | None, kept: str) -> tuple[ReportLanguage, Units]:
     from fieldmon.reports.language import ENGLISH
 
     # a season may keep a language of a later fieldmon
-    known = kept if kept in app_words("language").LANGUAGES else ENGLISH.code
+    known = kept if kept in LANGUAGES else ENGLISH.code
     code = known if asked is None else checked_language(asked)
     language: ReportLanguage = app_words("language").for_reports(code)
     units: Units = app_words("units").usual(code).of_library

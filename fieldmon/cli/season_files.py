@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import shlex
 import sqlite3
 from contextlib import closing
@@ -13,6 +14,7 @@ import typer
 
 from fieldmon.cli.messages import tell_not_come
 from fieldmon.cli.times import day_on
+from fieldmon.compute.wording import first_few
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 
 if TYPE_CHECKING:
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
+
+# files in a sentence
+_NAMED = 5
 
 
 def opened(files: Iterable[Path]) -> list[Season]:
@@ -103,11 +108,22 @@ def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> No
         )
 
 
-def refuse_unrecorded(season: Season, files: Iterable[Path]) -> None:
-    """Raise `SettingError` where a file to be written over was filled in and never recorded."""
-    for file in files:
-        if not (file.is_file() and _is_filled_in(file)):
-            continue
+def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
+    """Raise `SettingError` where a file to be written over was filled in and never recorded.
+
+    Without a season nothing is recorded.
+    """
+    filled_in = [file for file in files if file.is_file() and _is_filled_in(file)]
+    if season is None:
+        if not filled_in:
+            return
+        some = first_few([str(file) for file in filled_in], _NAMED)
+        were = "were" if len(filled_in) > 1 else "was"
+        raise SettingError(
+            f"{some} would be written over, but {were} filled in, and only a season records "
+            "results. Choose another name or folder, or move away what was filled in."
+        )
+    for file in filled_in:
         n = season.unrecorded(_results_in(file, season))
         if n:
             pasted = shlex.join([str(season.path), str(file)])
@@ -120,7 +136,7 @@ def refuse_unrecorded(season: Season, files: Iterable[Path]) -> None:
 
 
 def _is_filled_in(file: Path) -> bool:
-    """Return whether a table or GeoPackage given out may hold results: told without reading all.
+    """Return whether a table, GeoJSON or GeoPackage given out may hold results.
 
     Files of other formats come back under other names.
     """
@@ -130,6 +146,13 @@ def _is_filled_in(file: Path) -> bool:
         mark = max(",;\t", key=text.partition("\n")[0].count)
         rows = csv.DictReader(text.splitlines(), delimiter=mark)
         return any((row.get("found") or "").strip() or (row.get("count") or "") for row in rows)
+    if ending in {".geojson", ".json"}:
+        try:
+            stops = json.loads(file.read_bytes())["features"]
+            told = [stop["properties"].get(name) for stop in stops for name in ("found", "count")]
+        except (ValueError, LookupError, TypeError, AttributeError):
+            return False
+        return any(one is not None and one != "" for one in told)
     if ending != ".gpkg":
         return False
     wanted = "SELECT 1 FROM stops WHERE found IS NOT NULL OR count IS NOT NULL"

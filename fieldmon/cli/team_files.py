@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.outputs import ROUTE
 from fieldmon.cli.times import clock
 from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from fieldmon.cli.options import WorkerOptions
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
-    from fieldmon.plot.field import Field
     from fieldmon.plot.robot import Robot
 
 _NOT_IN_A_NAME = re.compile(r"[^\w-]+")
@@ -57,17 +57,6 @@ def members_of(
     return tuple(members), first
 
 
-def refuse_far_gates(team: tuple[TeamMember, ...], plot: Field) -> None:
-    """Refuse a member whose gate lies where nobody drives from in a day."""
-    from fieldmon.io.prepare import refuse_far_gate
-
-    for member in team:
-        try:
-            refuse_far_gate(member.gate, plot)
-        except SettingError as error:
-            raise SettingError(f"{member.name}: {error}") from None
-
-
 def _tell_team(members: list[TeamMember], on_foot: list[bool]) -> None:
     """Say what a table was taken for: lines may leave out what the options say."""
     said = "; ".join(
@@ -86,7 +75,7 @@ def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -
         )
     made = []
     for name in names:
-        parts = [(path, *path.name.partition(".")) for path in outputs or [Path("route.geojson")]]
+        parts = [(path, *path.name.partition(".")) for path in outputs or [ROUTE]]
         made.append(
             [path.with_name(f"{stem}-{name}{dot}{rest}") for path, stem, dot, rest in parts]
         )

@@ -5,13 +5,14 @@ Pages and commands hand over what they made themselves; a program of one's own m
 
 from __future__ import annotations
 
+from contextlib import suppress
 from datetime import date, datetime
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
 from fieldmon.compute.ranges import AllowedRange
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import LANGUAGES, worded
 from fieldmon.errors import ObservationError, SettingError
 
 if TYPE_CHECKING:
@@ -74,6 +75,8 @@ def shown(given: object) -> str:
     if given is None or isinstance(given, str | bytes | Real):
         text = repr(getattr(given, "item", lambda: given)())
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+    if type(given).__name__ == "datetime64":
+        return str(given)
     if hasattr(given, "setflags") and hasattr(given, "dtype"):
         return f"an array of {given.dtype}"
     if isinstance(given, tuple) and len(text := repr(given)) <= _LONGEST:
@@ -248,6 +251,18 @@ def must_be_name_of_file(what: str, path: object) -> None:
         )
 
 
+def must_be_language(code: str) -> None:
+    """Raise `SettingError` unless sentences are translated into the language of this code."""
+    if code not in LANGUAGES:
+        raise SettingError(
+            worded(
+                "A language must be one of {known}, but it is {code!r}.",
+                known=", ".join(LANGUAGES),
+                code=code,
+            )
+        )
+
+
 def must_be_zone(what: str, name: str) -> None:
     """Raise `SettingError` unless a time zone has this name; empty: UTC."""
     try:
@@ -346,21 +361,35 @@ def must_be_known(what: str, given: Iterable[str], known: Sequence[str]) -> None
             raise SettingError(f"{what} are {', '.join(known)}, but one is called {name!r}.")
 
 
-def day_of(what: str, given: Any) -> Any:  # noqa: ANN401 - anything else is left as it is
-    """Return the day of a text or a time; anything else as it is, for `must_be` to look at.
+def day_in(given: Any) -> Any:  # noqa: ANN401 - anything else is left as it is
+    """Return the day of a text, a time or numpy's day; anything else as it is.
 
-    Raise `SettingError` where a text is no day.
+    Examples
+    --------
+    >>> import numpy as np
+    >>> day_in("2026-11-18"), day_in(np.datetime64("2026-11-18")), day_in("soon")
+    (datetime.date(2026, 11, 18), datetime.date(2026, 11, 18), 'soon')
+    """
+    day = given
+    if isinstance(given, datetime):
+        day = given.date()  # as the clock there says
+    elif isinstance(given, str):
+        with suppress(ValueError):
+            day = date.fromisoformat(given)
+    elif type(given).__name__ == "datetime64":
+        day = given.astype("datetime64[D]").item()
+    return day if isinstance(day, date) else given
+
+
+def day_of(what: str, given: Any) -> Any:  # noqa: ANN401 - as above
+    """Return what `day_in` does, for `must_be` to look at; of a text that is no day raise an error.
 
     Examples
     --------
     >>> day_of("A harvest", "2026-11-18")
     datetime.date(2026, 11, 18)
     """
-    if isinstance(given, datetime):
-        return given.date()
-    if not isinstance(given, str):
-        return given
-    try:
-        return date.fromisoformat(given)
-    except ValueError as error:
-        raise SettingError(f"{what} must be a day as 2026-11-18, but it is {given!r}.") from error
+    day = day_in(given)
+    if isinstance(day, str):
+        raise SettingError(f"{what} must be a day as 2026-11-18, but it is {given!r}.")
+    return day

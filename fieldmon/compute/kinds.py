@@ -6,7 +6,6 @@ Annotations are read as text: a kind need not be imported to be known by its nam
 from __future__ import annotations
 
 import ast
-from contextlib import suppress
 from dataclasses import fields
 from datetime import date, datetime
 from functools import lru_cache, wraps
@@ -16,7 +15,7 @@ from math import isnan
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from fieldmon.compute.arguments import shown, with_article
+from fieldmon.compute.arguments import day_in, shown, with_article
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -46,7 +45,7 @@ _INSTEAD = {
     "Viewpoints": "Give Viewpoints(steps, longer).",
     "str": "Put it in quotes.",
 }
-#: annotations of arguments that may be a day's text
+#: annotations of arguments that may be a day as `day_in` reads it
 _DAYS = frozenset({"date", "date | None"})
 #: names of protocols, and of what a function looks at itself
 _LEFT = frozenset(
@@ -140,7 +139,7 @@ def must_hold_kinds(settings: Any, whose: str) -> None:  # noqa: ANN401 - any da
 def checked(public: F) -> F:
     """Let a function refuse arguments that are not what it is annotated with; for decorators.
 
-    Of a class: all its public methods. A day may be a text, ``"2026-11-18"``.
+    Of a class: all its public methods. A day may be a text, ``"2026-11-18"``, a time, or numpy's.
 
     Examples
     --------
@@ -179,9 +178,9 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
         if days:
             told = zip(in_order, args, strict=False)
-            in_place = [_day(given) if name in days else given for name, given in told]
+            in_place = [day_in(given) if name in days else given for name, given in told]
             args = (*in_place, *args[len(in_place) :])
-            keywords = {k: _day(given) if k in days else given for k, given in keywords.items()}
+            keywords = {k: day_in(given) if k in days else given for k, given in keywords.items()}
         for name, given in chain(zip(in_order, args, strict=False), keywords.items()):
             annotation = named.get(name, "")
             if annotation and not kind_of(annotation).fits(given):
@@ -189,13 +188,6 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
         return function(*args, **keywords)
 
     return wrapper
-
-
-def _day(given: Any) -> Any:  # noqa: ANN401 - anything but a day's text is left as it is
-    if isinstance(given, str):
-        with suppress(ValueError):
-            return date.fromisoformat(given)
-    return given
 
 
 def _called(function: Any, args: tuple[Any, ...]) -> str:  # noqa: ANN401 - any function

@@ -9,6 +9,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
 
+#: into which sentences are translated, each by its own name
+LANGUAGES = {"en": "English", "he": "עברית", "ar": "العربية", "es": "Español"}
+
+
 class Worded(str):  # noqa: SLOT000 - it holds what it was made of
     """A finished English sentence that remembers its words and what stands in their blanks.
 

@@ -59,7 +59,6 @@ class SeasonDay(AskedDay):
         #: the second of the day at which its work began, from which seconds count here
         self.begun_s = season.begun_s(on, self._who or "")
         self._source = f"{source} {on}"
-        self.batch = begun_batch(season, self._source)
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
         begun, beside = self.batch is not None, self._who or ""
@@ -76,6 +75,11 @@ class SeasonDay(AskedDay):
     def __repr__(self) -> str:
         """Say which day of which season."""
         return f"<SeasonDay {self._on} of {self._season.path.name}>"
+
+    @property
+    def batch(self) -> int | None:
+        """The batch of the day, as it is numbered now: merging may change that; None: none yet."""
+        return begun_batch(self._season, self._source)
 
     @property
     def at(self) -> int:
@@ -109,8 +113,7 @@ class SeasonDay(AskedDay):
         clock = grid_clock(self._season.plot.grid)
         at_s = clock.second_after(self._on, self.begun_s, now_s)
         one = as_inspection(stop.plant, found, (self._on, at_s))
-        done = self._season.record(one, self._source, into=self.batch)
-        self.batch = self.batch or done.batch
+        self._season.record(one, self._source, into=self.batch)
 
     def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
         self._at, self._gone_s = stop.plant, self._clock_s

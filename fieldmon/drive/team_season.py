@@ -69,7 +69,6 @@ class TeamSeason:
         self.keeper = AisleKeeper()
         self.lock = threading.RLock()
         self.source = f"{source} {on}"
-        self.batch = begun_batch(season, self.source)
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
         #: whether somebody stopped it: nobody is given another plant
@@ -86,6 +85,11 @@ class TeamSeason:
             self.replanned = 1
         else:
             self.plan()
+
+    @property
+    def batch(self) -> int | None:
+        """The batch of the day, as it is numbered now: merging may change that; None: none yet."""
+        return begun_batch(self.season, self.source)
 
     def __repr__(self) -> str:
         """Say which day of which season, and of how many."""
@@ -174,8 +178,7 @@ class MemberDay(AskedDay):
         clock = grid_clock(team.season.plot.grid)
         at_s = clock.second_after(team.on, self.begun_s, now_s)
         one = as_inspection(stop.plant, found, (team.on, at_s), self._member.name)
-        done = team.season.record(one, team.source, into=team.batch)
-        team.batch = team.batch or done.batch
+        team.season.record(one, team.source, into=team.batch)
 
     def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
         team = self._team

@@ -116,6 +116,12 @@ class Inspections:
                 )
             column.setflags(write=False)
             object.__setattr__(self, name, column)
+        unknown = np.flatnonzero((self.result < CLEAN) | (self.result > SKIPPED))
+        if unknown.size:
+            raise ObservationError(
+                f"A result must be 0 (clean), 1 (found) or 2 (skipped), but that of inspection "
+                f"{unknown[0] + 1} of {k} is {self.result[unknown[0]]}."
+            )
 
     def __repr__(self) -> str:
         finds = int(np.count_nonzero(self.result == FOUND))
@@ -149,7 +155,7 @@ class Inspections:
         Raises
         ------
         ObservationError
-            If plants or results are no whole numbers of their type, or dates no dates.
+            If plants are no whole numbers, results none of these, or dates no dates.
         """
         k, dates = len(_column("plant", plant)), days_of(on)
         if dates is None:

@@ -105,7 +105,8 @@ class ReadOptions:
     doubles
         ``"one"``: of plants closer than 5 cm to each other, one is kept.
     far
-        ``"keep"``: a few plants over a kilometre from all others stay.
+        ``"keep"``: a few plants over a kilometre from all others, and those outside their plot,
+        stay. ``"drop"``: plants just outside their plot go, too.
     """
 
     member: str | None = None
@@ -170,7 +171,7 @@ class ReadOptions:
             ("Whether a line names the columns", self.header, ("yes", "no")),
             ("What 35.26.33 means", self.degrees, ("dms", "dm")),
             ("What is done with doubles", self.doubles, ("one",)),
-            ("What is done with plants far away", self.far, ("keep",)),
+            ("What is done with plants far away", self.far, ("keep", "drop")),
         ):
             if told is not None and told not in words:
                 may_be = " or ".join(words)

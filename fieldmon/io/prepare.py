@@ -31,7 +31,7 @@ from fieldmon.io.read import (
     read_plots,
     read_rows,
 )
-from fieldmon.io.readers.nearby import distance_m
+from fieldmon.io.readers.nearby import distance_m, plants_on
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
@@ -115,7 +115,8 @@ def _laid(request: PlotRequest, hearing: _Hearing) -> tuple[Laid, Plants | None]
     field = one_of(_fields(sources, hearing))
     refuse_far_gate(sources.gate, field)
     if sources.plants is not None:
-        measured = _measured(sources, hearing)
+        on = partial(plants_on, _measured(sources, hearing), field, sources.plants_options.far)
+        measured = hearing.read("plants", sources.plants, on)
         field = with_plants(field, measured)
     _refuse_wrong_rows(field, request.planting, hearing)
     field = with_rows((field,), sources, request.planting, hearing)[0]

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+import shapely
+
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import ImportMessage, doubtful
@@ -14,14 +17,15 @@ from fieldmon.io.readers.nearby import records_on_plot
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
     from numpy.typing import NDArray
+    from shapely import MultiLineString
 
     from fieldmon.io.sources import (
         Role,
     )
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
 
 
@@ -69,17 +73,27 @@ class Laid:
             return (seen(said),)
         rows, drawn = self.plot.rows, self.plot.field.row_lines
         if rows is None and self.plot.field.plants is None and len(drawn.geoms) > 1:
-            return (
-                seen(
-                    worded("Plants stand along the {n} rows that were drawn.", n=len(drawn.geoms))
-                ),
-            )
+            return (seen(_along_drawn(self.plot.grid, drawn)),)
         if rows is None:
             return ()
         found = (seen(worded("Rows were found: {how}.", how=rows.how)),) if rows.in_rows else ()
         numbers = (seen(sentence) for sentence in said_of_numbers(self.plot.grid))
         doubts = (*rows.doubts, *doubts_of_numbers(self.plot.grid))
         return (*found, *numbers, *(doubtful(sentence) for sentence in doubts))
+
+
+def _along_drawn(grid: PlantGrid, drawn: MultiLineString) -> str:
+    """Return along how many of the rows that were drawn plants stand."""
+    lines = shapely.STRtree(shapely.get_parts(grid.frame.geometry_m(drawn)))
+    n = len(np.unique(lines.nearest(shapely.points(grid.xy_m))))
+    if n == len(drawn.geoms):
+        return worded("Plants stand along the {n} rows that were drawn.", n=n)
+    return worded(
+        "Plants stand along {n} of the {all} rows that were drawn: the others have no room on the "
+        "plot.",
+        n=n,
+        all=len(drawn.geoms),
+    )
 
 
 @dataclass(frozen=True, eq=False)

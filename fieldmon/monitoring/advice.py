@@ -91,8 +91,8 @@ class AdviceSettings:
     learnt_of: str = ""
 
     def __post_init__(self) -> None:
-        must_be_rate(self.rate_l_ha)
         must_hold_kinds(self, "The advice's")
+        must_be_rate(self.rate_l_ha)
         AskedVerdict(self.level, self.sure)  # refuses what cannot be
 
     def assumed(self, units: Units | None = None) -> Worded:

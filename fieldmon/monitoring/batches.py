@@ -114,9 +114,10 @@ class Recorded:
 
 
 def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
-    """Open a batch and return its number."""
+    """Open a batch and return its number: the next one, as one that added nothing has none."""
     cursor = db.execute(
-        "INSERT INTO batches (at, kind, source, who, rows) VALUES (?, ?, ?, ?, 0)",
+        "INSERT INTO batches (fid, at, kind, source, who, rows) "
+        "SELECT coalesce(max(fid), 0) + 1, ?, ?, ?, ?, 0 FROM batches",
         (utc_text(), kind, source, who),
     )
     return int(cursor.lastrowid or 0)
@@ -163,11 +164,6 @@ def all_of(db: sqlite3.Connection) -> tuple[Batch, ...]:
         Batch(number, at, kind, source or "", who or "", added, bool(undone))
         for number, at, kind, source, who, added, undone in rows
     )
-
-
-def numbers(db: sqlite3.Connection) -> dict[tuple[str, str, str, str], int]:
-    """Return the number of each batch, by when, what, from where and by whom it was recorded."""
-    return {(one.at, one.kind, one.source, one.who): one.number for one in all_of(db)}
 
 
 def corrected_by(db: sqlite3.Connection) -> dict[tuple[object, ...], str]:

@@ -134,8 +134,6 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
                 value=first + 1,
             )
         )
-    if not np.isin(inspections.result, list(RESULT_NAMES)).all():
-        raise ObservationError(worded("A result must be one of {names}.", names=", ".join(_CODES)))
     count = inspections.count
     bad = np.flatnonzero(~(np.isnan(count) | ((count >= 0) & np.isfinite(count))))
     if bad.size:

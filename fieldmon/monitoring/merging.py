@@ -15,7 +15,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import first_few, worded
@@ -74,7 +74,7 @@ class Merged:
     taken_back
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
-        Whether batches have other numbers now than earlier entries of the log say.
+        Whether batches have other numbers now than they had.
     treatments, codes
         Treatments that count now and did not before, and keys of scouts that hold and were not
         there.
@@ -103,6 +103,8 @@ class MergedCopy(NamedTuple):
         treatments that are alike but for what a label may add.
     treatments, codes
         As `Merged` has them.
+    numbers
+        What batches are numbered now, by their numbers of before, where that is another one.
     gone
         Numbers of treatments that counted here, and of those that counted there, and do not now.
     """
@@ -110,9 +112,10 @@ class MergedCopy(NamedTuple):
     new: int
     taken_back: int
     differing: tuple[str, ...]
-    treatments: int = 0
-    codes: int = 0
-    gone: tuple[frozenset[int], ...] = ()
+    treatments: int
+    codes: int
+    numbers: Numbers
+    gone: tuple[frozenset[int], ...]
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -143,7 +146,8 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     treatments.settle(treated)
     _write(db, schema.TREATMENTS, treated)
     _count(db, batches)
-    _write(db, schema.BATCHES, list(batches.values()))
+    numbered = [row["fid"] for row in batches.values()]
+    _write(db, schema.BATCHES, list(batches.values()), numbers=numbered)
     _write_routes(db, copies, _given_out(db, other))
     chosen = _once(copies, "settings", _CHOICE, "changed")
     _write(db, schema.SETTINGS, chosen)
@@ -165,7 +169,8 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
             for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
     said = (*_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held),
             *map(_left, left))  # fmt: skip
-    return MergedCopy(new, taken_back, said, n_treated, codes, no_more)
+    anew = {old: number for old, number in numbers[0].items() if old != number}
+    return MergedCopy(new, taken_back, said, n_treated, codes, anew, no_more)
 
 
 def _counting(db: sqlite3.Connection, stay: int) -> list[set[str]]:
@@ -215,15 +220,24 @@ def _rows(db: sqlite3.Connection, table: GeoPackageTable, after: int = 0) -> lis
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
-def _write(db: sqlite3.Connection, table: GeoPackageTable, rows: list[Row], after: int = 0) -> None:
-    """Let these be the rows of a table after number `after`, numbered in their order."""
+def _write(
+    db: sqlite3.Connection,
+    table: GeoPackageTable,
+    rows: list[Row],
+    after: int = 0,
+    numbers: Iterable[int] | None = None,
+) -> None:
+    """Let these be the rows of a table after number `after`, numbered in their order.
+
+    Or as `numbers` says.
+    """
     names = ("fid", *table.names)
     db.execute(f"DELETE FROM {table.name} WHERE fid > ? OR fid < 1", (after,))  # noqa: S608 - names of ours
     db.executemany(
         f"INSERT INTO {table.name} ({', '.join(names)}) VALUES ({', '.join('?' * len(names))})",  # noqa: S608 - ours
         [
             (number, *(row[name] for name in table.names))
-            for number, row in enumerate(rows, after + 1)
+            for number, row in zip(numbers or count(after + 1), rows, strict=False)
         ],
     )
     touch(db, table.name)
@@ -237,8 +251,8 @@ _CHOICE = ("changed", "name", "value")
 def _merged_batches(copies: list[dict[str, list[Row]]]) -> dict[Hashable, Row]:
     """Return the batches of both by what they are known by, numbered as they were recorded.
 
-    Of corrections it is known how many they were and whether they were taken back; others are
-    counted (`_count`).
+    One that need not make room keeps its number. Of corrections it is known how many they were and
+    whether they were taken back; others are counted (`_count`).
     """
     found: dict[Hashable, Row] = {}
     place = _as_recorded(copies, "batches", _BATCH, "at")
@@ -248,8 +262,12 @@ def _merged_batches(copies: list[dict[str, list[Row]]]) -> dict[Hashable, Row]:
             if row["kind"] == "corrections":
                 known["rows"] = max(known["rows"], row["rows"])
                 known["undone"] = max(known["undone"], row["undone"])
+            known["fid"] = min(known["fid"], row["fid"])
     ordered = sorted(found.items(), key=lambda item: place[item[0]])
-    return {key: {**row, "fid": number} for number, (key, row) in enumerate(ordered, 1)}
+    number = 0
+    for _, row in ordered:
+        number = row["fid"] = max(number + 1, row["fid"])
+    return dict(ordered)
 
 
 def _merged_changes(copies: list[dict[str, list[Row]]], batches: dict[Hashable, Row]) -> list[Row]:

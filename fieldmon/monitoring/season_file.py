@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of
+from fieldmon.compute.arguments import array_of, must_be_language
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
-from fieldmon.errors import FileProblem
+from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.observations import Observations, warn_of_left_out
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
@@ -41,6 +41,7 @@ from fieldmon.monitoring.season_treatments import SeasonTreatments
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, settings_from
 from fieldmon.monitoring.transactions import Store, set_meta
 from fieldmon.planning.assumptions import assumed_by, assumed_by_team
+from fieldmon.planning.members import refuse_far_gates
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import local_clock
 
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring.season_log import LogEntry
     from fieldmon.monitoring.tables import KeptMessage
+    from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
 
     Floats = NDArray[np.float64]
@@ -153,14 +155,15 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         FileProblem
             If the file exists, or cannot be written.
         SettingError
-            If what is handed over is something else, or an earlier season did not end before.
+            If what is handed over is something else or cannot be worked with, or an earlier season
+            did not end before.
         """
         if settings is None:
             today = local_clock(plot.field).today()
             settings = settings_from({"begins": today} | chosen)
         if observations is None:
             observations = Observations.none()
-        settings.must_detect()
+        _must_work(settings, plot.field)
         if settings.belief.earlier is not None:
             settings.belief.earlier.must_end_before(settings.begins)
         begins = np.datetime64(settings.begins, "D")
@@ -175,7 +178,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with Store.new(path) as db:
             tables.write_plot(db, plot)
             tables.write_observations(db, observations)
-            tables.write_messages(db, messages or ())
+            tables.write_messages(db, () if messages is None else messages)
             if risk is not None:
                 tables.write_array(db, "risk", risk)
             settings_log.write(db, as_json(settings))
@@ -221,8 +224,11 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         ------
         FileProblem
             If something else than `seen` counts by now.
+        SettingError
+            If nobody could work so, or the season is to begin on another day though
+            something was recorded or planned.
         """
-        settings.must_detect()
+        _must_work(settings, self.plot.field, seen)
         with self._lock, self.store.writing() as db:
             if as_json(settings_of(db)) != as_json(seen):
                 raise FileProblem(
@@ -231,6 +237,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
                         "window changed them. Look again and repeat your change."
                     )
                 )
+            _refuse_other_days(db, seen.begins, settings.begins)
             before = settings_log.as_written_now(settings_log.now(db))
             settings_log.change(db, settings)
             self._log_change(db, before, who)
@@ -245,11 +252,15 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     def undo_change(self, who: str = "") -> MonitoringSettings:
         """Take the last change of settings back; return what counts again. `who` is for the log.
 
-        Raise `SettingError` if there is none.
+        Raise `SettingError` if there is none, or as `change` does.
         """
         with self._lock, self.store.writing() as db:
-            before = settings_log.as_written_now(settings_log.now(db))
+            before, begins = (
+                settings_log.as_written_now(settings_log.now(db)),
+                settings_of(db).begins,
+            )
             settings = settings_log.undo(db)
+            _refuse_other_days(db, begins, settings.begins)
             self._log_change(db, before, who)
             self._refresh(db)
         return settings
@@ -367,6 +378,32 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         """Write all layers that follow from the causes anew."""
         with self._lock, self.store.writing() as db:
             self._refresh(db, 0)
+
+
+def _must_work(
+    settings: MonitoringSettings, field: Field, before: MonitoringSettings | None = None
+) -> None:
+    """Raise `SettingError` unless a season on a plot can be worked so; what was so `before` may."""
+    settings.must_detect()
+    if settings.language and (before is None or settings.language != before.language):
+        must_be_language(settings.language)
+    gates = set() if before is None else {one.gate for one in before.team}
+    refuse_far_gates((one for one in settings.team if one.gate not in gates), field)
+
+
+def _refuse_other_days(db: sqlite3.Connection, begins: date, instead: date) -> None:
+    """Raise `SettingError` if days are to be counted from another one though some were worked."""
+    used = "SELECT 1 FROM batches UNION ALL SELECT 1 FROM routes LIMIT 1"
+    if begins != instead and db.execute(used).fetchone() is not None:
+        raise SettingError(
+            worded(
+                "A season must begin when it began, on {begins}, once something was recorded or "
+                "planned: its days are counted from then. But it was to begin on {instead}. Begin "
+                "a new season, and record there what was found.",
+                begins=begins,
+                instead=instead,
+            )
+        )
 
 
 def _otherwise(on: str) -> str:

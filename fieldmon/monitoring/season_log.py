@@ -10,7 +10,7 @@ given away, as a certification report gives it, tells of that.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 #: in `fieldmon`: how many entries the log has, and the last one's digest
 _HEAD = "log"
 _NOTHING = "0" * 64
+#: what batches are numbered now, by their numbers of before; None: nobody knows
+Numbers = dict[int, int | None]
+#: before the number of a batch, in names of states
+_BATCH = "batch "
 #: corrections that an entry's sentence names
 _MOST_NAMED = 5
 #: what a log does not hold but is held to: by name, and how it is read
@@ -57,6 +61,9 @@ class LogEntry:
         What happened, by name.
     digest
         Of it and of all before it.
+    numbers
+        What batches that it names are numbered now, where a merge numbered them anew; None: nobody
+        knows, as an earlier version merged.
     """
 
     number: int
@@ -65,6 +72,7 @@ class LogEntry:
     who: str
     what: dict[str, Any]
     digest: str
+    numbers: Numbers = field(default_factory=dict)
 
     def sentence(self) -> str:
         """Return what happened, in words."""
@@ -78,7 +86,15 @@ class LogEntry:
             what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
         undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
-        return _SAID[self.kind].format_map(what) + undone + anew
+        said = _SAID[self.kind].format_map(what) + undone + anew
+        for old, now in self.numbers.items():
+            said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
+        return said
+
+    def names(self, batch: int) -> bool:
+        """Return whether its sentence tells of a batch by that number."""
+        undone = self.kind == "undone" and f"Batch {batch} was " in self.what.get("said", "")
+        return undone or self.what.get("batch") == batch
 
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""
@@ -183,7 +199,7 @@ def _chained(before: str, content: str) -> str:
 def states(db: sqlite3.Connection, batches: Iterable[int] | None = None) -> dict[str, str]:
     """Return digests of what the file says, by name; of some batches alone, or of everything."""
     if batches is not None:
-        return {f"batch {number}": _batch_state(db, number) for number in sorted({*batches})}
+        return {f"{_BATCH}{number}": _batch_state(db, number) for number in sorted({*batches})}
     numbers = [number for (number,) in db.execute("SELECT fid FROM batches ORDER BY fid")]
     return {
         **states(db, numbers),
@@ -254,13 +270,96 @@ def _digest(rows: Iterable[tuple[object, ...]]) -> str:
 def entries(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
     """Return every entry, the first one first; raise `FileProblem` where the past was changed."""
     refuse_changed(db)
+    return _read(db)
+
+
+def _anew(db: sqlite3.Connection) -> dict[int, dict[int, int | None]]:
+    """Return what batches are numbered now that entries named otherwise, by the entries' numbers.
+
+    Before the first merge of a season there are none.
+    """
+    merged = 'SELECT 1 FROM log WHERE entry LIKE \'%"kind":"merged"%\''
+    if db.execute(merged).fetchone() is None:
+        return {}
+    return {entry.number: entry.numbers for entry in _read(db) if entry.numbers}
+
+
+def _read(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
     made = []
     for content, mark in db.execute("SELECT entry, digest FROM log ORDER BY fid"):
         said = json.loads(content)
         made.append(
             LogEntry(said["entry"], said["at"], said["kind"], said["who"], said["what"], mark)
         )
-    return tuple(made)
+    return _numbered_now(made)
+
+
+def _numbered_now(log: list[LogEntry]) -> tuple[LogEntry, ...]:
+    """Return entries with what the batches that they tell of are numbered now."""
+    merges, now, said = _merges(log), Numbers(), []
+    for entry in reversed(log):
+        numbers = {n: number for n, number in now.items() if entry.names(n)}
+        said.append(replace(entry, numbers=numbers) if numbers else entry)
+        if (anew := merges.get(entry.number)) is not None:
+            through = {n: anew.get(n, n) for n in {**anew, **now}}
+            now = {n: None if number is None else now.get(number, number)
+                   for n, number in through.items()}  # fmt: skip
+            now = {n: number for n, number in now.items() if number != n}
+    return tuple(reversed(said))
+
+
+def _batches_in(states: dict[str, str]) -> dict[int, str]:
+    """Return the digests of batches among all that an entry holds, by number."""
+    return {
+        int(name.removeprefix(_BATCH)): state
+        for name, state in states.items()
+        if name.startswith(_BATCH)
+    }
+
+
+def _merges(log: Sequence[LogEntry]) -> dict[int, Numbers]:
+    """Return how each merge numbered batches anew, by its entry's number.
+
+    Batches that an earlier version's merge left out, as they were not in the file, are not told of.
+    """
+    merges: dict[int, Numbers] = {}
+    last: dict[int, str] = {}
+    for entry in log:
+        told = _batches_in(entry.what.get("states", {}))
+        if entry.kind == "merged" and told:
+            noted = entry.what.get("numbers")
+            merges[entry.number] = (
+                _found_again(last, told)
+                if noted is None
+                else {int(old): number for old, number in noted.items()}
+            )
+            last = {}
+        last |= told
+    return merges
+
+
+def _found_again(before: dict[int, str], after: dict[int, str]) -> Numbers:
+    """Return how a merge that did not note it numbered batches anew, by what was in them.
+
+    They kept their order: those of which the other copy took something back, and no other, are
+    found by what stands around them.
+    """
+    found = {state: number for number, state in after.items()}
+    there: Numbers = {n: found[state] for n, state in before.items() if state in found}
+    free = sorted({*after} - {*there.values()})
+    last, waiting = 0, list[int]()
+    for n in (*sorted(before), None):
+        if n is not None and n not in there:
+            waiting.append(n)
+            continue
+        upto = max(after) + 1 if n is None else there[n] or 0
+        room = [number for number in free if last < number < upto]
+        if len(room) == len(waiting):
+            there |= zip(waiting, room, strict=True)
+        elif len(room) > len(waiting):
+            there |= dict.fromkeys(waiting)
+        last, waiting = upto, []
+    return there
 
 
 def first(db: sqlite3.Connection) -> str:
@@ -302,20 +401,23 @@ _PLANNED_AND_SEEN = (
     "SELECT json_extract(entry, '$.kind') AS kind, json_extract(entry, '$.at') AS at,"
     " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.from')) AS low,"
     " coalesce(json_extract(entry, '$.what.date'), json_extract(entry, '$.what.to')) AS high,"
-    " json_extract(entry, '$.what.by'), own"
+    " json_extract(entry, '$.what.by'), own, json_extract(entry, '$.entry'),"
+    " json_extract(entry, '$.what.batch'), json_extract(entry, '$.what.source')"
     " FROM said WHERE kind IN ('planned', 'seen') AND low <= coalesce(?1, low)"
     " AND high >= coalesce(?1, high)"
-    " AND NOT (own AND EXISTS (SELECT 1 FROM batches WHERE undone = 1"
-    " AND fid = json_extract(entry, '$.what.batch')"
-    " AND source = json_extract(entry, '$.what.source')))"
 )
 
 
 def planned_and_seen(db: sqlite3.Connection, on: date | None = None) -> list[PlannedOrSeen]:
     """Return what was planned and recorded and not undone, in order; of one day, or of all."""
+    undone = {*db.execute("SELECT fid, source FROM batches WHERE undone = 1")}
+    anew = _anew(db) if undone else {}
     last = {0: "", 1: ""}
     said = []
-    for kind, at, low, high, by, own in db.execute(_PLANNED_AND_SEEN, (on and str(on),)):
+    rows = db.execute(_PLANNED_AND_SEEN, (on and str(on),))
+    for kind, at, low, high, by, own, entry, batch, source in rows:
+        if own and (anew.get(entry, {}).get(batch, batch), source) in undone:
+            continue
         last[own] = max(last[own], at)  # a clock may be set back: what stands below is later
         marks = None if by is None else json.loads(by)
         said.append((last[own], PlannedOrSeen(kind, at, low, high, marks)))
@@ -418,23 +520,29 @@ def _changed(number: int, how: str) -> FileProblem:
 def differing(db: sqlite3.Connection) -> tuple[str, ...]:
     """Return a sentence for each thing that the file says otherwise than its log."""
     last: dict[str, tuple[str, LogEntry]] = {}
+    lost: list[tuple[str, LogEntry]] = []
     planned: dict[str, LogEntry] = {}
-    for entry in entries(db):
+    log = entries(db)
+    merges = _merges(log)
+    for entry in log:
+        if (anew := merges.get(entry.number)) is not None:
+            numbers = _batches_in({name: name for name in last})
+            gone = [] if "numbers" in entry.what else [n for n in numbers if n not in anew]
+            lost += [(numbers[n], last.pop(numbers[n])[1]) for n in gone]
+            for old in anew:
+                last.pop(f"{_BATCH}{old}", None)
         for name, state in entry.what.get("states", {}).items():
             last[name] = state, entry
         if entry.kind == "planned":
             planned[entry.what["digest"]] = entry
     now = states(db)
+    lost += [(name, entry) for name, (_, entry) in last.items() if name not in now]
     said = [
         f"The {name} of the file is not what {entry} says."
         for name, (state, entry) in last.items()
         if name in now and now[name] != state
     ]
-    said += [
-        f"The {name} that {entry} tells of is not in the file."
-        for name, (_, entry) in last.items()
-        if name not in now
-    ]
+    said += [f"The {name} that {entry} tells of is not in the file." for name, entry in lost]
     said += [f"The log knows nothing of {name}." for name in now if name not in last]
     routes = {mark for (mark,) in db.execute("SELECT digest FROM routes")}
     said += [

@@ -365,7 +365,6 @@ class SeasonRecords(OpenSeason):
         The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
         """
         with self._lock, self.store.writing() as db:
-            numbers = batches.numbers(db)
             held = self._inspections(db)
             with other.store.reading(self.path) as theirs:
                 told = season_log.taken_in(db, theirs)
@@ -379,7 +378,7 @@ class SeasonRecords(OpenSeason):
             self._refresh(db)
             # what either copy took back or corrected contradicts nothing
             contradict = contradict.still(self._inspections(db))
-            moved = not numbers.items() <= batches.numbers(db).items()
+            moved = bool(taken.numbers)
             states, labels = season_log.states(db), label_table.read(db)
             gone = [[one for one in each if one.number in no_more]
                     for each, no_more in zip(treated, taken.gone, strict=True)]  # fmt: skip
@@ -388,7 +387,7 @@ class SeasonRecords(OpenSeason):
                           for one in gone[0]]  # fmt: skip
                 season_log.append(
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
-                    moved=moved, undone=undone,
+                    moved=moved, numbers=taken.numbers, undone=undone,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
         undone_in_one = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import lonlat_of
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
@@ -12,7 +13,9 @@ from fieldmon.errors import SettingError
 from fieldmon.plot.robot import Robot
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
+
+    from fieldmon.plot.field import Field
 
 # our choice: no plot has so many aisles that they would not meet
 _MOST_MEMBERS = 1000
@@ -54,6 +57,12 @@ class TeamMember:
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A team member's")
+        if not self.name.strip():
+            raise SettingError(
+                worded("A team member must have a name, but this one has none. Call it robot-1.")
+            )
+        if self.gate is not None:
+            lonlat_of(f"The gate of {self.name}", [self.gate])
         if not 0.0 <= self.starts_s < 24 * 3600.0:
             raise SettingError(
                 worded(
@@ -137,6 +146,19 @@ def person_key(name: str) -> str:
     True
     """
     return name.strip().casefold()
+
+
+def refuse_far_gates(team: Iterable[TeamMember], plot: Field) -> None:
+    """Raise `SettingError` where a member's gate lies where nobody drives from in a day."""
+    from fieldmon.io.prepare import refuse_far_gate  # noqa: PLC0415 - a team is told without it
+
+    for member in team:
+        try:
+            refuse_far_gate(member.gate, plot)
+        except SettingError as error:
+            raise SettingError(
+                worded("{name}: {problem}", name=member.name, problem=error.args[0])
+            ) from None
 
 
 def must_differ(members: Sequence[TeamMember]) -> None:

@@ -137,7 +137,7 @@ def _laid(field: Field, ground: _BlockGround, frame: Frame) -> LaidRows:
             lines = copies(lines[0], area, ground.planting.row_spacing_m)
         there = [frame.xy_m(own.lonlat(line)) for line in lines]
         there_m = frame.geometry_m(ground.area)
-        laid, planting = rows_along(there, there_m, ground.planting, whole=whole)
+        laid, planting = rows_along(frame, there, there_m, ground.planting, whole=whole)
         spacing_m = laid.rows.spacings(planting)
         laid = laid._replace(rows=laid.rows._replace(spacing_m=spacing_m))
     else:

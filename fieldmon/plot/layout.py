@@ -11,6 +11,7 @@ import shapely
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.arrays import offsets, runs
+from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
@@ -100,6 +101,16 @@ def _drawn_rows(field: Field, planting: Planting) -> PlantGrid | None:
             return None
         check_size(field.name, area, planting)
         lines = copies(lines[0], area, planting.row_spacing_m)
+    elif away_m := float(shapely.distance(area, frame.geometry_m(field.row_lines))):
+        raise PlotError(
+            worded(
+                "Rows must be drawn on their plot, but of {n} none is on {name!r}: the nearest is "
+                "{away} away. Choose the plot's own rows, or check the coordinate systems.",
+                n=len(lines),
+                name=field.name,
+                away=distance_figure(away_m),
+            )
+        )
     ground = Ground(area, _obstacles(field, frame))
     return lay_along(field.name, frame, lines, ground, planting, whole=whole)
 

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     Int = NDArray[np.int64]
 
 _SLACK_M = 1e-6
+# rows that come so near to each other cross, touch or are one
+_APART_M = 0.05
 # rows are neighbours up to so many times the row spacing that was said or is usual
 _REACH = 4.0
 # strips that only touch the boundary are on the plot
@@ -116,9 +118,9 @@ def lay_along(
     Raises
     ------
     PlotError
-        If there is no room for a plant.
+        If there is no room for a plant, or rows that were drawn cross.
     """
-    laid, planting = rows_along(lines_m, ground.area, planting, whole=whole)
+    laid, planting = rows_along(frame, lines_m, ground.area, planting, whole=whole)
     if not len(laid.plants[0]):
         raise PlotError(
             worded(
@@ -135,16 +137,46 @@ def lay_along(
 
 
 def rows_along(
-    lines_m: list[Float], area: shapely.Geometry | None, planting: Planting, *, whole: bool
+    frame: Frame,
+    lines_m: list[Float],
+    area: shapely.Geometry | None,
+    planting: Planting,
+    *,
+    whole: bool,
 ) -> tuple[LaidRows, Planting]:
     """Return plants along rows as `lay_along` does, and the planting with their distance."""
     drawn = sorted_rows(Polylines.each(lines_m), _REACH * planting.row_spacing_m)
+    if not whole:
+        _refuse_crossing(frame, drawn.lines, area)
     if np.isfinite(drawn.spacing_m):
         planting = replace(planting, row_spacing_m=drawn.spacing_m)
     rows = RowLines(drawn.lines, drawn.block)
     aisles = row_aisles(rows, planting)
     blocked = _outside(rows, aisles, (area, whole), planting)
     return LaidRows(rows, aisles, blocked, _filled(rows.lines, blocked, planting)), planting
+
+
+def _refuse_crossing(frame: Frame, rows: Polylines, area: shapely.Geometry | None) -> None:
+    """Raise `PlotError` where rows cross or touch on an area; None: anywhere."""
+    shapes = rows.shapes()
+    one, other = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=_APART_M)
+    one, other = one[one < other], other[one < other]
+    met = shapely.intersection(shapes[one], shapely.buffer(shapes[other], _APART_M))
+    if area is not None:
+        met = shapely.intersection(met, area)
+    met = met[~shapely.is_empty(met)]
+    if len(met):
+        lon, lat = frame.lonlat(shapely.get_coordinates(shapely.point_on_surface(met[0])))[0]
+        raise PlotError(
+            worded(
+                "Rows must lie beside each other, but of those that were drawn {n} {n:pair "
+                "crosses or touches|pairs cross or touch}, the first at ({lon:.7f}, {lat:.7f}). "
+                "Draw them apart.",
+                n=len(met),
+                lon=lon,
+                lat=lat,
+            )
+        )
 
 
 def _outside(

@@ -1,5 +1,6 @@
 """Several seasons into one: each counts once."""
 
+import json
 import shlex
 import shutil
 
@@ -9,8 +10,15 @@ import pytest
 from fieldmon.cli.season_files import opened
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import Season
-from tests.cli.estate import BEGINS, begin_next_year, filled_in, table
+from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in, table
 from tests.cli.test_merge import worked
+
+
+def find_in(file, stop):
+    """Fill in a find at a stop of a route's GeoJSON."""
+    route = json.loads(file.read_text(encoding="utf-8"))
+    route["features"][stop]["properties"]["found"] = True
+    file.write_text(json.dumps(route), encoding="utf-8")
 
 
 def test_a_season_is_not_taken_twice_nor_beside_its_copy(run, season, tmp_path):
@@ -43,16 +51,19 @@ def test_seasons_of_their_own_go_into_one_table(run, season, tmp_path):
 
 
 def test_a_day_that_was_filled_in_is_not_written_over_before_it_is_recorded(run, season, tmp_path):
-    words = ("plan", season, "--date", BEGINS, "-o", "day.csv", "-o", "day.gpkg")
+    words = ("plan", season, "--date", BEGINS)
+    words += ("-o", "day.csv", "-o", "day.gpkg", "-o", "day.geojson")
     for _ in range(2):  # not filled in, it may be
         code, _, err, _ = run(*words)
         assert code == 0, err
     filled_in(tmp_path / "day.csv", {0, 2}, 5)
-    for name in ("day.csv", "day.gpkg"):
+    for name in ("day.csv", "day.gpkg", "day.geojson"):
         if name == "day.gpkg":
             stops = pyogrio.read_dataframe(tmp_path / name, layer="stops")
             stops.loc[3, "found"] = "clean"
             pyogrio.write_dataframe(stops, tmp_path / name, layer="stops")
+        if name == "day.geojson":
+            find_in(tmp_path / name, 5)
         held = (tmp_path / name).read_bytes()
         code, _, err, made = run(*words)
         assert (code, made) == (2, set())
@@ -74,3 +85,30 @@ def test_a_day_that_was_filled_in_is_not_written_over_before_it_is_recorded(run,
     run("undo", season)  # what was taken back was recorded
     code, _, err, _ = run(*words)
     assert code == 0, err
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (["-o", "day.csv"], "day.csv"),
+        ([], "route.geojson"),
+        (["--robots", 1, "-o", "day.csv"], "day-robot-1.csv"),
+        (["--all", "-o", "routes"], "routes/2-Gate.geojson"),
+    ],
+)
+def test_a_plan_without_a_season_never_writes_over_what_was_filled_in(run, tmp_path, words, name):
+    chosen = [] if "--all" in words else ["--feature", "Gate"]
+    words = ["plan", ZIP, *chosen, *words, "--date", BEGINS, "--no-bound", "--hours"]
+    for hours in (1, 1.5):  # not filled in, it may be
+        code, _, err, _ = run(*words, hours)
+        assert code == 0, err
+    (file,) = [one for one in tmp_path.rglob("*") if one.match(name.replace("2-", "*-"))]
+    if file.suffix == ".csv":
+        filled_in(file, {0}, 1)
+    else:
+        find_in(file, 3)
+    held = file.read_bytes()
+    code, _, err, made = run(*words, 2)
+    assert (code, made) == (2, set())
+    assert f"{file.name} would be written over, but was filled in" in " ".join(err.split())
+    assert file.read_bytes() == held

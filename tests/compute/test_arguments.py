@@ -166,7 +166,13 @@ def test_a_name_that_nobody_knows_is_said_with_those_that_are_known():
 
 @pytest.mark.parametrize(
     ("given", "day"),
-    [("2026-11-18", date(2026, 11, 18)), (datetime(2026, 11, 18, 5), date(2026, 11, 18)), (3, 3)],
+    [
+        ("2026-11-18", date(2026, 11, 18)),
+        (datetime(2026, 11, 18, 5), date(2026, 11, 18)),
+        (np.datetime64("2026-11-18T05"), date(2026, 11, 18)),
+        (np.datetime64(10**9, "D"), np.datetime64(10**9, "D")),
+        (3, 3),
+    ],
 )
 def test_a_day_is_taken_from_a_text_or_a_time_and_the_rest_is_left(given, day):
     assert day_of("A harvest", given) == day

@@ -116,7 +116,9 @@ class _LongSeason(_Season):
 def test_methods_refuse_what_they_are_not_annotated_with_and_stay_what_they_were():
     season = _LongSeason()
     assert season.plan(TODAY) == season.plan(on=TODAY, keep=True) == "2026-11-18 True"
-    assert season.plan("2026-11-18") == season.plan(on="2026-11-18") == season.plan(TODAY)
+    for day in ("2026-11-18", np.datetime64("2026-11-18T06"), datetime(2026, 11, 18, 6),
+                pd.Timestamp("2026-11-18")):  # fmt: skip
+        assert season.plan(day) == season.plan(on=day) == season.plan(TODAY)
     assert (season.days, season.hours(3), next(_Season.create("ab"))) == (3, 3, 2)
     assert (_Season.plan.__doc__, _Season.plan.__qualname__) == ("Plan a day.", "_Season.plan")
     for call, said in (
@@ -124,6 +126,11 @@ def test_methods_refuse_what_they_are_not_annotated_with_and_stay_what_they_were
             lambda: season.plan("soon"),
             "'on' of _LongSeason.plan must be a date, but it is 'soon'",
         ),
+        (
+            lambda: season.plan(np.datetime64("NaT")),
+            "'on' of _LongSeason.plan must be a date, but it is NaT",
+        ),
+        (lambda: season.plan(pd.NaT), "'on' of _LongSeason.plan must be a date"),
         (lambda: season.plan(TODAY, keep=1), "'keep' of _LongSeason.plan must be True or False"),
         (lambda: _Season.create(path=3), "'path' of _Season.create must be text, but it is 3"),
     ):

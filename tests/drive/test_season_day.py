@@ -1,5 +1,6 @@
 """A day of a season driven: one batch, in the file before the next plant is asked for."""
 
+import shutil
 from contextlib import suppress
 from dataclasses import replace
 from datetime import date, time, timedelta
@@ -105,6 +106,18 @@ def test_after_a_crash_it_goes_on_from_the_plant_told_last(season):
     assert day.gone_s <= again.settings.robot.day_s
     times = again.history.inspections.second
     assert (np.diff(times) > 0).all()
+
+
+def test_a_day_goes_on_in_its_own_batch_after_a_copy_was_merged_into_the_season(season, tmp_path):
+    there = Season(shutil.copy(season.path, tmp_path / "other.gpkg"))
+    there.record(Inspections.of([0], [FOUND], ON), "theirs")
+    day = SeasonDay(season, ON, "charged")
+    for n in range(2):
+        assert day.ask() is not None
+        day.tell(found=False)
+        if not n:
+            assert season.merge(there).moved
+    assert {one.source: one.rows for one in season.batches()} == {f"charged {ON}": 2, "theirs": 1}
 
 
 @pytest.mark.parametrize("found", [lambda _: False, found_at])

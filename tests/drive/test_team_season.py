@@ -1,5 +1,6 @@
 """A team's day in a season: asked and told by each, one batch, planned for all after a find."""
 
+import shutil
 from dataclasses import replace
 from datetime import time
 
@@ -8,7 +9,7 @@ import pytest
 
 from fieldmon.drive.team_season import TeamSeason
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.history import made_by
@@ -71,6 +72,21 @@ def test_what_all_tell_is_one_batch_with_each_ones_name(team):
     assert sorted(zip(held.plant.tolist(), held.who.tolist(), strict=True)) == sorted(told)
     assert (held.result == FOUND).sum() == 1
     assert [batch.rows for batch in team.season.batches()] == [6]
+
+
+def test_all_go_on_in_one_batch_after_a_copy_was_merged_into_the_season(team, tmp_path):
+    there = Season(shutil.copy(team.season.path, tmp_path / "other.gpkg"))
+    there.record(Inspections.of([0], [FOUND], ON), "theirs")
+    for name in ("robot-1", "robot-2"):
+        day = team.member(name)
+        assert day.ask() is not None
+        day.tell(found=False)
+        if name == "robot-1":
+            assert team.season.merge(there).moved
+    assert sorted((one.source, one.rows) for one in team.season.batches()) == [
+        (team.source, 2),
+        ("theirs", 1),
+    ]
 
 
 def test_after_a_crash_each_goes_on_where_it_was_told_of_last(team):

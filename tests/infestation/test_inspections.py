@@ -87,6 +87,17 @@ def test_every_result_has_a_name_of_its_own():
     assert len(set(RESULT_NAMES.values())) == 3
 
 
+@pytest.mark.parametrize("result", [-1, 3, 127])
+def test_what_is_no_result_is_refused_where_inspections_are_made(result):
+    said = (
+        "A result must be 0 (clean), 1 (found) or 2 (skipped), but that of inspection 2 of 2 is "
+        f"{result}."
+    )
+    with pytest.raises(ObservationError) as refused:
+        Inspections.of([3, 4], [FOUND, result], MONDAY)
+    assert str(refused.value) == said
+
+
 def test_what_is_no_plant_or_day_at_all_is_refused_in_a_sentence():
     for plant, on, says in ((["a"], MONDAY, "The plant of"), ([1], "6/4", "date .* '6/4'")):
         with pytest.raises(ObservationError, match=says):

@@ -243,3 +243,13 @@ def test_where_contours_come_nearer_it_is_said_how_steep_rows_get_and_blocks_fol
     assert parted.plot.grid.n_blocks == 3
     assert rise_m(parted.plot.grid, fan).max() < 0.7 * rise_m(grid, fan).max()
     assert "leave them" in sentences(parted)
+
+
+def test_only_rows_on_the_plot_are_said_to_bear_plants(tmp_path):
+    home = write(tmp_path / "home.geojson", [BOXES["west"]], name=["home"])
+    rows = write(
+        tmp_path / "rows.gpkg", [LineString([(5, y), (75, y + 2)]) for y in range(2, 98, 4)]
+    )
+    assert "along 14 of the 24 rows that were drawn: the others" in sentences(
+        prepare(PlotRequest(PlotSources(home, rows=rows)))
+    )

@@ -1,5 +1,7 @@
 """From files to a prepared plot."""
 
+from dataclasses import replace
+
 import geopandas
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from rasterio.transform import from_bounds
 
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.raster_risk import RiskSettings
-from fieldmon.io.options import PlotOptions
+from fieldmon.io.options import PlotOptions, ReadOptions
 from fieldmon.io.plot_records import records_on
 from fieldmon.io.prepare import lay, one_of, prepare, prepare_estate
 from fieldmon.io.prepared import Laid
@@ -22,7 +24,21 @@ from fieldmon.io.sources import (
     RecordSource,
     RiskSource,
 )
-from tests.io.three_parcels import PLOTS_AND_ROWS, ROWS, TRACKS, ZIP, csv, one, place, said, same
+from tests.io.three_parcels import (
+    DAY,
+    FRAME,
+    PLOTS_AND_ROWS,
+    ROWS,
+    TRACKS,
+    ZIP,
+    area,
+    csv,
+    one,
+    place,
+    said,
+    same,
+)
+from tests.parcels import write_geojson
 
 
 def test_what_nobody_said_is_assumed_and_said(parcels):
@@ -158,3 +174,30 @@ def test_step_by_step_is_all_at_once(parcels):
     same(read.value, at_once.records)
     np.testing.assert_array_equal(plot.grid.xy_m, at_once.plot.grid.xy_m)
     assert [m.line() for m in read.messages] == said(at_once, "records")
+
+
+def test_plants_of_the_neighbouring_plot_are_left_out_and_those_just_outside_are_said(tmp_path):
+    spots = FRAME.lonlat(np.array([(3.0 * k, y) for y in (3.0, -2.0, -60.0) for k in range(15)]))
+    lines = [f"{lon:.8f},{lat:.8f},{k}" for k, (lon, lat) in enumerate(spots.tolist())]
+    vines = csv("\n".join(["lon,lat,plant", *lines]), "vines.csv")
+    write_geojson(tmp_path / "home.geojson", [area(-2.0, 0.0)])
+    request = one(tmp_path / "home.geojson", records=csv(f"plant,date,count\n3,{DAY},4\n"))
+
+    def with_far(far):
+        sources = replace(request.sources, plants=vines, plants_options=ReadOptions(far=far))
+        return prepare(replace(request, sources=sources))
+
+    made = with_far(None)
+    assert len(made.plot.grid) == 30
+    np.testing.assert_allclose(made.records.lonlat, [spots[3]], atol=1e-8)
+    heard = said(made, "plants")
+    assert (
+        "dropped: 15 of 45 plants stand outside Plot 1 and were left out: 60 m away. "
+        "(Keep them: far=keep)"
+    ) in heard
+    assert (
+        "doubtful: 15 plants stand outside Plot 1, up to 2 m away, and are taken to be of it: a "
+        "boundary may be drawn tight. (Leave them out: far=drop)"
+    ) in heard
+    assert len(with_far("keep").plot.grid) == 45
+    assert len(with_far("drop").plot.grid) == 15

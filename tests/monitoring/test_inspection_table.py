@@ -133,7 +133,6 @@ def test_of_none_recorded_there_are_none(db):
     [
         (one(plant=99_999), "0 to .* from another plot"),
         (one(plant=-1), "from another plot"),
-        (one(result=7), "clean, found, skipped"),
         (one(on=np.datetime64("NaT")), "result 1 has none"),
         (one(count=-2.0), "0 or more, but result 1 says -2.0"),
         (one(result=CLEAN, count=3.0), "Only a find has a count.*result 1 is 'clean' and counts 3"),

@@ -75,15 +75,35 @@ def record(db, rng, who):
     plant = np.array([rng.randrange(4) for _ in range(n)])
     result = np.array([rng.choice((CLEAN, FOUND)) for _ in range(n)])
     on = np.datetime64(BEGINS) + rng.randrange(3)
-    batch = batches.begin(db, "findings", "taps", who)
     found = Inspections.of(plant, result, on)
-    rows = inspection_table.rows(found, GRID, LABEL, SETTINGS, (batch, who))
-    batches.end(db, batch, int(inspection_table.store(db, rows).sum()))
+    store(db, found, who)
+    if rng.random() < 0.3:
+        store(db, found, who)  # the same once more
     counting = [fid for (fid,) in db.execute("SELECT fid FROM inspections WHERE undone = 0")]
     if counting and rng.random() < 0.3:
-        batches.undo_one(db, rng.choice(counting))
-    elif rng.random() < 0.1 and any(not one.undone for one in batches.all_of(db)):
-        batches.undo(db, None)
+        undone(db, *batches.undo_one(db, rng.choice(counting)))
+    elif rng.random() < 0.2 and any(not one.undone for one in batches.all_of(db)):
+        undone(db, *batches.undo(db, None))
+
+
+def store(db, found, who):
+    """Record findings, with their entry in the log."""
+    batch = batches.begin(db, "findings", "taps", who)
+    if len(found) == 2:  # in earlier versions what brought nothing new had used a number up
+        db.execute("UPDATE batches SET fid = fid + 1 WHERE fid = ?", (batch,))
+        batch += 1
+    rows = inspection_table.rows(found, GRID, LABEL, SETTINGS, (batch, who))
+    new = int(inspection_table.store(db, rows).sum())
+    batches.end(db, batch, new)
+    if new:
+        states = season_log.states(db, [batch])
+        said = inspection_table.in_words(found.result, found.date)
+        season_log.append(db, "seen", who, states=states, batch=batch, source="taps", **said)
+
+
+def undone(db, changed, said):
+    """Note in the log what was undone."""
+    season_log.append(db, "undone", states=season_log.states(db, changed), said=said)
 
 
 def some_findings(rng):
@@ -117,6 +137,7 @@ def choose(db, rng):
     hours, seed = rng.choice((4.0, 5.0, 6.0)), rng.choice((1, 2, 3))
     one = replace(now, robot=now.robot.with_hours(hours))
     settings_log.change(db, rng.choice((one, replace(now, seed=seed), replace(one, seed=seed))))
+    season_log.append(db, "changed", states={"settings": season_log.settings_state(db)})
 
 
 def keep_labels(db, rng):
@@ -126,7 +147,8 @@ def keep_labels(db, rng):
     kept = (ProductLabel("Acarol", waiting_days=days), *more)
     if kept != label_table.read(db):
         label_table.write(db, kept)
-        season_log.append(db, "labels", labels=len(kept), source="labels.csv")
+        states = {"labels": season_log.labels_state(db)}
+        season_log.append(db, "labels", labels=len(kept), source="labels.csv", states=states)
 
 
 def apart(seed):
@@ -165,8 +187,21 @@ def merge(db, other):
     """Merge as a season does, which notes the other's log."""
     told = season_log.taken_in(db, other)
     done = merging.merge(db, other)
-    season_log.append(db, "merged", new=done.new, entries=len(told), theirs=told)
+    states = season_log.states(db)
+    said = {"new": done.new, "entries": len(told), "theirs": told, "numbers": done.numbers}
+    season_log.append(db, "merged", states=states, **said)
     return done
+
+
+def told_of(db):
+    """Return when, from where and by whom the batch of each entry of the log was recorded."""
+    wanted = "SELECT at, source, who, kind FROM batches WHERE fid = ?"
+    told = {}
+    for entry in season_log.entries(db):
+        if (batch := entry.what.get("batch")) is not None:
+            number = entry.numbers.get(batch, batch)
+            told[entry.digest] = db.execute(wanted, (number,)).fetchone()
+    return told
 
 
 COLUMNS = "digest, plant, date, result, inspections.who, batches.at"
@@ -216,6 +251,9 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
         assert new == len(that_count(ours) - that_count(one))
         assert gone == len(that_count(one) - that_count(ours))
         merge(theirs, one)
+        for db, before in ((ours, one), (theirs, other)):
+            assert season_log.differing(db) == ()
+            assert told_of(db) == told_of(before)
         assert content(ours) == content(theirs)
         assert sorted(held(ours)) == sorted({*held(one), *held(other)})  # nothing lost, none twice
         taken_back = {row[:-1] for db in (one, other) for row in held(db, ", inspections.undone")
@@ -235,8 +273,69 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
         again = copied(ours)
         assert merge(again, other).differing == ()
         assert content(again) == content(ours)
-        for db in (one, other, ours, theirs, again):
+        unchanged = copied(one)
+        assert merge(unchanged, one).numbers == {}
+        for db in (one, other, ours, theirs, again, unchanged):
             db.close()
+
+
+def as_earlier_versions_did(monkeypatch):
+    """Let merges number all batches anew, from 1, and note nothing of it."""
+    numbered, noted = merging._merged_batches, season_log.append
+
+    def from_one(copies):
+        merged = numbered(copies).items()
+        return {key: {**row, "fid": number} for number, (key, row) in enumerate(merged, 1)}
+
+    def nothing_noted(db, kind, who="", **said):
+        noted(db, kind, who, **{name: told for name, told in said.items() if name != "numbers"})
+
+    monkeypatch.setattr(merging, "_merged_batches", from_one)
+    monkeypatch.setattr(season_log, "append", nothing_noted)
+
+
+@pytest.mark.parametrize("earlier", [False, True])
+def test_numbers_in_the_log_lead_to_the_same_batches_after_any_number_of_merges(
+    monkeypatch, earlier
+):
+    moved, found, not_found = 0, 0, 0
+    for seed in range(PAIRS // 2):
+        both = apart(seed)
+        rng = random.Random(seed)
+        told = told_of(both[0]) | told_of(both[1])
+        with mock.patch.object(local_clock, "datetime", Clock), monkeypatch.context() as as_then:
+            if earlier:
+                as_earlier_versions_did(as_then)
+            for _ in range(4):
+                db, other = rng.sample(both, 2)
+                merge(db, other)
+                for one, who in zip(both, WHO, strict=True):
+                    assert season_log.differing(one) == ()
+                    for digest, batch in told_of(one).items():
+                        assert batch == told[digest] or (earlier and batch is None)
+                        found, not_found = found + (batch is not None), not_found + (batch is None)
+                    Clock.shows += timedelta(microseconds=50)
+                    record(one, rng, who)
+                    told = told_of(one) | told
+        moved += any(entry.numbers for one in both for entry in season_log.entries(one))
+        for one in both:
+            one.close()
+    assert moved
+    assert not_found <= earlier * found / 10
+
+
+def test_a_batch_that_was_gone_before_an_earlier_version_merged_is_missed(monkeypatch):
+    one, other = copies_of(2)
+    on = np.datetime64(BEGINS)
+    for db, plants in ((one, (1, 2, 3)), (other, (7,))):
+        for plant in plants:
+            store(db, Inspections.of(np.array([plant]), np.array([FOUND]), on), "Ann")
+    one.execute("DELETE FROM inspections WHERE batch = 2")
+    one.execute("DELETE FROM batches WHERE fid = 2")
+    as_earlier_versions_did(monkeypatch)
+    merge(one, other)
+    (said,) = season_log.differing(one)
+    assert said.startswith("The batch 2 that entry 3 (")
 
 
 IN_ORDER = {
@@ -465,7 +564,7 @@ def other(path, tmp_path):
 
 def result(plant, what, day=1, **columns):
     on = np.datetime64(BEGINS) + day
-    return Inspections.of(np.array([plant]), np.array([what]), on, **columns)
+    return Inspections.of(np.atleast_1d(plant), np.atleast_1d(what), on, **columns)
 
 
 def test_batches_that_get_another_number_are_said_to(path, other):
@@ -483,6 +582,33 @@ def test_batches_that_get_another_number_are_said_to(path, other):
     again = theirs.merge(ours)
     assert not again.moved
     assert not theirs.log()[-1].sentence().endswith("anew")
+
+
+def test_what_was_recorded_twice_uses_no_number_up(path):
+    season = Season(path)
+    first = season.record(result(3, FOUND)).batch
+    assert season.record(result(3, FOUND)).batch is None
+    assert season.record(result(4, FOUND)).batch == first + 1
+
+
+def test_a_batch_is_undone_by_the_number_that_the_log_shows(path, other):
+    theirs, ours = Season(other), Season(path)
+    theirs.record(result(9, FOUND, day=2), "theirs", "Ben")
+    old = ours.record(result([3, 4], [FOUND, FOUND], day=3), "ours", "Ann").batch
+    ours.undo(old)
+    new = ours.record(result(5, FOUND, day=3), "again", "Ann").batch
+    ours.merge(theirs)
+    seen, undone, again = (entry.sentence() for entry in ours.log()[-4:-1])
+    assert seen.endswith(f"batch {old}; batch {old} is batch {old + 1} now")
+    assert undone.startswith(f"Batch {old} was undone")
+    assert undone.endswith(f"; batch {old} is batch {old + 1} now")
+    assert again.endswith(f"batch {new}; batch {new} is batch {new + 1} now")
+    with ours.store.reading() as db:  # what was undone was not worked
+        told = season_log.planned_and_seen(db, BEGINS + timedelta(days=3))
+    assert [one.at for one in told] == [ours.log()[-2].at]
+    ours.undo(new + 1)
+    assert ours.history.inspections.plant.tolist().count(5) == 0
+    assert ours.verify() == ()
 
 
 def test_what_is_new_and_what_was_taken_back_are_counted_apart(path, other):

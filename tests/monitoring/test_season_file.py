@@ -10,8 +10,9 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import Observations
-from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
+from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season, settings_log
 from fieldmon.monitoring.transactions import Store
+from fieldmon.planning.members import TeamMember
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days
@@ -204,6 +205,56 @@ def test_a_season_begins_today_on_the_plot_without_records_unless_told_otherwise
     risky = Season.create(tmp_path / "c.gpkg", plot, settings=season.settings, risk=risk)
     assert (risky.morning(today) > season.morning(today)).all()
     assert np.array_equal(Season(risky.path).morning(today), risky.morning(today))
+
+
+@pytest.mark.parametrize("used", ["record", "treat", "plan"])
+def test_a_season_begins_on_another_day_only_before_anything_is_recorded_or_planned(season, used):
+    first = season.settings
+    later = replace(first, begins=BEGINS + timedelta(days=2))
+    season.change(later, first)
+    season.undo_change()
+    season.change(later, first)
+    if used == "record":
+        season.record(some_results(season, 3, day=2))
+    else:
+        season.treat(later.begins, 0.5) if used == "treat" else season.plan(later.begins)
+    said = (
+        f"A season must begin when it began, on {later.begins}, once something was recorded or "
+        f"planned: its days are counted from then. But it was to begin on {BEGINS}. Begin a new "
+        "season, and record there what was found."
+    )
+    for change in (lambda: season.change(first, later), season.undo_change):
+        with pytest.raises(SettingError) as refused:
+            change()
+        assert str(refused.value) == said
+    assert season.settings == later
+    season.change(replace(later, seed=5), later)
+    assert season.verify() == ()
+
+
+FAR = (TeamMember("Ann", ROBOT), TeamMember("Ben", ROBOT, gate=(35.5, 30.35)))
+
+
+@pytest.mark.parametrize(
+    ("chosen", "said"),
+    [
+        ({"language": "xx"}, "A language must be one of en, he, ar, es, but it is 'xx'."),
+        ({"team": FAR}, "Ben: The gate at 35.5, 30.35 .longitude, latitude. lies .* Correct it."),
+    ],
+)
+def test_a_season_is_neither_begun_nor_changed_so_that_nobody_can_work(
+    season, tmp_path, chosen, said
+):
+    path, first = tmp_path / "none.gpkg", season.settings
+    with pytest.raises(SettingError, match=said):
+        Season.create(path, season.plot, begins=BEGINS, **chosen)
+    assert not path.exists()
+    with pytest.raises(SettingError, match=said):
+        season.change(replace(first, **chosen), first)
+    with season.store.writing() as db:  # a later version keeps a language that this one lacks
+        settings_log.change(db, replace(first, **chosen))
+    season = Season(season.path)
+    season.change(replace(season.settings, seed=5), season.settings)
 
 
 def test_settings_are_changed_by_settings_or_a_sentence(season):

@@ -103,7 +103,7 @@ def test_there_must_be_something_to_undo(season):
     [
         (99_999, 0, "2026-04-06", {}, "from another plot"),
         (-1, 0, "2026-04-06", {}, "from another plot"),
-        (3, 7, "2026-04-06", {}, "clean, found, skipped"),
+        (3, 7, "2026-04-06", {}, "2 .skipped., but that of inspection 1 of 1 is 7"),
         (3, 0, "NaT", {}, "must have a date"),
         (3, 0, "2026-04-05", {}, "began on 2026-04-06"),
         (3, 0, "2036-04-05", {}, "lasts"),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.errors import SettingError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ, team_of
 
 
@@ -14,6 +14,17 @@ def test_a_team_of_none_or_a_start_on_another_day_is_refused():
         team_of(0)
     with pytest.raises(SettingError, match="must start within a day"):
         TeamMember("late", starts_s=1e6)
+
+
+@pytest.mark.parametrize("name", ["", " "])
+def test_a_member_without_a_name_is_refused(name):
+    with pytest.raises(SettingError, match="must have a name, but this one has none"):
+        TeamMember(name)
+
+
+def test_a_gate_that_is_no_place_is_refused():
+    with pytest.raises(ObservationError, match=r"The gate of Ann must be .* one is 500, 500"):
+        TeamMember("Ann", gate=(500, 500))
 
 
 def test_two_of_a_name_are_refused_whatever_its_capitals():

@@ -1,5 +1,6 @@
 """Plants along rows that are known as lines."""
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -83,6 +84,24 @@ def test_one_straight_row_tells_the_direction_of_straight_rows():
 def test_rows_without_room_for_a_plant_are_refused():
     with pytest.raises(PlotError, match="room for one plant on its rows, but 'drawn' has none"):
         lay(drawn(arcs(), shapely.box(-3, -30, 3, 30)), PLANTING)
+
+
+@pytest.mark.parametrize("touching", [[(0.0, -40.0), (0.0, 40.0)], [(0.0, 6.03), (1.0, 20.0)]])
+def test_rows_that_cross_or_touch_are_refused_with_the_place(touching):
+    rows = [np.array([(-30.0, y), (30.0, y)]) for y in (-3.0, 0.0, 3.0, 6.0)]
+    with pytest.raises(PlotError, match="Rows must lie beside each other") as told:
+        lay(drawn([*rows, np.array(touching)]), PLANTING)
+    lon, lat = re.search(r"first at \((.+), (.+)\)", str(told.value)).groups()
+    at = FRAME.xy_m([(float(lon), float(lat))])[0]
+    assert min(float(np.hypot(*(at - (0.0, y)))) for y in (-3.0, 0.0, 3.0, 6.0)) < 0.2
+    beyond = np.array([(90.0, -3.0), (90.0, 0.0)])  # where rows leave the plot nobody drives
+    fan = [np.array([(-30.0, y), (30.0, y), *beyond[:1]]) for y in (-3.0, 0.0, 3.0, 6.0)]
+    assert len(lay(drawn(fan, shapely.box(-60, -60, 40, 60)), PLANTING))
+
+
+def test_rows_that_are_all_drawn_beside_the_plot_are_told_how_far():
+    with pytest.raises(PlotError, match="of 12 none is on 'drawn': the nearest is 96 m"):
+        lay(drawn([line + np.array([200.0, 0.0]) for line in arcs()]), PLANTING)
 
 
 def test_without_a_boundary_plants_stand_on_the_whole_of_each_row():

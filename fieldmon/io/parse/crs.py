@@ -19,6 +19,7 @@ from pyproj.transformer import TransformerGroup
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, doubtful, seen
+from fieldmon.plot.local_clock import at_sea
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -172,18 +173,20 @@ def ask_for_crs(xy: NDArray[np.float64], options: ReadOptions, why: str) -> Choi
         for c in offered
     ]
     listed = "; ".join(lines) if lines else "none of the usual ones fits the coordinates"
-    return ChoiceNeeded(
-        worded(
-            "{why} The coordinates are around {value:.10g}, {y:.10g}. "
-            "Name the coordinate system. Candidates: {listed}.",
-            why=why,
-            value=centre[0],
-            y=centre[1],
-            listed=listed,
-        ),
-        "crs",
-        tuple(c.code for c in offered),
+    question = worded(
+        "{why} The coordinates are around {value:.10g}, {y:.10g}. "
+        "Name the coordinate system. Candidates: {listed}.",
+        why=why,
+        value=centre[0],
+        y=centre[1],
+        listed=listed,
     )
+    if options.near is None:
+        question = worded(
+            "{question} All systems of a place nearby are listed with near=LON,LAT.",
+            question=question,
+        )
+    return ChoiceNeeded(question, "crs", tuple(c.code for c in offered))
 
 
 def candidates(
@@ -191,7 +194,10 @@ def candidates(
     country: str | None = None,
     near: tuple[float, float] | None = None,
 ) -> list[CrsCandidate]:
-    """Return the systems in which coordinates would land where the system is used, best first."""
+    """Return the systems in which coordinates would land where the system is used, best first.
+
+    Without a place nearby those come last that bring them into the open sea.
+    """
     found: list[CrsCandidate] = []
     if abs(centre[0]) <= 180 and abs(centre[1]) <= 90:
         found.append(CrsCandidate("EPSG:4326", "WGS 84", *centre, _km(near, *centre)))
@@ -203,6 +209,8 @@ def candidates(
     if near is not None:
         found.sort(key=lambda c: round(c.km_away))
         found = [c for c in found if c.km_away < _NEAR_KM] or found
+    else:
+        found.sort(key=lambda c: at_sea(c.lon, c.lat))
     return [_exactly(c, centre, near) for c in _distinct(found)[:_MOST_OFFERED]]
 
 

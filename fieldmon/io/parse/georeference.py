@@ -34,6 +34,8 @@ _EARTH_KM = 6371.0
 _FAR_KM, _ASKED_KM = 20.0, 1000.0
 #: outside of where its system is used; countries use one UTM zone far beyond its borders
 _FAR_FROM_USE_KM, _FAR_FROM_ZONE_KM = 50.0, 600.0
+#: systems of the whole earth put numbers of no size off the coast of Ghana
+_OF_NOWHERE_DEG = 0.1
 _LOOKED_AT = 5_000
 _NAMED = 3
 
@@ -92,6 +94,8 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     xy, more = _without_zone(xy, crs)
     through = transformation_from(crs, _middle(xy))
     lonlat = through.lonlat(xy)
+    if options.crs is None:
+        _check_metres(xy, lonlat, crs, options)
     _check_landing(lonlat, crs)
     _check_near(xy, lonlat, through.code, options)
     step_m = _step(xy) * (M_PER_DEGREE if crs.is_geographic else 1.0)
@@ -187,6 +191,21 @@ def _check_range(xy: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions)
             name=crs.name,
         ),
     )
+
+
+def _check_metres(
+    xy: NDArray[np.float64], lonlat: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions
+) -> None:
+    """Ask where metres are as small as degrees, and lie where the system is not used."""
+    if not crs.is_projected or (np.abs(xy) > (180, 90)).any():
+        return
+    lon, lat = _middle(lonlat)
+    if km_outside(crs, lon, lat) > 0 or abs(lon) + abs(lat) < _OF_NOWHERE_DEG:
+        raise ask_for_crs(
+            xy,
+            options,
+            worded("The file says {name}, but its coordinates look like degrees.", name=crs.name),
+        )
 
 
 def _without_zone(

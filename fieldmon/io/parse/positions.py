@@ -25,7 +25,7 @@ from fieldmon.io.import_report import (
     repaired,
     seen,
 )
-from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import few_unplaceable, place, written
 from fieldmon.io.parse.named_positions import placed_by_name
@@ -50,6 +50,9 @@ _WGS84 = "OGC:CRS84"
 #: coordinates rounded to more than this cannot tell neighbouring plants apart; five decimals of a
 #: degree, 1.1 m, still can
 _COARSE_M = 1.5
+_ZONE_COLUMNS = {"zone", "utmzone", "zona", "zonautm", "huso", "fuseau", "gridzone", "utm"}
+#: of eight degrees each, from 80 south; from the equator to 90 south are 10 000 km of northing
+_BANDS, _M_PER_DEGREE = "CDEFGHJKLMNPQRSTUVWX", 1e7 / 90
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,6 +178,9 @@ def _by_coordinates(
     shown = " and ".join(repr(name) for name in names)
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
+    if stated is None and how == "metres" and options.crs is None:
+        stated, said = _stated_zone(layer, xy)
+        more += said
     there = _finite(xy)
     there[there] = ~few_unplaceable(xy[there], stated or crs, options)
     unread = Unread.of(layer, names, there)
@@ -189,6 +195,7 @@ def _by_coordinates(
                 name=layer.name,
                 seen_in=unread.shown(),
             )
+            + unread.of_letter_o()
         )
     messages += unread.messages()
     placed = place(xy[there], stated or crs, options)
@@ -274,6 +281,14 @@ class Unread(NamedTuple):
         some = [f"{at!r} in record {record + 1}" for record, at in self.written.items()][:_SHOWN]
         return f", for instance {', '.join(some)}" if some else ""
 
+    def of_letter_o(self) -> str:
+        """Return what to say of the letter O beside degrees, if it is in all that is written."""
+        beside = re.compile(r"[\d'\"″′]\s*O\b|\bO\s*\d")
+        if not self.written or not all(map(beside.search, self.written.values())):
+            return ""
+        said = worded("O can mean west (oeste, ouest) or east (Ost): write W or E.")
+        return f" {said}"
+
     def ask(self) -> ChoiceNeeded:
         """Return the question what two points mean."""
         return ChoiceNeeded(
@@ -343,6 +358,34 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Im
             seen(worded("Column {name!r} names the coordinate system {crs}.", name=name, crs=value))
         ]
     return None, []
+
+
+def _stated_zone(layer: Layer, xy: NDArray[np.float64]) -> tuple[str | None, list[ImportMessage]]:
+    """Return the UTM system of a column of zones such as 34H, if all records are in one.
+
+    S is a band of the north, and the south: northings tell which, but over the southern ocean.
+    """
+    name = next((one for one in layer.columns if plain(one) in _ZONE_COLUMNS), None)
+    if name is None or not np.isfinite(xy[:, 1]).any():
+        return None, []
+    zones = {text(v).strip().upper() for v in layer.column(name) if not is_missing(v)}
+    zone = re.fullmatch(r"0?([1-9]|[1-5]\d|60)\s?([C-HJ-NP-X])", zones.pop()) if zones else None
+    if zone is None or zones:
+        return None, []
+    number, band = int(zone[1]), zone[2]
+    lowest, north = 8 * _BANDS.index(band) - 80, float(np.nanmedian(xy[:, 1])) / _M_PER_DEGREE
+    south = band < "N" or (band == "S" and not lowest - 1 < north < lowest + 9)
+    lat = north - 90 * south
+    if band not in "NS" and not lowest - 1 < lat < lowest + 13:
+        return None, []  # a zone of something else
+    code = f"EPSG:{327 if south else 326}{number:02d}"
+    said = worded(
+        "Column {name!r} names UTM zone {zone}, which was read as {crs}.",
+        name=name,
+        zone=zone[0],
+        crs=f"{pyproj.CRS(code).name} ({code})",
+    )
+    return code, [guessed(said)]
 
 
 def _known_system(value: str) -> str | None:

@@ -13,7 +13,7 @@ from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import NEARBY_M
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped, seen
+from fieldmon.io.import_report import Imported, ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
 
 if TYPE_CHECKING:
@@ -22,12 +22,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.observations import Observations
+    from fieldmon.io.readers.places import Plants
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
 
 _GEOD = pyproj.Geod(ellps="WGS84")
 _FAR_M, _DEGREE_M = 100_000.0, 111_000.0
 _MOST_NAMED = 5
+# a plant so far outside a boundary may be one of the plot: a phone is off by as much
+_GPS_M = 5.0
 #: a tenth of a millimetre: one position, read twice
 _SAME_DEG = 1e-9
 
@@ -175,6 +178,41 @@ def on_other_plots(
             some=", ".join(named) + (", ..." if len(most_first) > _MOST_NAMED else ""),
         )
     )
+
+
+def plants_on(measured: Plants, field: Field, far: str | None = None) -> Imported[Plants]:
+    """Return which measured plants are those of a plot: not those outside by more than GPS errs.
+
+    All, where none is near it. ``far="keep"`` keeps all, ``far="drop"`` only those on the plot.
+    """
+    away = distance_m(measured.lonlat, field)
+    outside = away > 0 if far == "drop" else away > _GPS_M
+    if far == "keep" or outside.all():
+        return Imported(measured)
+    beside = (away > 0) & ~outside
+    messages = []
+    if outside.any():
+        said = worded(
+            "{n} of {all} {all:plant stands|plants stand} outside {plot} and {n:was|were} left "
+            "out: {away} away.",
+            n=int(outside.sum()),
+            all=len(measured),
+            plot=field.name,
+            away=_between(away[outside]),
+        )
+        messages.append(dropped(said, remedy=Remedy("far", "keep", worded("Keep them"))))
+    if beside.any():
+        said = worded(
+            "{n} {n:plant stands|plants stand} outside {plot}, up to {away} away, and {n:is|are} "
+            "taken to be of it: a boundary may be drawn tight.",
+            n=int(beside.sum()),
+            plot=field.name,
+            away=distance_figure(float(away[beside].max())),
+        )
+        # beside plants of other plots they may be of those, too
+        say = doubtful if outside.any() else seen
+        messages.append(say(said, remedy=Remedy("far", "drop", worded("Leave them out"))))
+    return Imported(measured.take(~outside), tuple(messages))
 
 
 def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage]:

@@ -77,6 +77,20 @@ class Plants:
         """Return the number of plants."""
         return len(self.lonlat)
 
+    def take(self, which: NDArray[np.bool_]) -> Self:
+        """Return those plants."""
+        return replace(
+            self,
+            lonlat=self.lonlat[which],
+            row=self.row[which],
+            plant=self.plant[which],
+            block=None if self.block is None else self.block[which],
+            also=tuple((block[which], row[which], within) for block, row, within in self.also),
+            numbers=None
+            if self.numbers is None
+            else (self.numbers[0][which], self.numbers[1][which]),
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class NamedPlaces:

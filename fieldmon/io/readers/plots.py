@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
-from shapely import MultiLineString, MultiPolygon
+from shapely import MultiLineString, MultiPolygon, Polygon
 
 from fieldmon.compute.wording import counted, first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
@@ -423,7 +423,27 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
                 )
             )
         )
+    around = [fields[i].name for i in np.flatnonzero((n_parts > 1) & (n_holes > 0))
+              if _has_island(fields[i].boundary)]  # fmt: skip
+    if around:
+        messages.append(
+            doubtful(
+                worded(
+                    "{n} {n:plot has|plots have} a part in a hole of another, and routes lead "
+                    "straight across that hole: {names}. Where nobody can, make the part a plot.",
+                    n=len(around),
+                    names=first_few(around, _MOST_NAMED),
+                )
+            )
+        )
     return messages
+
+
+def _has_island(boundary: MultiPolygon) -> bool:
+    """Return whether a part of a plot lies in a hole of another."""
+    tree = shapely.STRtree(list(boundary.geoms))
+    holes = [Polygon(ring) for part in boundary.geoms for ring in part.interiors]
+    return bool(tree.query(holes, predicate="contains").size)
 
 
 def _duplicates(fields: list[Field]) -> list[ImportMessage]:

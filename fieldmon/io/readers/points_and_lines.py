@@ -145,7 +145,7 @@ def _strays(
     stray = np.flatnonzero(far_m > max(_STRAY_M, _STRAY_TIMES * float(np.median(far_m))))
     messages = []
     gone = stray[far_m[stray] > _FAR_M]
-    if len(gone) and options.far is None and len(gone) * _RARE < len(lonlat):
+    if len(gone) and options.far != "keep" and len(gone) * _RARE < len(lonlat):
         out[gone] = True
         said = worded(
             "{n} {n:plant stands|plants stand} {far} and more from the others and {n:was|were} "
@@ -210,7 +210,8 @@ def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineStrin
     lost = [_of_drawn_names(str(column))] if has_names else []
     if layer.geometry is not None and geometry_kinds(layer.geometry)[1].any():
         lines = lines_of(layer, options)
-        return lines.having(lines.value, lost)
+        rows, doubles = _once(lines.value)
+        return lines.having(rows, [*doubles, *lost])
     posts = plants_of(layer, options)
     named = None if (posts.value.row == "").any() else posts.value.row
     rows = rows_from_posts(posts.value.lonlat, named)
@@ -219,6 +220,19 @@ def drawn_rows_of(layer: Layer, options: ReadOptions) -> Imported[MultiLineStrin
         worded("{n} points are the end posts of rows, paired {how}.", n=len(posts.value), how=how)
     )
     return posts.having(rows, [said, *lost])
+
+
+def _once(rows: MultiLineString) -> tuple[MultiLineString, list[ImportMessage]]:
+    """Return rows without those drawn again, either way, and what to say of these."""
+    lines = shapely.get_parts(rows)
+    first = np.sort(np.unique(shapely.to_wkb(shapely.normalize(lines)), return_index=True)[1])
+    if len(first) == len(lines):
+        return rows, []
+    said = worded(
+        "{n} {n:row is|rows are} in the file twice and {n:counts|count} once.",
+        n=len(lines) - len(first),
+    )
+    return MultiLineString(list(lines[first])), [dropped(said)]
 
 
 def _of_drawn_names(column: str) -> ImportMessage:

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import shapely
+from shapely import MultiPolygon, Polygon
+
 from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.wording import worded
 from fieldmon.compute.working_folder import working_folder
@@ -15,15 +18,18 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import why_not_written, write_whole
 from fieldmon.io.writers.isoxml import isoxml_taskdata
 from fieldmon.io.writers.zone_cells import ZoneCells, narrowest_m, rates_geotiff, zone_cells
+from fieldmon.plot.projection import Frame
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import geopandas as gpd
-    from shapely import MultiPolygon
 
 _WGS84 = "EPSG:4326"
 _LEAST_CELL_M = 0.1
+# what is narrower than twice that, between zones and beside them, comes of how plants were measured
+_SLIM_M = 0.1
+_GRID_DEG = 1e-8  # a millimetre, as GeoJSON is written: nothing collapses there
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal maps make equal files
 
 
@@ -115,14 +121,55 @@ def checked_ending(name: str) -> str:
     return ending
 
 
+def _clean_areas(of: TreatmentMap) -> tuple[list[MultiPolygon], MultiPolygon]:
+    """Return the zones of a map and the rest of its plot, lon/lat: polygons, of which none overlap.
+
+    What is narrower than some centimetres between and in zones is theirs, and beside them nobody's.
+    """
+    middle = of.boundary.envelope.centroid
+    frame = Frame(middle.x, middle.y)
+    zones = [frame.geometry_m(zone) for zone in of.zones]
+    apart = shapely.union_all(zones)
+    whole = shapely.union(apart, _grown(_grown(apart, _SLIM_M), -_SLIM_M))
+    made: list[MultiPolygon] = []
+    for k, zone in enumerate(zones):
+        near = shapely.intersection(_grown(zone, 2 * _SLIM_M), whole)
+        own = shapely.difference(near, shapely.union_all([*made, *zones[k + 1 :]]))
+        parts = _polygons(own).geoms
+        made.append(MultiPolygon([_filled(one) for one in parts if one.intersects(zone)]))
+    rest = _polygons(shapely.difference(frame.geometry_m(of.boundary), shapely.union_all(made)))
+    rest = MultiPolygon([one for one in rest.geoms if not _is_slim(one)])
+    *sprayed, rest = (_polygons(frame.geometry_lonlat(one), _GRID_DEG) for one in (*made, rest))
+    return sprayed, rest
+
+
+def _grown(area: shapely.Geometry, by_m: float) -> shapely.Geometry:
+    return shapely.buffer(area, by_m, join_style="mitre")
+
+
+def _is_slim(area: shapely.Geometry) -> bool:
+    return bool(shapely.is_empty(shapely.buffer(area, -_SLIM_M)))
+
+
+def _filled(part: Polygon) -> Polygon:
+    """Return a polygon without the holes that are slim."""
+    return Polygon(part.exterior, [hole for hole in part.interiors if not _is_slim(Polygon(hole))])
+
+
+def _polygons(area: shapely.Geometry, grid: float = 0.0) -> MultiPolygon:
+    """Return the polygons of an area, at corners of a grid of such size."""
+    whole = shapely.set_precision(shapely.make_valid(area), grid)
+    parts = shapely.get_parts(shapely.get_parts(whole))  # those of collections in collections, too
+    return MultiPolygon([one for one in parts if one.geom_type == "Polygon"])
+
+
 def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:
     """Return a row a zone and one for the rest of the plot, whose rate is 0."""
     import geopandas as gpd  # noqa: PLC0415 - half a second to import
-    import shapely  # noqa: PLC0415
 
-    rest = shapely.difference(of.boundary, shapely.union_all(of.zones))
-    areas = [*of.zones, *([rest] if rest.area > 0 else [])]
-    n = len(of.zones)
+    zones, rest = _clean_areas(of)
+    areas = [*zones, *([] if rest.is_empty else [rest])]
+    n = len(zones)
     more = len(areas) - n
     return gpd.GeoDataFrame(
         {
@@ -141,7 +188,7 @@ def _gpkg(of: TreatmentMap) -> bytes:
 
 
 def _geojson(of: TreatmentMap) -> bytes:
-    return _one_file(of, "treatment.geojson", "GeoJSON", RFC7946="YES")
+    return _one_file(of, "treatment.geojson", "GeoJSON", RFC7946="YES", COORDINATE_PRECISION="8")
 
 
 def _kml(of: TreatmentMap) -> bytes:
@@ -189,7 +236,7 @@ def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: str) -> Non
 
 def _taskdata(version: int, grid: int | None = None) -> Callable[[TreatmentMap], bytes]:
     def make(of: TreatmentMap) -> bytes:
-        zones = of.zones if grid is None else _cells(of, grid)
+        zones = _clean_areas(of)[0] if grid is None else _cells(of, grid)
         return isoxml_taskdata(
             of.title, of.boundary, zones, of.rate_l_ha, of.product, version=version
         )
@@ -198,7 +245,8 @@ def _taskdata(version: int, grid: int | None = None) -> Callable[[TreatmentMap],
 
 
 def _cells(of: TreatmentMap, kind: int = 1) -> ZoneCells:
-    return zone_cells(of.boundary, of.zones, max(narrowest_m(of.zones), _LEAST_CELL_M), kind)
+    zones = _clean_areas(of)[0]
+    return zone_cells(of.boundary, zones, max(narrowest_m(zones), _LEAST_CELL_M), kind)
 
 
 def _geotiff(of: TreatmentMap) -> bytes:

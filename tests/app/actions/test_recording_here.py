@@ -1,10 +1,13 @@
 """A plant that was tapped is recorded where it is shown, by a press that says what was seen."""
 
+import shutil
 from datetime import date
 
+import numpy as np
 import pytest
 
-from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.monitoring import Season
 from tests.app.driving import tap, texts_of
 
 
@@ -55,6 +58,17 @@ def test_it_is_taken_back_beside_it_and_a_second_press_of_the_same_is_known(tapp
     tap(tapped, "here_undo")
     assert not len(season().history.inspections)
     assert "here_undo" not in keys(tapped)
+
+
+def test_after_a_merge_it_is_still_what_is_taken_back(tapped, season, tmp_path):
+    there = Season(shutil.copy(season().path, tmp_path / "other.gpkg"))
+    on = np.datetime64("2026-11-16")
+    there.record(Inspections.of(np.array([9]), np.array([FOUND]), on), "there", "Ben")
+    tap(tapped, "here_1")
+    season().merge(there)
+    tapped.run()
+    tap(tapped, "here_undo")
+    assert season().history.inspections.plant.tolist() == [9]
 
 
 def test_what_contradicts_waits_for_a_word(tapped, season):

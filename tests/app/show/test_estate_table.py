@@ -22,9 +22,8 @@ class Route(list):
 
 
 def turn(plot):
-    plan = SimpleNamespace(route=Route())
-    return SimpleNamespace(plot=plot, who="robot 1", begins=datetime(2026, 11, 16, 6),
-                           ends=datetime(2026, 11, 16, 7, 30), plan=plan)  # fmt: skip
+    return SimpleNamespace(state=plot, who="robot 1", begins=datetime(2026, 11, 16, 6),
+                           ends=datetime(2026, 11, 16, 7, 30), route=Route())  # fmt: skip
 
 
 def test_plots_stand_in_their_order_with_their_area_and_state():

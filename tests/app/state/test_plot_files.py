@@ -91,6 +91,19 @@ def test_records_by_row_and_plant_name_the_labels_of_measured_plants(app):
     assert record["p"] == pytest.approx([35 + 2 / 4e4, 30 + 3 / 4e4], abs=1e-6)
 
 
+def test_plants_of_the_neighbouring_plot_are_left_out_until_a_button_keeps_them(app, tmp_path):
+    measured = "\n".join(
+        f"{lon + x / 4e4:.6f},{30.3602 + y / 4e4:.6f}"
+        for lon in (35.1502, 35.1522) for x in range(6) for y in range(9)
+    )  # fmt: skip
+    upload(app, plot=("plot.zip", zipped(tmp_path, square(0.0008))),
+           plant=("plants.csv", f"lon,lat\n{measured}\n".encode()))  # fmt: skip
+    assert "54 of 108 plants stand outside" in texts_of(app)
+    assert len(plants(app, "plants")) == 54
+    next(one for one in app.button if one.label == "Keep them").click().run()
+    assert len(plants(app, "plants")) == 108
+
+
 def test_a_plant_that_is_not_there_is_said_in_a_sentence(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(0.0008))),
            record=("mites.csv", b"row,plant,date,count\n999,1,2026-11-10,9\n"))  # fmt: skip

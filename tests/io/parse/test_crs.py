@@ -75,6 +75,13 @@ def test_candidates_of_a_country_are_systems_used_there():
     assert "EPSG:27700" not in codes
 
 
+def test_systems_that_bring_the_data_into_the_open_sea_come_last():
+    gauss_krueger_3 = (3_427_751.0, 5_485_275.0)
+    assert candidates(gauss_krueger_3)[0].code == "EPSG:31467"
+    question = ask_for_crs(np.array([gauss_krueger_3]), ReadOptions(), "It does not say.")
+    assert "near=LON,LAT" in str(question)
+
+
 def test_small_numbers_may_be_degrees():
     assert candidates(PARAN)[0].code == "EPSG:4326"
 

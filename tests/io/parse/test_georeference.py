@@ -70,6 +70,16 @@ def test_metres_called_degrees_are_a_question_for_the_system():
     assert asked.value.choices[0] == "EPSG:2039"
 
 
+@pytest.mark.parametrize("crs", ["EPSG:32632", "EPSG:31467", "EPSG:3857"])
+def test_degrees_called_metres_are_a_question_for_the_system(crs):
+    degrees = np.array([(8.0, 49.5), (8.001, 49.501)])
+    with pytest.raises(ChoiceNeeded, match="but its coordinates look like degrees") as asked:
+        place(degrees, crs, ReadOptions())
+    assert (asked.value.option, asked.value.choices[0]) == ("crs", "EPSG:4326")
+    # metres so near to the middle of a grid that lies on land
+    assert place(degrees, "EPSG:3763", ReadOptions()).lonlat[0, 1] == pytest.approx(39.67, abs=0.01)
+
+
 def test_a_zone_number_before_the_eastings_is_taken_off_and_said():
     xy = projected("EPSG:32636") + np.array([36e6, 0.0])
     placed = place(xy, "EPSG:32636", NOTHING)

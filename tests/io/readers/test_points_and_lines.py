@@ -146,3 +146,10 @@ def test_names_of_rows_that_are_drawn_are_told_to_be_lost(posts):
     )
     for unnamed in ({}, {"row": [""] * len(shapes)}):
         assert "calls them" not in sentences(drawn_rows_of(layer_of(shapes, **unnamed), ANY))
+
+
+def test_rows_that_are_drawn_twice_either_way_count_once():
+    one, other = LineString([(5.0, 45.0), (5.001, 45.0)]), LineString([(5.0, 45.1), (5.001, 45.1)])
+    imported = drawn_rows_of(layer_of([one, other, one, other.reverse()]), ANY)
+    assert list(imported.value.geoms) == [one, other]
+    assert "dropped: 2 rows are in the file twice and count once." in sentences(imported)

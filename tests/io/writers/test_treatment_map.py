@@ -1,9 +1,11 @@
 """Treatment maps: every format holds the zones and their rate, and 0 elsewhere."""
 
 import io
+import re
 import zipfile
 
 import geopandas as gpd
+import numpy as np
 import pyogrio
 import pytest
 import shapely
@@ -11,6 +13,7 @@ from shapely import MultiPolygon
 
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.writers.treatment_map import TreatmentMap, write_treatment_map
+from fieldmon.plot.projection import Frame
 
 PLOT = MultiPolygon([shapely.box(35.15, 30.36, 35.152, 30.362)])
 ZONES = [
@@ -33,6 +36,45 @@ def test_the_rates_are_read_back_where_they_are(tmp_path, name):
         assert by_zone[k].symmetric_difference(zone).area < 1e-9 * zone.area
     assert shapely.union_all(list(by_zone.values())).area == pytest.approx(PLOT.area)
     assert by_zone[0].intersection(shapely.union_all(ZONES)).area < 1e-15
+
+
+def frayed(rng):
+    """Return a map of measured plants: a square a plant, some centimetres off its place."""
+    frame = Frame(8.0, 49.5)
+    x, y = np.meshgrid(np.arange(12) * 1.4, np.arange(8) * 2.5)
+    x, y = (of.ravel() + rng.normal(0.0, 0.03, x.size) for of in (x, y))
+    cells = shapely.box(x - 0.7007, y - 1.25125, x + 0.7007, y + 1.25125)
+    zones = [shapely.union_all(cells[:40]), shapely.union_all(cells[40:70])]
+    parts = [frame.geometry_lonlat(MultiPolygon(shapely.get_parts(one).tolist())) for one in zones]
+    plot = frame.geometry_lonlat(MultiPolygon([shapely.box(-0.7, -1.25, 16.1, 18.75)]))
+    return TreatmentMap("Gate", plot, parts, 300.0)
+
+
+@pytest.mark.parametrize("name", ["t.gpkg", "t.shp.zip", "t.geojson", "t.kml"])
+def test_measured_plants_leave_no_slivers_and_nothing_but_polygons(tmp_path, name):
+    for seed in range(5):
+        made = frayed(np.random.default_rng(seed))
+        read = gpd.read_file(write_treatment_map(made, tmp_path / name))
+        assert set(read.geom_type) <= {"Polygon", "MultiPolygon"}
+        assert read.geometry.is_valid.all()
+        in_m = read.to_crs(25832).geometry
+        parts = shapely.get_parts(in_m.to_numpy())
+        holes = [shapely.Polygon(hole) for part in parts for hole in part.interiors]
+        assert min(one.area for one in [*parts, *holes]) > 1.0
+        own = gpd.GeoSeries(made.zones, crs=4326).to_crs(25832).area.tolist()
+        assert in_m.area[read["ZONE"].astype(int) > 0].tolist() == pytest.approx(own, rel=0.02)
+        assert in_m[0].intersection(in_m[1]).area < 0.01
+
+
+def test_terminals_get_no_rings_of_some_square_centimetres(tmp_path):
+    path = write_treatment_map(frayed(np.random.default_rng(0)), tmp_path / "t.xml.zip")
+    with zipfile.ZipFile(path) as archive:
+        task = archive.read("TASKDATA/TASKDATA.XML").decode()
+    corners = [re.findall(r'C="([^"]+)" D="([^"]+)"', ring) for ring in task.split("<LSG ")[1:]]
+    rings = [shapely.Polygon([(float(y) * 111e3, float(x) * 72e3) for y, x in ring])
+             for ring in corners]  # fmt: skip
+    assert len(rings) >= 2
+    assert min(ring.area for ring in rings) > 1.0
 
 
 @pytest.mark.parametrize("grid", ["", ".grid1", ".grid2"])

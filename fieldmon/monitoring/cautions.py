@@ -159,15 +159,14 @@ def harvest_from(
     return max(days, key=lambda item: item[0], default=None)
 
 
-def counts_no_more(one: KeptTreatment, label: ProductLabel | None, *, here: bool) -> str:
-    """Return that a treatment that counted here, or in another copy, was undone in the other."""
-    counted_in, undone_in = ("here", "there") if here else ("there", "here")
+def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> str:
+    """Return that a treatment of two copies does not count any more, what ends, and `why`."""
     first = waits(one, label).harvest_from
     wait = "" if first is None else f" and its wait (harvest from {first})"
     return (
         f"The treatment with {one.application.product or 'a product that nobody named'} on "
-        f"{one.on} counted {counted_in}, but was undone {undone_in}: it does not count, nor do its "
-        f"warnings{wait}. If it was done, record it again with: fieldmon treat"
+        f"{one.on} {why}: it does not count, nor do its warnings{wait}. If it was done, record it "
+        f"again with: fieldmon treat"
     )
 
 

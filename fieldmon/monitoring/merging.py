@@ -2,8 +2,7 @@
 
 A row is known again by what it says and by the batch it came with, never by its number. What was
 taken back in one copy is taken back. What both recorded for themselves counts once; the later one
-stands back for the first until that one is taken back; where each copy took back another recording
-of a treatment, one counts. A treatment is known again whatever labels
+stands back for the first until that one is taken back. A treatment is known again whatever labels
 added to it (`treatments.known_by`). Everything is put in the order in which it was recorded, so
 that it does not matter which copy takes in the other; what a copy recorded later stays so, whatever
 its clock said. Inspections that both copies begin with, and that come out where they are, are left
@@ -106,7 +105,8 @@ class MergedCopy(NamedTuple):
     numbers
         What batches are numbered now, by their numbers of before, where that is another one.
     gone
-        Numbers of treatments that counted here, and of those that counted there, and do not now.
+        Numbers of treatments that do not count any more: those that counted here alone, there
+        alone, and (by their numbers here) in both.
     """
 
     new: int
@@ -115,7 +115,7 @@ class MergedCopy(NamedTuple):
     treatments: int
     codes: int
     numbers: Numbers
-    gone: tuple[frozenset[int], ...]
+    gone: tuple[set[int], set[int], set[int]]
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -141,8 +141,6 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _merge_inspections((db, other), numbers, gone, stay)
     own = [copied["treatments"] for copied in copies]
     treated = _merged_findings(own, numbers, set(), set())
-    known, theirs = (frozenset().union(*one.values()) for one in applied)
-    left = treatments.leave_one(treated, known & theirs)
     treatments.settle(treated)
     _write(db, schema.TREATMENTS, treated)
     _count(db, batches)
@@ -161,16 +159,20 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     new, codes = (len(one - was) for one, was in zip(after, before, strict=True))
     taken_back = len(before[0] - after[0])
     count = treatments.counting(db)
+    known, theirs = (frozenset().union(*one.values()) for one in applied)
     n_treated = sum(known.isdisjoint(marks) for marks in count)
     now = frozenset().union(*count)
-    no_more = tuple(frozenset(n for n, marks in one.items() if marks.isdisjoint(now))
-                    for one in applied)  # fmt: skip
+    here, there = ({n: marks for n, marks in one.items() if marks.isdisjoint(now)}
+                   for one in applied)  # fmt: skip
+    twice = {n for n, marks in here.items() if marks & theirs}
+    alone = {n for n, marks in there.items() if marks.isdisjoint(known)}
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
             for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
-    said = (*_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held),
-            *map(_left, left))  # fmt: skip
+    said = *_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held)
     anew = {old: number for old, number in numbers[0].items() if old != number}
-    return MergedCopy(new, taken_back, said, n_treated, codes, anew, no_more)
+    return MergedCopy(
+        new, taken_back, said, n_treated, codes, anew, ({*here} - twice, alone, twice)
+    )
 
 
 def _counting(db: sqlite3.Connection, stay: int) -> list[set[str]]:
@@ -611,14 +613,6 @@ def _alike_but_for_labels(
                 f"Treatments with {named}, batches {one['batch']} and {other['batch']}, say the "
                 f"same but for {differ}{why}. Both count; if they are one, undo a batch."
             )
-
-
-def _left(row: Row) -> str:
-    return (
-        f"Each copy undid another recording of the treatment with "
-        f"{row['product'] or 'a product that nobody named'} on {row['date']}, which counted once "
-        f"in both: batch {row['batch']} counts. If it was not done, undo that, too."
-    )
 
 
 def _or_none(value: object) -> str:

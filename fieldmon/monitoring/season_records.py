@@ -51,6 +51,14 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.tables import KeptMessage
 
 
+#: why treatments do not count any more after merging, as `MergedCopy` has them
+_GONE = (
+    "counted here, but was undone there",
+    "counted there, but was undone here",
+    "counted in both, but each undid another recording of it",
+)
+
+
 @checked
 class SeasonRecords(OpenSeason):
     """The inspections of a season, whoever brings them; each batch can be undone."""
@@ -380,20 +388,19 @@ class SeasonRecords(OpenSeason):
             contradict = contradict.still(self._inspections(db))
             moved = bool(taken.numbers)
             states, labels = season_log.states(db), label_table.read(db)
-            gone = [[one for one in each if one.number in no_more]
-                    for each, no_more in zip(treated, taken.gone, strict=True)]  # fmt: skip
+            here, there = treated
+            gone = [(one, why) for why, each, no_more in zip(_GONE, (here, there, here), taken.gone,
+                    strict=True) for one in each if one.number in no_more]  # fmt: skip
             if states != was:
                 undone = [f"{one.application.product or 'a product that nobody named'} on {one.on}"
-                          for one in gone[0]]  # fmt: skip
+                          for one, why in gone if why != _GONE[1]]  # fmt: skip
                 season_log.append(
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
                     moved=moved, numbers=taken.numbers, undone=undone,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
         undone_in_one = (
-            cautions.counts_no_more(one, cautions.label_of(one, labels), here=here)
-            for here, each in zip((True, False), gone, strict=True)
-            for one in each
+            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in gone
         )
         said = *contradict.sentences(self.label), *taken.differing, *undone_in_one
         return Merged(

@@ -226,21 +226,6 @@ def counted(rows: Iterable[Row]) -> dict[int, frozenset[str]]:
     return {row["fid"]: known_by(row) for row in rows if row["undone"] == COUNTS}
 
 
-def leave_one(rows: Iterable[Row], marks: frozenset[str]) -> list[Row]:
-    """Let one row of each treatment of these marks count that no row is left of; return them.
-
-    In each of two copies it counted: what was taken back there was another recording of it.
-    """
-    rows, again = [row for row in rows if row["digest"] is not None], []
-    left = frozenset().union(*(known_by(row) for row in rows if row["undone"] != TAKEN_BACK))
-    for row in rows:
-        if known_by(row) & marks - left:
-            row["undone"] = COUNTS
-            left |= known_by(row)
-            again.append(row)
-    return again
-
-
 def settle(rows: Iterable[Row]) -> None:
     """Let the first of rows that are the same treatment count, and the others stand back for it."""
     counted: set[str] = set()

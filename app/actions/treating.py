@@ -153,12 +153,13 @@ def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advis
     boxes.empty()
     if plants is not None:
         wishes.pick(choices.place, ())
-    if not done.new:
+    if done.batch is None:
         return texts.TREATED_BEFORE
     beware = [
         in_words(one.sentence)
-        for one in season.cautions(choices.on, choices.units.in_sentences(choices.on))
-        if one.batch == done.batch
+        for one in season.cautions_because_of(
+            done.batch, choices.on, choices.units.in_sentences(choices.on)
+        )
     ]
     noted = texts.TREATED
     if plants is not None:

@@ -56,6 +56,7 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
             parts.append(said_days if treated else texts.BATCH_OF_DAY.format(days=said_days))
     who = batch.by(said)
     parts += [texts.isolated(who) if who else "", texts.UNDONE if batch.undone else ""]
+    parts.append(texts.COUNTS_ELSEWHERE if batch.stands_back(said) else "")
     return " · ".join(part for part in parts if part)
 
 

@@ -871,6 +871,7 @@ CONFIRM = Plural("Record this too, both hold", "Record these {n} too, both hold"
 RECORD_NONE = "Record nothing"
 NOTICE_CLOSE = "Close this message"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
+COUNTS_ELSEWHERE = "counts in another recording"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
 RESULT_COUNTED = "{result}, count {n}"
 BATCHES_SAID = {

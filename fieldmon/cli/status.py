@@ -116,6 +116,8 @@ def _show_batches(kept: Season) -> None:
             what += _other_days(said, at.date())
         kind = batch.kind.removesuffix("s") + "s" * (batch.rows != 1)
         undone = "  (undone)" if batch.undone else ""
+        if batch.stands_back(said):
+            undone = "  (counts in another batch)"
         typer.echo(
             f"{batch.number:5d}  {at:%Y-%m-%d %H:%M}  {batch.rows:5d} {kind}{who}  "
             f"{batch.source}{what}{undone}"

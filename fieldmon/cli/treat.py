@@ -180,6 +180,5 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
         typer.echo(f"Enter there from {period.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
     if period.harvest_from is not None:
         typer.echo(f"Harvest there from {period.harvest_from} on.")
-    for caution in kept.cautions(one.on):
-        if caution.batch == batch:
-            typer.echo(f"warning: {caution.sentence}", err=True)
+    for caution in kept.cautions_because_of(one.batch, one.on):
+        typer.echo(f"warning: {caution.sentence}", err=True)

@@ -57,6 +57,10 @@ class Batch:
         named = "" if said is None or self.kind != "findings" else said.who
         return named or self.who
 
+    def stands_back(self, said: BatchContents | None) -> bool:
+        """Return whether it was not undone, and all that it says counts in another batch."""
+        return said is not None and not self.undone and not said.counting
+
 
 @dataclass(frozen=True)
 class BatchContents:

@@ -6,7 +6,7 @@ Labels are the user's own table; where it does not say, nothing is made up.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import datetime
+from datetime import date, datetime
 from itertools import groupby
 from typing import TYPE_CHECKING, TypeVar
 
@@ -18,7 +18,7 @@ from fieldmon.decisions.labels import label_for, plain_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from datetime import date, time
+    from datetime import time
 
     from numpy.typing import NDArray
 
@@ -80,7 +80,8 @@ def cautions(
 
     Those whose mode-of-action group nobody said are no use of any group, and end no row of uses.
     """
-    done = [one for one in treatments if one.on <= on]
+    # one that went on over midnight is of the day on which it began
+    done = sorted((one for one in treatments if one.on <= on), key=lambda one: one.on)
     said = [(one, label_of(one, rules.labels)) for one in done]
     return (
         *(caution for one, label in said for caution in _of_waits(one, label, rules, on)),
@@ -88,6 +89,21 @@ def cautions(
         *_uses(said, rules.units),
         *(caution for one, label in said for caution in _of_dose(one, label, rules)),
     )
+
+
+def because_of(
+    treatments: Sequence[KeptTreatment], batch: int, rules: RulesToKeep, on: date
+) -> tuple[Caution, ...]:
+    """Return what to beware of on a day because of one treatment, and what it adds to later ones.
+
+    One that is entered late may make a later use one too many.
+    """
+    own = [one for one in cautions(treatments, rules, on) if one.batch == batch]
+    others = [one for one in treatments if one.batch != batch]
+    without = {one.sentence for one in cautions(others, rules, date.max)}
+    added = [one for one in cautions(treatments, rules, date.max)
+             if one.batch != batch and one.sentence not in without]  # fmt: skip
+    return (*own, *added)
 
 
 def label_of(one: KeptTreatment, labels: Iterable[ProductLabel]) -> ProductLabel | None:
@@ -112,6 +128,14 @@ def waits(one: KeptTreatment, label: ProductLabel | None) -> WaitingPeriod:
     )
 
 
+def groups(one: KeptTreatment, label: ProductLabel | None) -> tuple[str, ...]:
+    """Return the mode-of-action groups: as people said, else those of its label, then and now."""
+    kept = one.application.irac_groups
+    if label is None or (kept and one.groups_said):
+        return kept
+    return tuple(dict.fromkeys((*kept, *label.irac_groups)))
+
+
 def closed_until(
     one: KeptTreatment, label: ProductLabel | None, starts: time, on: date
 ) -> datetime | None:
@@ -133,6 +157,17 @@ def harvest_from(
     known = [(waits(one, label_of(one, labels)).harvest_from, one) for one in treatments]
     days = [(day, one) for day, one in known if day is not None]
     return max(days, key=lambda item: item[0], default=None)
+
+
+def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> str:
+    """Return that a treatment of two copies does not count any more, what ends, and `why`."""
+    first = waits(one, label).harvest_from
+    wait = "" if first is None else f" and its wait (harvest from {first})"
+    return (
+        f"The treatment with {one.application.product or 'a product that nobody named'} on "
+        f"{one.on} {why}: it does not count, nor do its warnings{wait}. If it was done, record it "
+        f"again with: fieldmon treat"
+    )
 
 
 def _longer(one: _Wait | None, other: _Wait | None) -> _Wait | None:
@@ -201,7 +236,7 @@ _Said = tuple["KeptTreatment", "ProductLabel | None"]
 def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
     """Yield uses of one mode-of-action group after another on the same plants."""
     row: dict[str, NDArray[np.int64]] = {}
-    of = {one.batch: _groups(one, label) for one, label in said}
+    of = {one.batch: groups(one, label) for one, label in said}
     for _, same_day in groupby((one for one, _ in said if of[one.batch]), lambda one: one.on):
         today = list(same_day)
         any_group = np.logical_or.reduce([one.place.plants for one in today])
@@ -221,10 +256,6 @@ def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
                         n=uses, group=group, plants=counted(n, "plant"), **_named(one, units),
                     )  # fmt: skip
                     yield Caution("group", sentence, one.batch)
-
-
-def _groups(one: KeptTreatment, label: ProductLabel | None) -> tuple[str, ...]:
-    return one.application.irac_groups or (label.irac_groups if label else ())
 
 
 def _uses(said: list[_Said], units: Units) -> Iterator[Caution]:

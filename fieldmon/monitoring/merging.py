@@ -68,7 +68,8 @@ class Merged:
         Inspections that count now and did not before.
     contradictions
         A sentence for each result that the copies tell differently, for each setting, for the table
-        of labels, and for treatments that are alike but for what a label may add.
+        of labels, for treatments that are alike but for what a label may add, and for each
+        treatment that counted in one copy and was undone in the other.
     taken_back
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
@@ -104,6 +105,9 @@ class MergedCopy(NamedTuple):
         As `Merged` has them.
     numbers
         What batches are numbered now, by their numbers of before, where that is another one.
+    gone
+        Numbers of treatments that do not count any more: those that counted here alone, there
+        alone, and (by their numbers here) in both.
     """
 
     new: int
@@ -112,6 +116,7 @@ class MergedCopy(NamedTuple):
     treatments: int
     codes: tuple[str, ...]
     numbers: Numbers
+    gone: tuple[set[int], set[int], set[int]]
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -129,7 +134,8 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         for copied in copies
     ]
     stay = _n_staying((db, other), numbers)
-    before, keys, applied = _counting(db, stay), _keys(db), treatments.counting(db)
+    before, keys = _counting(db, stay), _keys(db)
+    applied = [treatments.counted(copied["treatments"]) for copied in copies]
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])
@@ -150,16 +156,24 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _write(db, schema.LABELS, labels)
     for batch, _ in phone_tables.bring_together(db, phones):
         close_if_empty(db, batch)
-    now = _counting(db, stay)
-    new, taken_back = len(now - before), len(before - now)
+    after = _counting(db, stay)
+    new, taken_back = len(after - before), len(before - after)
     codes = tuple(sorted(name for key, name in _keys(db).items() if key not in keys))
-    known = frozenset().union(*applied)
-    n_treated = sum(known.isdisjoint(marks) for marks in treatments.counting(db))
+    count = treatments.counting(db)
+    known, theirs = (frozenset().union(*one.values()) for one in applied)
+    n_treated = sum(known.isdisjoint(marks) for marks in count)
+    now = frozenset().union(*count)
+    here, there = ({n: marks for n, marks in one.items() if marks.isdisjoint(now)}
+                   for one in applied)  # fmt: skip
+    twice = {n for n, marks in here.items() if marks & theirs}
+    alone = {n for n, marks in there.items() if marks.isdisjoint(known)}
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
             for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
     said = *_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held)
     anew = {old: number for old, number in numbers[0].items() if old != number}
-    return MergedCopy(new, taken_back, said, n_treated, codes, anew)
+    return MergedCopy(
+        new, taken_back, said, n_treated, codes, anew, ({*here} - twice, alone, twice)
+    )
 
 
 def _counting(db: sqlite3.Connection, stay: int) -> set[str]:

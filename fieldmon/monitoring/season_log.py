@@ -85,7 +85,8 @@ class LogEntry:
             more = ["..."] if len(said) > _MOST_NAMED else []
             what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
-        said = _SAID[self.kind].format_map(what) + anew
+        undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
+        said = _SAID[self.kind].format_map(what) + undone + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
         return said

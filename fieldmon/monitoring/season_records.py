@@ -14,15 +14,18 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import (
     batches,
+    cautions,
     copy_corrections,
     drafts,
     held_instead,
     inspection_table,
+    label_table,
     merging,
     outside_changes,
     scouts,
     season_log,
     tables,
+    treatments,
 )
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.merging import Merged
@@ -35,6 +38,7 @@ from fieldmon.monitoring.recorded_before import (
     said_before,
 )
 from fieldmon.monitoring.transactions import Store
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -45,6 +49,14 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
+
+
+#: why treatments do not count any more after merging, as `MergedCopy` has them
+_GONE = (
+    "counted here, but was undone there",
+    "counted there, but was undone here",
+    "counted in both, but each undid another recording of it",
+)
 
 
 @checked
@@ -368,19 +380,29 @@ class SeasonRecords(OpenSeason):
                 was = None if told else season_log.states(db)
                 # nobody writes there from here on
                 contradict = contradictions(other.inspections, held)
+                clock = local_clock(self.plot.field)
+                treated = [treatments.kept(one, self._inside, clock) for one in (db, theirs)]
                 taken = merging.merge(db, theirs)
             self._refresh(db)
             # what either copy took back or corrected contradicts nothing
             contradict = contradict.still(self._inspections(db))
             moved = bool(taken.numbers)
-            states = season_log.states(db)
+            states, labels = season_log.states(db), label_table.read(db)
+            here, there = treated
+            gone = [(one, why) for why, each, no_more in zip(_GONE, (here, there, here), taken.gone,
+                    strict=True) for one in each if one.number in no_more]  # fmt: skip
             if states != was:
+                undone = [f"{one.application.product or 'a product that nobody named'} on {one.on}"
+                          for one, why in gone if why != _GONE[1]]  # fmt: skip
                 season_log.append(
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
-                    moved=moved, numbers=taken.numbers,
+                    moved=moved, numbers=taken.numbers, undone=undone,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
-        said = *contradict.sentences(self.label), *taken.differing
+        undone_in_one = (
+            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in gone
+        )
+        said = *contradict.sentences(self.label), *taken.differing, *undone_in_one
         return Merged(
             taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
         )

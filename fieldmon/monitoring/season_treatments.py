@@ -24,6 +24,7 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Recorded
+from fieldmon.monitoring.cautions import RulesToKeep
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import written_in
@@ -196,13 +197,25 @@ class SeasonTreatments(OpenSeason):
 
         Sentences speak in `units`; None: the usual ones.
         """
+        return cautions.cautions(*self._held_to(units), on)
+
+    def cautions_because_of(
+        self, batch: int, on: date, units: Units | None = None
+    ) -> tuple[Caution, ...]:
+        """Return what to beware of on a day because of a treatment, later ones' uses among it.
+
+        Sentences speak in `units`; None: the usual ones.
+        """
+        done, rules = self._held_to(units)
+        return cautions.because_of(done, batch, rules, on)
+
+    def _held_to(self, units: Units | None) -> tuple[tuple[KeptTreatment, ...], RulesToKeep]:
+        """Return the treatments that count, and what they are held to."""
         with self._lock, self.store.reading() as db:  # all of one moment
             done = self._treatments(db)
             settings, labels = settings_of(db), label_table.read(db)
-        rules = cautions.RulesToKeep(labels, settings.harvest, settings.starts)
-        if units is not None:
-            rules = replace(rules, units=units)
-        return cautions.cautions(done, rules, on)
+        rules = RulesToKeep(labels, settings.harvest, settings.starts)
+        return done, rules if units is None else replace(rules, units=units)
 
     def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.

@@ -83,6 +83,8 @@ class KeptTreatment:
         The moment it ended: of what was said, or the end of its day.
     clock
         Of the plot.
+    groups_said
+        Whether people said the mode-of-action groups; False: a label did, or nobody knows.
     """
 
     number: int
@@ -94,6 +96,7 @@ class KeptTreatment:
     application: Application
     ended: datetime
     clock: LocalClock
+    groups_said: bool = True
 
     @property
     def entered_waits(self) -> WaitingPeriod:
@@ -218,6 +221,11 @@ def counting(db: sqlite3.Connection) -> list[frozenset[str]]:
     return [known_by(row) for row in _rows(db, "undone = 0")]
 
 
+def counted(rows: Iterable[Row]) -> dict[int, frozenset[str]]:
+    """Return what those of rows that count are known by, by their numbers."""
+    return {row["fid"]: known_by(row) for row in rows if row["undone"] == COUNTS}
+
+
 def settle(rows: Iterable[Row]) -> None:
     """Let the first of rows that are the same treatment count, and the others stand back for it."""
     counted: set[str] = set()
@@ -330,8 +338,9 @@ def _kept(row: dict[str, Any], inside: Inside, clock: LocalClock) -> KeptTreatme
     place = TreatedPlace(area, plants, row["area_ha"], by_plant)
     over = end_of(clock, on, None) if ended is None else ended
     return KeptTreatment(
-        row["fid"], row["batch"], row["day"], on, place, row["efficacy"], application, over, clock
-    )
+        row["fid"], row["batch"], row["day"], on, place, row["efficacy"], application, over, clock,
+        row["by_label"] is not None and "irac_groups" not in row["by_label"].split("+"),
+    )  # fmt: skip
 
 
 def _read(moment: str | None) -> datetime | None:

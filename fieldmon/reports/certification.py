@@ -18,7 +18,7 @@ import numpy as np
 from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.monitoring.cautions import groups, label_of, waits
 from fieldmon.reports import words
 from fieldmon.reports.content import (
     Block,
@@ -325,14 +325,15 @@ def _card(number: int, one: _PlotRecord, treatment: KeptTreatment) -> tuple[Bloc
 def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]:
     """Return what a certifier asks of a treatment, with its name; empty: not said."""
     said, place = treatment.application, treatment.place
-    period = waits(treatment, label_of(treatment, one.season.labels()))
+    label = label_of(treatment, one.season.labels())
+    period = waits(treatment, label)
     first, entry = period.harvest_from, period.entry_from
     times = [f"{at:%H:%M}" if at else "?" for at in (said.began, said.ended)]
     days = "" if period.days is None else counted(period.days, "day")
     return [
         (_F["product"], _plain(said.product)),
         (_F["ingredient"], _plain(said.active_ingredient)),
-        (_F["group"], "+".join(said.irac_groups)),
+        (_F["group"], "+".join(groups(treatment, label))),
         (_F["dose"], "" if said.dose is None else str(said.dose)),
         (_F["water"], "" if said.water_l_ha is None else figure(said.water_l_ha, ",g", " l/ha")),
         (_F["area"], "" if place.area_ha is None else one.units.square(place.area_ha * 1e4)),

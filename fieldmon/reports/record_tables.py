@@ -12,7 +12,7 @@ import numpy as np
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import faces
-from fieldmon.monitoring.cautions import label_of, waits
+from fieldmon.monitoring.cautions import groups, label_of, waits
 from fieldmon.monitoring.inspection_table import time_text
 
 if TYPE_CHECKING:
@@ -43,7 +43,8 @@ def _treatments(season: Season) -> Iterator[dict[str, object]]:
     with season.one_moment():
         labels, treatments = season.labels(), season.treatments()
     for one in treatments:
-        said, period = one.application, waits(one, label_of(one, labels))
+        said, label = one.application, label_of(one, labels)
+        period = waits(one, label)
         entry = period.entry_from
         yield {
             "plot": season.plot.field.name,
@@ -54,7 +55,7 @@ def _treatments(season: Season) -> Iterator[dict[str, object]]:
             "crop": said.crop,
             "product": said.product,
             "active_ingredient": said.active_ingredient,
-            "irac_group": "+".join(said.irac_groups),
+            "irac_group": "+".join(groups(one, label)),
             "dose": said.dose and said.dose.value,
             "unit": said.dose and said.dose.unit,
             "water_l_ha": said.water_l_ha,

@@ -56,6 +56,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.units import Units
     from fieldmon.monitoring import Season, Status
+    from fieldmon.monitoring.batches import Batch, BatchContents
 
 _LATE_DAYS = 7
 # as many as a page has room for beside its map
@@ -339,7 +340,7 @@ def _batches(facts: _Facts) -> Block:
     rows, clock = [], local_clock(facts.season.plot.field)
     for one in batches:
         kind = words.BATCH_KINDS[one.kind]
-        said = worded(words.BATCH_UNDONE, kind=kind) if one.undone else kind
+        said = _counts(one, kind, contents.get(one.number))
         at = clock.at(datetime.fromisoformat(one.at))
         when = f"{facts.units.day(at.date())} {at:%H:%M}"
         who = one.by(contents.get(one.number))
@@ -351,6 +352,17 @@ def _batches(facts: _Facts) -> Block:
         words.BATCHES, words.BATCH_COLUMNS, tuple(rows), (0.2, 0.24, 0.32, 0.14, 0.1),
         rest=words.BATCHES_REST, left=(0, 1, 2, 3),
     )  # fmt: skip
+
+
+def _counts(one: Batch, kind: str, said: BatchContents | None) -> str:
+    """Return what a batch is, and whether it counts."""
+    if one.undone:
+        return worded(words.BATCH_UNDONE, kind=kind)
+    if one.stands_back(said):
+        return worded(words.BATCH_ELSEWHERE, kind=kind)
+    if said is not None and one.kind == "findings" and said.counting < one.rows:
+        return worded(words.BATCH_PART, kind=kind, n=said.counting)
+    return kind
 
 
 def _treatments(facts: _Facts) -> Block:

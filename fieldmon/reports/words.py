@@ -111,6 +111,8 @@ BATCH_KINDS = {
 }
 BATCH_BROUGHT = "records brought"
 BATCH_UNDONE = "{kind}, taken back"
+BATCH_ELSEWHERE = "{kind}, counts in another recording"
+BATCH_PART = "{kind}, of which {n:,} {n:counts|count}"
 BATCHES_NONE = "Nothing was recorded yet."
 BATCHES_REST = "... and {n} earlier ones; fieldmon status --batches lists them."
 TREATMENTS = "Treatments"

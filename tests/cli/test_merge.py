@@ -28,6 +28,17 @@ def test_two_copies_are_merged_and_what_they_tell_differently_is_listed(run, sea
     assert "0 inspections were new" in out
 
 
+def test_a_treatment_that_both_recorded_is_marked_where_it_does_not_count(run, season, tmp_path):
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    for copy in (season, other):
+        run("treat", copy, "--efficacy", "0.8", "--product", "Oil", "--date", BEGINS)
+    run("merge", season, other)
+    _, out, _, _ = run("status", season, "--batches")
+    lines = [line for line in out.splitlines() if "  1 treatment  Oil" in line]
+    marked = [line.endswith("  (counts in another batch)") for line in lines]
+    assert marked == [True, False]
+
+
 def test_treatments_and_codes_that_came_in_are_counted_and_hours_have_a_unit(run, season, tmp_path):
     other = shutil.copy(season, tmp_path / "other.gpkg")
     run("change", season, "--hours", "1.5")

@@ -68,6 +68,21 @@ def test_what_was_applied_is_kept_and_what_to_beware_of_is_said(run, season, tmp
     assert "warning                Harvest on 2026-11-05 is too soon" in out
 
 
+def test_one_entered_late_warns_of_the_later_use_that_it_makes_one_too_many(run, season, tmp_path):
+    (tmp_path / "labels.csv").write_text("product,max uses\nAcarol,1\n")
+    run("labels", season, "labels.csv")
+    words = ["treat", season, "--efficacy", "0.8", "--product", "Acarol", "--date"]
+    later = "warning: Use 2 in this season on"
+    assert later not in run(*words, "2026-11-05")[2]
+    _, _, err, _ = run(*words, BEGINS)
+    assert later in err
+    assert "Acarol on 2026-11-05. Its label allows 1." in err
+    _, _, err, _ = run(*words, "2026-11-04", "--rows", "1")
+    assert "Acarol on 2026-11-05. Its label allows 1." in err
+    _, _, err, _ = run(*(word.replace("Acarol", "soap") for word in map(str, words)), BEGINS)
+    assert "Acarol" not in err
+
+
 def test_a_label_that_asks_for_longer_than_was_entered_counts(run, season, tmp_path):
     (tmp_path / "labels.csv").write_text("product,waiting days,re-entry hours\nAcarol,21,48\n")
     run("labels", season, "labels.csv")

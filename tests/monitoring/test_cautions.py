@@ -10,7 +10,7 @@ from fieldmon.compute.wording import counted
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.cautions import RulesToKeep, cautions, harvest_from
+from fieldmon.monitoring.cautions import RulesToKeep, cautions, groups, harvest_from
 from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
 from fieldmon.monitoring.waiting_periods import end_of
 from fieldmon.plot.local_clock import LocalClock
@@ -89,6 +89,25 @@ def test_a_row_of_uses_is_of_plants_and_not_of_the_plot():
     assert "on 4 plants" in one.sentence
 
 
+@pytest.mark.parametrize("said", [True, False])
+def test_groups_that_a_label_filled_in_follow_the_table_and_those_that_people_said_do_not(said):
+    two = [replace(treated(day, irac_groups=("6",)), groups_said=said) for day in (0, 3)]
+    now = replace(LABEL, irac_groups=("28",), max_uses=None)
+    last = treated(6, irac_groups=("28",))
+    assert groups(two[0], now) == (("6",) if said else ("6", "28"))
+    assert groups(replace(two[0], application=Application("Acarol")), now) == ("28",)
+    assert kinds([*two, last], [now]) == ([] if said else [("group", 7)])
+
+
+def test_what_ends_after_midnight_is_of_the_day_on_which_it_began():
+    night = treated(0, began=time(22), ended=time(2))
+    early, late = treated(1, ended=time(1)), replace(treated(1, ended=time(9)), batch=9)
+    night = replace(night, ended=end_of(CLOCK, BEGINS + timedelta(1), time(2)))
+    in_order = sorted([night, early, late], key=lambda one: one.ended)
+    assert in_order[1] is night
+    assert kinds(in_order, [LABEL]) == []
+
+
 def test_a_mixture_of_a_tank_is_one_use_of_each_of_its_groups():
     mixed = [treated(day, irac_groups=(group,)) for day in (0, 3, 6) for group in ("6", "28")]
     assert kinds(mixed) == [("group", 7), ("group", 7)]
@@ -155,10 +174,10 @@ def test_what_comes_after_the_day_is_not_looked_at():
 def test_rows_of_uses_are_those_that_each_plant_alone_had(seed):
     """The rule read out for each plant: days on which a group known was used, one after another."""
     rng = np.random.default_rng(seed)
-    groups = [(), ("6",), ("28",), ("6", "28"), ("4A",)]
+    known = [(), ("6",), ("28",), ("6", "28"), ("4A",)]
     done = [
         treated(int(day), rng.random(20) < 0.6, product="",
-                irac_groups=groups[rng.choice(5, p=[0.1, 0.5, 0.1, 0.25, 0.05])])
+                irac_groups=known[rng.choice(5, p=[0.1, 0.5, 0.1, 0.25, 0.05])])
         for day in sorted(rng.integers(0, 9, 11))
     ]  # fmt: skip
     done = [replace(one, batch=k) for k, one in enumerate(done)]

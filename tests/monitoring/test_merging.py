@@ -817,8 +817,11 @@ def test_treatments_of_three_copies_come_out_the_same_in_every_order(first):
             ours = copied(order[0])
             for each in order[1:]:
                 before = treatments.counting(ours)
-                n_new = merge(ours, each).treatments
-                known = frozenset().union(*before)
+                applied = [*before, *treatments.counting(each)]
+                done = merge(ours, each)
+                n_new, known = done.treatments, frozenset().union(*before)
+                now = frozenset().union(*treatments.counting(ours))
+                assert any(done.gone) == any(marks.isdisjoint(now) for marks in applied)
                 assert n_new == sum(not marks & known for marks in treatments.counting(ours))
             rows = content(ours)["treatments"]
             for each in order:
@@ -919,3 +922,54 @@ def test_another_season_is_no_copy_of_this_one(path, tmp_path):
         assert db.execute("PRAGMA quick_check").fetchone() == ("ok",)
     assert Season(path).batches() == Season(path).batches()
     assert len(path.read_bytes()) == len(before)
+
+
+def test_a_spraying_undone_in_one_copy_is_named_with_the_wait_that_ends(path, other):
+    here = Season(path)
+    here.treat(BEGINS, 0.5, application=replace(SPRAYED, waiting_days=14))
+    there = Season(shutil.copy(path, other))
+    there.undo()
+    done = there.merge(here)
+    said = (
+        f"The treatment with Acarol on {BEGINS} counted {{}}, but was undone {{}}: it does not "
+        f"count, nor do its warnings and its wait (harvest from {BEGINS + timedelta(days=15)}). "
+        f"If it was done, record it again with: fieldmon treat"
+    )
+    assert done.contradictions == (said.format("there", "here"),)
+    n = len(there.log())
+    done = here.merge(there)
+    assert done.contradictions == (said.format("here", "there"),)
+    assert here.treatments() == ()
+    assert f"; undone there: Acarol on {BEGINS}" in here.log()[-1].sentence()
+    assert (here.merge(there).contradictions, len(there.log())) == ((), n)
+    here.treat(BEGINS, 0.5, application=replace(SPRAYED, waiting_days=14))
+    assert there.merge(here).contradictions == ()
+    assert len(there.treatments()) == 1
+
+
+@pytest.mark.parametrize("way", ["here", "there"])
+def test_a_spraying_that_both_recorded_is_named_where_each_undid_another_recording(
+    path, other, way
+):
+    for copy in (path, other):
+        Season(copy).treat(BEGINS, 0.5, application=SPRAYED)
+    here = Season(path)
+    here.merge(Season(other))
+    there = Season(shutil.copy(path, other))
+    first, second = sorted(one.number for one in here.batches() if one.kind == "treatment")
+    here.undo(first)
+    there.undo(second)
+    one, another = (here, there) if way == "here" else (there, here)
+    done = one.merge(another)
+    said = (
+        f"The treatment with Acarol on {BEGINS} counted in both, but each undid another recording "
+        f"of it: it does not count, nor do its warnings. If it was done, record it again with: "
+        f"fieldmon treat"
+    )
+    assert done.contradictions == (said,)
+    assert f"; undone there: Acarol on {BEGINS}" in one.log()[-1].sentence()
+    assert one.treatments() == ()
+    one.treat(BEGINS, 0.5, application=SPRAYED)
+    assert one.merge(another).contradictions == ()
+    another.merge(one)
+    assert (len(one.treatments()), len(another.treatments())) == (1, 1)

@@ -212,3 +212,20 @@ def test_cautions_and_harvest_are_of_treatments_up_to_the_day(season):
     assert (first, one.day) == (on(10), 2)
     first, one = season.harvest_from(on(6))
     assert (first, one.day) == (on(14), 6)
+
+
+def test_a_group_that_the_label_filled_in_follows_the_newest_table(season):
+    """The table named another group at first: three uses in a row are warned of all the same."""
+    duo = ProductLabel("Duo", irac_groups=("6",))
+    season.keep_labels([duo])
+    for day, said in enumerate(((), (), ("6",))):
+        season.treat(on(day), 0.5, application=Application("Duo", irac_groups=said))
+    season.keep_labels([replace(duo, irac_groups=("28",))])
+    season.treat(on(3), 0.5, application=Application("Duo"))
+    told = [one.sentence for one in season.cautions(on(3)) if one.kind == "group"]
+    assert len(told) == 1
+    assert "Use 3 of mode-of-action group 6 in a row" in told[0]
+    season.undo(season.treatments()[2].batch)  # of which somebody said the group
+    told = [one.sentence for one in season.cautions(on(3)) if one.kind == "group"]
+    assert len(told) == 1
+    assert "Use 3 of mode-of-action group 28 in a row" in told[0]

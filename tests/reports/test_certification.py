@@ -37,6 +37,7 @@ def season(tmp_path_factory):
         said = FULL if not day else replace(FULL, product="Oil", dose=None)
         made.treat(BEGINS + timedelta(day), 0.8, application=said)
     made.treat(BEGINS + timedelta(5), 0.5, product="soap")
+    made.keep_labels([*made.labels(), ProductLabel("soap", irac_groups=("28",))])
     return made
 
 
@@ -66,6 +67,7 @@ def test_every_field_that_globalgap_asks_for_stands_there(made):
     assert (first["Waiting period"], first["Harvest from"]) == ("7 days", "2026-04-14")
     assert first["Entry from"] == "2026-04-06 21:30"
     assert last["Operator"] == last["Dose"] == last["Waiting period"] == "not said"
+    assert (first["Mode of action (IRAC)"], last["Mode of action (IRAC)"]) == ("6", "28")
     said = " ".join(made.words())
     assert f"Reason: {REASON}" in said
     assert "Advised: Treat: 6 % of the plants are believed infested. (2026-04-06)" in said

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from dataclasses import replace
 from datetime import date, time
 
 import numpy as np
@@ -32,6 +33,7 @@ def season(tmp_path_factory):
     made.record(some_results(made, n=4, found=[2]), "monday.csv", "Ann")
     made.keep_labels([ProductLabel("Acarol", waiting_days=3, reentry_hours=12.0)])
     made.treat(BEGINS, 0.8, application=FULL)
+    made.keep_labels([replace(*made.labels(), irac_groups=("6",))])
     return made
 
 
@@ -47,6 +49,7 @@ def test_a_treatment_has_what_a_certifier_asks_and_the_labels_wait(season):
     assert one["entry_from"] == "2026-04-06 21:00"
     assert float(one["area_ha"]) == pytest.approx(438 * 12.0 / 1e4, abs=1e-3)
     assert int(one["plants"]) == len(season.plot.grid)
+    assert one["irac_group"] == "6"  # of a table that came later
     assert one["machinery"] == ""
 
 
@@ -67,7 +70,7 @@ def test_inspections_and_log_are_there_line_by_line(season):
     place = [float(here["lon"]), float(here["lat"])]
     assert place == pytest.approx(season.plot.grid.lonlat(np.array([found]))[0], abs=1e-7)
     log = read(log_table(season))
-    assert [line["what"] for line in log] == ["begins", "seen", "labels", "treated"]
+    assert [line["what"] for line in log] == ["begins", "seen", "labels", "treated", "labels"]
     assert log[-1]["digest"] == season.log()[-1].digest
     assert read(log_table(season), log_table(season)) == [*log, *log]
 

@@ -1,5 +1,6 @@
 """A season on four pages: its figures are the season's."""
 
+import shutil
 from dataclasses import replace
 from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
@@ -12,6 +13,7 @@ from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.grid import row_label
 from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
@@ -106,6 +108,26 @@ def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season
     assert settings["Spread to a neighbour, a night"] == ("2 %", "assumed")
     assert settings["Working hours"] == ("1.5", "chosen")
     assert len(one(of_season, Listing, "How the numbers are meant").sentences) == 6
+
+
+def test_what_two_copies_both_recorded_is_said_to_count_once(tmp_path):
+    here = a_season(tmp_path / "season.gpkg")
+    there = Season(shutil.copy(here.path, tmp_path / "other.gpkg"))
+    results = some_results(here, n=4)
+    here.record(results.take(slice(0, 3)), "ann.csv")
+    there.record(results.take(slice(0, 2)), "both.csv")
+    there.record(results.take(slice(2, 4)), "part.csv")
+    for copy in (here, there):
+        copy.treat(BEGINS, 0.5, product="Oil")
+    here.merge(there)
+    rows = table(season_report(here, BEGINS, Units()), "What was recorded").rows[:-1]
+    assert [row[1:3] for row in rows] == [
+        ("treatment, counts in another recording", "Oil"),
+        ("treatment", "Oil"),
+        ("inspections, of which 1 counts", "part.csv"),
+        ("inspections, counts in another recording", "both.csv"),
+        ("inspections", "ann.csv"),
+    ]
 
 
 def test_a_season_just_begun_has_four_pages_too(tmp_path):

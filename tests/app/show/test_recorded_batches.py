@@ -1,5 +1,6 @@
 """What was recorded, so that a person can tell one batch from the others."""
 
+import shutil
 from datetime import date
 
 import numpy as np
@@ -7,7 +8,7 @@ from shapely import MultiPolygon, box
 
 from app.show.recorded_batches import in_short, source
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
-from fieldmon.monitoring import Application
+from fieldmon.monitoring import Application, Season
 from fieldmon.plot.grid import row_label
 from tests.app.driving import go
 
@@ -34,6 +35,17 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     assert said[2] == f"typed in · {second}: could not inspect · inspected Mon 16 Nov · Ann"
     assert said[3] == f"typed in · {first}: found · inspected Mon 16 Nov"
     assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:4]}
+
+
+def test_what_counts_in_another_recording_is_told_from_what_counts(season_app, season, tmp_path):
+    kept = season()
+    other = Season(shutil.copy(kept.path, tmp_path / "other.gpkg"))
+    for one in (kept, other):
+        one.treat(date(2026, 11, 16), 0.5, product="Oil")
+    kept.merge(other)
+    go(season_app, "record")
+    lines = [one.value for one in season_app.markdown if "Oil" in one.value and " · " in one.value]
+    assert [line.endswith("counts in another recording") for line in lines] == [True, False]
 
 
 def test_ways_to_record_are_said_in_the_language_of_the_page_and_files_by_their_names(speaking):

@@ -357,7 +357,7 @@ def treatment_table(
         )
     table = Table(
         words.TREATMENTS, words.TREATMENT_COLUMNS, tuple(rows), (0.18, 0.34, 0.14, 0.14, 0.2),
-        rest=words.TREATMENTS_REST, left=(0, 1),
+        rest=words.EARLIER_REST, left=(0, 1),
     )  # fmt: skip
     return [table] if rows else []
 

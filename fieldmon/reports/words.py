@@ -56,6 +56,7 @@ EVERY_COLUMNS = ("stop", "arrive", "row", "plant", "chance %")
 TICK, WAS, RESULTS = "found?", "result", {0: "clean", 1: "found", 2: "could not inspect", -1: ""}
 FOUND_BY_ROW, FOUND_COLUMNS = "Found that day, by row", ("row", "plants found")
 FOUND_REST = "... and {n} more rows."
+REST, EARLIER_REST = "... and {n} more.", "... and {n} earlier."
 NOTES = "Notes"
 
 # -- the season
@@ -116,7 +117,6 @@ BATCHES_REST = "... and {n} earlier ones; fieldmon status --batches lists them."
 TREATMENTS = "Treatments"
 TREATMENT_COLUMNS = ("day", "product", "plants", "works on", "harvest from")
 TREATMENTS_NONE = "No treatment was noted."
-TREATMENTS_REST = "... and {n} earlier ones."
 ASSUMED = "Assumed, though nobody said so: {what}."
 ROWS_APART, PLANTS_APART = "From row to row", "From plant to plant"
 SAMPLER, HOURS = "Who chooses the plants", "Working hours"

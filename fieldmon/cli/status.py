@@ -194,9 +194,12 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
 
 def _planned_only(season: Season, until: date) -> Iterator[str]:
     """Yield which planned days nothing is recorded of."""
+    from fieldmon.compute.wording import counted
+
     if missing := season.planned_only(until):
         some = ", ".join(map(str, missing[-_PLANNED_ONLY:]))
-        more = f"{len(missing) - _PLANNED_ONLY} days and " if len(missing) > _PLANNED_ONLY else ""
+        n = len(missing) - _PLANNED_ONLY
+        more = f"{counted(n, 'day')} and " if n > 0 else ""
         yield f"  planned, not recorded  {more}{some}"
         yield f"  {'':22} Record it; if nobody went, record one stop as skipped."
 

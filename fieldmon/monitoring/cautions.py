@@ -94,7 +94,8 @@ def cautions(
         *_uses(said, rules.units),
         *(caution for one, label in said for caution in _of_dose(one, label, rules)),
     ]
-    return tuple(sorted(found[::-1], key=lambda one: _URGENT.index(one.kind)))
+    found.reverse()
+    return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
 
 
 def label_of(one: KeptTreatment, labels: Iterable[ProductLabel]) -> ProductLabel | None:

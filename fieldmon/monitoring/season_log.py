@@ -15,7 +15,7 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.compute.wording import estimate, worded
+from fieldmon.compute.wording import estimate, filled, worded, written
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import schema, settings_log
 from fieldmon.monitoring.geopackage import touch
@@ -77,7 +77,7 @@ class LogEntry:
             more = ["..."] if len(said) > _MOST_NAMED else []
             what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
-        return _SAID[self.kind].format_map(what) + anew
+        return filled(_SAID[self.kind], what) + anew
 
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""
@@ -93,14 +93,16 @@ _SAID = {
     "begins": "the log begins: {why}",
     "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
     "batch {batch}",
-    "planned": "{date}: {stops} stops by {sampler}, about {expected} of them visibly infested",
+    "planned": "{date}: {stops} {stops:stop|stops} by {sampler}, "
+    "about {expected} of them visibly infested",
     "advised": "{date}: {said}",
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",
     "corrected": "changes of another program taken as corrections: {rows}",
     "changed": "settings: {said}",
-    "labels": "{labels} labels from {source}",
-    "merged": "another copy of the season taken in: {new} inspections, {entries} entries",
+    "labels": "{labels} {labels:label|labels} from {source}",
+    "merged": "another copy of the season taken in: {new} {new:inspection|inspections}, "
+    "{entries} {entries:entry|entries}",
     "saved": "saved from a damaged file",
 }
 
@@ -496,5 +498,6 @@ def lines(of: Sequence[LogEntry], clock: LocalClock) -> Iterator[str]:
         head = f"{entry.number:5d}  {at:%Y-%m-%dT%H:%M}  {entry.kind:9}  {who:12}"
         yield f"{head}  {entry.sentence()}"
     if of:
-        n = "1 entry" if len(of) == 1 else f"{len(of)} entries"
-        yield f"{n}, the chain holds; the last digest is {of[-1].digest}"
+        n = len(of)
+        entries_ = written(n, "entry|entries")
+        yield f"{n} {entries_}, the chain holds; the last digest is {of[-1].digest}"

@@ -373,7 +373,7 @@ def _found(facts: DayFacts) -> Table:
         for line in np.unique(label.line).tolist()
     )
     return Table(
-        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=2, rest=words.FOUND_REST,
+        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=2, rest=words.REST,
         left=(1,),
     )  # fmt: skip
 
@@ -393,7 +393,10 @@ def _every_stop(facts: DayFacts) -> TickList:
     return TickList(
         words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),
         tuple(
-            (f"{k}", _clock(facts, s, "%H:%M:%S"), signs[line], f"{number}", f"{chance:.1f}", end)
+            (
+                f"{k}", _clock(facts, s, "%H:%M:%S"), signs[line], f"{number}",
+                figure(chance, ".1f"), end,
+            )
             for k, s, line, number, chance, end in rows
         ),
     )  # fmt: skip

@@ -306,7 +306,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
         rows.append((row, f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,
-        rest=words.FOUND_REST, left=(2,),
+        rest=words.REST, left=(2,),
     )  # fmt: skip
 
 

@@ -153,6 +153,19 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     assert list(season_log.lines(log, CLOCK))[-1].endswith(log[-1].digest)
 
 
+def test_the_log_speaks_of_one_thing_as_of_one():
+    one = {"stops": 1, "labels": 1, "new": 1, "entries": 1, "source": "a.csv", "said": "x"}
+    told = [
+        season_log.LogEntry(1, "", kind, "", one, "").sentence()
+        for kind in ("planned", "labels", "merged")
+    ]
+    assert told == [
+        "?: 1 stop by ?, about ? of them visibly infested",
+        "1 label from a.csv",
+        "another copy of the season taken in: 1 inspection, 1 entry",
+    ]
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

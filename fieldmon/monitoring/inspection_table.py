@@ -17,6 +17,7 @@ from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.replaced import as_it_was
 from fieldmon.monitoring.transactions import copy_season
+from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -69,7 +70,7 @@ def rows(
     """
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()
-    number = {day: _day(day, dates, plants, label, settings) for day in sorted(set(dates))}
+    number = {day: _day(day, dates, plants, grid, settings) for day in sorted(set(dates))}
     columns = zip(
         point_blobs(grid.lonlat(plants)),
         plants.tolist(),
@@ -96,18 +97,18 @@ def _day(
     on: date,
     dates: list[date],
     plants: NDArray[np.int32],
-    label: RowLabel,
+    grid: PlantGrid,
     settings: MonitoringSettings,
 ) -> int:
     """Return the number of a day; raise `SettingError` with its first plant if there is none."""
     try:
         return settings.day(on)
     except SettingError as error:
-        plant = plants[dates.index(on)]
-        line, number = int(label.line[plant]), int(label.number[plant])
+        (line,), (number,) = row_label(grid, plants[[dates.index(on)]])
         said = worded(
-            "Row {line}, plant {number}: {said}", line=line, number=number, said=error.args[0]
-        )
+            "Row {line}, plant {number}: {said}",
+            line=grid.row_signs[int(line)], number=int(number), said=error.args[0],
+        )  # fmt: skip
         raise SettingError(said) from None
 
 

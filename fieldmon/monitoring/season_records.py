@@ -154,7 +154,7 @@ class SeasonRecords(OpenSeason):
             who = as_written(known, who)
             if not confirmed and brought:
                 every = reduce(Inspections.and_those, [told for told, _ in brought])
-                contradictions(every, held).refuse(self.label)
+                contradictions(every, held).refuse(self.plot.grid)
             for (told, source), n in zip(brought, taken, strict=True):
                 inspections = _by_those_known(known, told)
                 batch, news = self._add(db, inspections, held, (source, who, into))
@@ -381,7 +381,7 @@ class SeasonRecords(OpenSeason):
                     moved=moved,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
-        said = *contradict.sentences(self.label), *taken.differing
+        said = *contradict.sentences(self.plot.grid), *taken.differing
         return Merged(
             taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
         )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
-from contextlib import closing
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -16,13 +14,11 @@ from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.replaced import as_it_was
-from fieldmon.monitoring.transactions import copy_season
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    import sqlite3
     from datetime import date
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -33,20 +29,6 @@ _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 # of a digest
 _LENGTH = 24
-
-
-def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
-    """Return a copy of a season with only the inspections that were not undone there.
-
-    Rows `besides` them are left out too.
-    """
-    copy = folder / season.name
-    copy_season(season, copy)
-    with closing(sqlite3.connect(copy)) as db:
-        db.execute("DELETE FROM inspections WHERE undone <> 0")
-        db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
-        db.commit()
-    return copy
 
 
 def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:

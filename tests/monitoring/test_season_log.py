@@ -118,6 +118,17 @@ def test_nothing_is_written_on_a_changed_past(path):
             act()
 
 
+def test_nothing_is_recorded_on_rows_that_were_changed_unnoticed(path):
+    Season(path).treat(BEGINS, 0.5)
+    by_hand(path, "SELECT 1")
+    assert Season(path).record(three_results(), "held to the log, and whole").new == 3
+    by_hand(path, "UPDATE treatments SET waiting_days = 1")
+    season = Season(path)
+    for act in (lambda: season.treat(BEGINS, 0.5), season.undo):
+        with pytest.raises(FileProblem, match="Row 1 of the layer treatments is not what was"):
+            act()
+
+
 def test_what_another_program_changes_in_the_log_is_noticed_as_elsewhere(path):
     with closing(sqlite3.connect(path)) as db:
         db.execute("DELETE FROM log WHERE fid = 2")

@@ -270,7 +270,7 @@ def ask_about_contradictions(choices: Choices) -> None:
     if waiting is None:
         return
     season = choices.season
-    said = season.contradictions(waiting.results).sentences(season.label)
+    said = season.contradictions(waiting.results).sentences(season.plot.grid)
     if not said:  # what they contradicted was taken back since
         _ask_anew(choices, waiting)
         return

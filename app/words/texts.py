@@ -158,7 +158,7 @@ RECORDS_ON_MAP = (
     "Which of these is right? *Plot & data* shows on the map where the records then lie, with a "
     "ring round each find. Click it there, or choose here."
 )
-ANSWER_RECORDS = "{near} of {n} on the plot, {found} finds"
+ANSWER_RECORDS = "{near} of {n} on the plot, {found} {found:find|finds}"
 ANSWERS_OF_RECORDS_ALT = Plural(
     "Map of plot {name}: {n} place where the records could lie.",
     "Map of plot {name}: {n} places where the records could lie.",

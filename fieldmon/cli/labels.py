@@ -45,14 +45,17 @@ def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
 
 
 def _line(one: ProductLabel) -> str:
+    from fieldmon.compute.wording import counted, written
+
+    uses = written(one.max_uses, "use|uses")
     said = [
         f"on {one.crop}" if one.crop else "",
         f"against {one.pest}" if one.pest else "",
         f"at most {one.max_dose}" if one.max_dose else "",
-        "" if one.waiting_days is None else f"{one.waiting_days} days until harvest",
+        "" if one.waiting_days is None else f"{counted(one.waiting_days, 'day')} until harvest",
         "" if one.reentry_hours is None else f"{one.reentry_hours:g} h until re-entry",
         f"group {'+'.join(one.irac_groups)}" if one.irac_groups else "",
-        "" if one.max_uses is None else f"{one.max_uses} uses a season",
+        "" if one.max_uses is None else f"{one.max_uses} {uses} a season",
         f"({one.source})" if one.source else "",
     ]
     return f"{one.product}: " + ", ".join(part for part in said if part)

@@ -8,7 +8,6 @@ import typer
 
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.waiting import counting
-from fieldmon.errors import FileProblem
 
 AllMornings = Annotated[
     bool,
@@ -31,17 +30,13 @@ def log(
     Example: fieldmon log season.gpkg
     """
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.outside_changes import refuse_unlike_log
     from fieldmon.monitoring.season_log import lines
     from fieldmon.plot.local_clock import local_clock
 
     kept = Season(season)
     typer.echo("\n".join(lines(kept.log(), local_clock(kept.plot.field))))
-    wrong = kept.held_to_log()
-    if wrong:
-        raise FileProblem(
-            f"The file must say what its log says, but it does not: {' '.join(wrong)} Go back to a "
-            "copy from before."
-        )
+    refuse_unlike_log(kept.held_to_log())
     whole = mornings or kept.is_short
     with counting("Mornings worked out again") as count:
         said = kept.other_maps(whole=whole, tell=count)

@@ -286,7 +286,7 @@ def _tell(rows: dict[str, Row], folder: Path) -> None:
         typer.echo(line, err=True)
     stops = sum(int(row["stops"]) for row in planned)
     typer.echo(
-        f"{len(planned)} of {len(rows)} plots planned, {counted(stops, 'plant')} in "
+        f"{len(planned)} of {counted(len(rows), 'plot')} planned, {counted(stops, 'plant')} in "
         f"{sum(float(row['hours']) for row in planned):.0f} h. Routes and {SUMMARY} in {folder}"
     )
 

@@ -188,7 +188,7 @@ def _season(
     if apart:
         visits = counted(settings.visits, "visit")
         typer.echo(
-            f"{visits} in {settings.n_days} days, {worked_s / 3600:.1f} h worked, "
+            f"{visits} in {counted(settings.n_days, 'day')}, {worked_s / 3600:.1f} h worked, "
             f"{inspected / settings.visits:.0f} plants inspected a visit, {plant_days} infested "
             "plant-days"
         )

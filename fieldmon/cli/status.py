@@ -85,7 +85,8 @@ def _contradicting(season: Season, on: date) -> Iterator[str]:
             f"{RESULT_NAMES[result]} ({who})" if who else RESULT_NAMES[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         )
-        place = f"row {season.label.line[plant]}, plant {season.label.number[plant]}"
+        row = season.plot.grid.row_signs[int(season.label.line[plant])]
+        place = f"row {row}, plant {season.label.number[plant]}"
         yield f"  contradiction          {place}: {each}"
     if (more := len(plants) - _CONTRADICTING) > 0:
         yield f"  {'':22} and {more} more"
@@ -106,7 +107,8 @@ def _show_batches(kept: Season) -> None:
         if said is not None and batch.kind == "treatment":
             what = f"  {counted(said.n, 'plant')}, {said.first}"
         elif said is not None and said.n == batch.rows == 1:
-            what = f"  row {said.row}, plant {said.plant}: {said.result}"
+            row = kept.plot.grid.row_signs.get(said.row, said.row)
+            what = f"  row {row}, plant {said.plant}: {said.result}"
         elif said is not None and (batch.undone or said.counting == batch.rows):
             what = f"  {said.found} found"
         elif said is not None:
@@ -196,9 +198,12 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
 
 def _planned_only(season: Season, until: date) -> Iterator[str]:
     """Yield which planned days nothing is recorded of."""
+    from fieldmon.compute.wording import counted
+
     if missing := season.planned_only(until):
         some = ", ".join(map(str, missing[-_PLANNED_ONLY:]))
-        more = f"{len(missing) - _PLANNED_ONLY} days and " if len(missing) > _PLANNED_ONLY else ""
+        n = len(missing) - _PLANNED_ONLY
+        more = f"{counted(n, 'day')} and " if n > 0 else ""
         yield f"  planned, not recorded  {more}{some}"
         yield f"  {'':22} Record it; if nobody went, record one stop as skipped."
 

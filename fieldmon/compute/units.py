@@ -77,9 +77,13 @@ class Units:
         return tuple(round(value_m / LENGTHS[self.length], 1) for value_m in values_m)
 
     def square(self, value_m2: float) -> str:
-        """Return an area; a small one in as many digits as say anything."""
+        """Return an area in three digits at least, so that parts add up.
+
+        >>> Units().square(150.0), Units().square(2884.0), Units().square(123456.0)
+        ('0.015 ha', '0.288 ha', '12.35 ha')
+        """
         value = value_m2 / AREAS_M2[self.area]
-        return in_unit(value, ",.2f" if value >= 0.01 or value <= 0 else ".2g", self.area)
+        return in_unit(value, ",.2f" if value >= 0.9995 or value <= 0 else ".3g", self.area)
 
     @property
     def one_area(self) -> Worded:

@@ -74,7 +74,7 @@ def filled(words: str, values: Mapping[str, Any]) -> str:
     # others are many times as fast
     if "%}" in words or "|" in words:
         return _Blanks().vformat(words, (), values)
-    return words.format(**values)
+    return words.format_map(values)
 
 
 def worded(words: str, **values: Any) -> Worded:  # noqa: ANN401 - whatever can be written
@@ -134,15 +134,15 @@ def share_figure(share: float) -> Worded:
     return figure(100 * share, ".2g", " %") if 0 < share < 0.01 else figure(share, ".0%")
 
 
-def litres_figure(litres: float, after: str = "") -> Worded:
-    """Return litres as whole ones; few in as many digits as say anything; `after` as in `figure`.
+def litres_figure(litres: float) -> Worded:
+    """Return litres as whole ones; few in as many digits as say anything.
 
     Examples
     --------
-    >>> litres_figure(1234.5), litres_figure(1.44), litres_figure(0.0312, " l")
-    ('1,234', '1.4', '0.031 l')
+    >>> litres_figure(1234.5), litres_figure(1.44), litres_figure(0.0312)
+    ('1,234', '1.4', '0.031')
     """
-    return figure(litres, ",.0f" if litres >= 10 or litres <= 0 else ".2g", after)
+    return figure(litres, ",.0f" if litres >= 10 or litres <= 0 else ".2g")
 
 
 def hours_figure(value_h: float) -> Worded:

@@ -68,7 +68,9 @@ class Dose:
 
     def __str__(self) -> str:
         """Return it as people write it."""
-        return f"{self.value:g} {self.unit}"
+        if self.unit == "%":  # whose place is each language's own
+            return worded("{value:g} %", value=self.value)
+        return worded("{value:g} {unit}", value=self.value, unit=self.unit)
 
     @classmethod
     def of(cls, text: str, called: str = "A dose") -> Dose:

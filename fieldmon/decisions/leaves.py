@@ -59,15 +59,18 @@ def _counted(plan: IwaoPlan, leaves: int, counted: float, verdict: Verdict) -> s
     said = {"leaves": leaves, "counted": counted}
     if verdict == TREAT:
         return worded(
-            "{leaves} leaves, {counted:g} counted: treat (Iwao's plan, 90 % sure).", **said
+            "{leaves} {leaves:leaf|leaves}, {counted:g} counted: treat (Iwao's plan, 90 % sure).",
+            **said,
         )
     if verdict == LEAVE:
         return worded(
-            "{leaves} leaves, {counted:g} counted: do not treat (Iwao's plan, 90 % sure).", **said
+            "{leaves} {leaves:leaf|leaves}, {counted:g} counted: do not treat (Iwao's plan, 90 % "
+            "sure).",
+            **said,
         )
     return worded(
-        "{leaves} leaves, {counted:g} counted: keep inspecting; after {more} more you can decide "
-        "at the earliest (Iwao's plan, 90 % sure).",
+        "{leaves} {leaves:leaf|leaves}, {counted:g} counted: keep inspecting; after "
+        "{more} more you can decide at the earliest (Iwao's plan, 90 % sure).",
         more=least_more(plan, leaves, counted), **said,
     )  # fmt: skip
 
@@ -81,15 +84,16 @@ def _by_presence(threshold: Threshold, leaves: int, infested: int) -> str:
     }  # fmt: skip
     if band.low >= threshold.level:
         return worded(
-            "{leaves} leaves, {infested} infested: {mean:.1f} animals a leaf ({low:.1f} to "
-            "{high:.1f}, by all published laws): treat.", **said,
+            "{leaves} {leaves:leaf|leaves}, {infested} infested: {mean:.1f} animals a leaf "
+            "({low:.1f} to {high:.1f}, by all published laws): treat.", **said,
         )  # fmt: skip
     if band.high < threshold.level:
         return worded(
-            "{leaves} leaves, {infested} infested: {mean:.1f} animals a leaf ({low:.1f} to "
-            "{high:.1f}, by all published laws): do not treat.", **said,
+            "{leaves} {leaves:leaf|leaves}, {infested} infested: {mean:.1f} animals a leaf "
+            "({low:.1f} to {high:.1f}, by all published laws): do not treat.", **said,
         )  # fmt: skip
     return worded(
-        "{leaves} leaves, {infested} infested: {mean:.1f} animals a leaf ({low:.1f} to "
-        "{high:.1f}, by all published laws): keep inspecting, or count the animals.", **said,
+        "{leaves} {leaves:leaf|leaves}, {infested} infested: {mean:.1f} animals a leaf "
+        "({low:.1f} to {high:.1f}, by all published laws): keep inspecting, or count the animals.",
+        **said,
     )  # fmt: skip

@@ -6,7 +6,6 @@ from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Batch, Recorded
 from fieldmon.monitoring.cautions import Caution
 from fieldmon.monitoring.day_figures import DayFigures, PlannedAndDone, Progress
-from fieldmon.monitoring.inspection_table import counting_copy
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.outside_changes import OutsideChange
 from fieldmon.monitoring.recorded_before import Contradictions
@@ -46,7 +45,6 @@ __all__ = [
     "Store",
     "TreatmentEffect",
     "copy_season",
-    "counting_copy",
     "day_was_worked",
     "is_season",
     "kept_open",

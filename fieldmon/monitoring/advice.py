@@ -110,7 +110,7 @@ class AdviceSettings:
             "infested_plant_day": worded(
                 "an infested plant loses {loss:,.10g} a day", loss=costs.infested_plant_day
             ),
-            "days": worded("it stays infested for {days:g} days", days=costs.days),
+            "days": worded("it stays infested for {days:g} {days:day|days}", days=costs.days),
             "works": worded("treating cleans {works:.0%}", works=costs.works),
         }  # fmt: skip
         learnt = said.pop("works") if self.learnt_of else ""

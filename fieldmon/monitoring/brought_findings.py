@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,10 +11,11 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.options import Upload, source_name
 from fieldmon.monitoring import findings
 from fieldmon.monitoring.batches import Recorded
-from fieldmon.monitoring.inspection_table import counting_copy
-from fieldmon.monitoring.transactions import MAGIC, copy_season, is_season
+from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.options import Source
     from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -50,6 +52,21 @@ class BroughtFile:
     saved: PhoneFile | None = None
     copy: Path | None = None
     corrections: int = 0
+
+
+def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
+    """Return a copy of a season with only the inspections that were not undone there.
+
+    Rows `besides` them are left out too.
+    """
+    copy = folder / season.name
+    copy_season(season, copy)
+    with closing(connect(copy)) as db:
+        db.execute("BEGIN")
+        db.execute("DELETE FROM inspections WHERE undone <> 0")
+        db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
+        db.execute("COMMIT")
+    return copy
 
 
 def read_brought(

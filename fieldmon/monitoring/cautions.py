@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 _Wait = TypeVar("_Wait", int, float)
 #: uses of one mode-of-action group after another that breed resistance
 MOST_IN_A_ROW = 2
+# kinds of caution, the most urgent first
+_URGENT = ("entry", "harvest", "dose", "uses", "group", "waiting", "label")
 
 
 @dataclass(frozen=True)
@@ -76,19 +78,25 @@ class RulesToKeep:
 def cautions(
     treatments: Sequence[KeptTreatment], rules: RulesToKeep, on: date
 ) -> tuple[Caution, ...]:
-    """Return what to beware of on a day, after the treatments up to it.
+    """Return what to beware of on a day, after the treatments up to it, the most urgent first.
+
+    Of one kind, that of the last treatment comes first; a wait that is known to be too long comes
+    before one that nobody said.
 
     Those whose mode-of-action group nobody said are no use of any group, and end no row of uses.
     """
     # one that went on over midnight is of the day on which it began
     done = sorted((one for one in treatments if one.on <= on), key=lambda one: one.on)
     said = [(one, label_of(one, rules.labels)) for one in done]
-    return (
+    found = [
+        *(caution for one, label in said for caution in _unsaid_wait(one, label, rules)),
         *(caution for one, label in said for caution in _of_waits(one, label, rules, on)),
         *_groups_in_a_row(said, rules.units),
         *_uses(said, rules.units),
         *(caution for one, label in said for caution in _of_dose(one, label, rules)),
-    )
+    ]
+    found.reverse()
+    return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
 
 
 def because_of(
@@ -179,27 +187,32 @@ def _named(one: KeptTreatment, units: Units) -> dict[str, str]:
     return {"product": product, "day": units.day(one.on)}
 
 
+def _unsaid_wait(
+    one: KeptTreatment, label: ProductLabel | None, rules: RulesToKeep
+) -> Iterator[Caution]:
+    known = waits(one, label).harvest_from is not None
+    if rules.harvest is not None and one.on <= rules.harvest and not known:
+        said = worded(
+            "How long to wait from {product} on {day} until the harvest on {harvest} was not "
+            "said. Look at its label.",
+            harvest=rules.units.day(rules.harvest), **_named(one, rules.units),
+        )  # fmt: skip
+        yield Caution("harvest", said, one.batch)
+
+
 def _of_waits(
     one: KeptTreatment, label: ProductLabel | None, rules: RulesToKeep, on: date
 ) -> Iterator[Caution]:
     period, named = waits(one, label), _named(one, rules.units)
     first, entry = period.harvest_from, closed_until(one, label, rules.starts, on)
-    if rules.harvest is not None and one.on <= rules.harvest:
-        harvest = rules.units.day(rules.harvest)
-        if first is None:
-            said = worded(
-                "How long to wait from {product} on {day} until the harvest on {harvest} was not "
-                "said. Look at its label.", harvest=harvest, **named,
-            )  # fmt: skip
-            yield Caution("harvest", said, one.batch)
-        elif rules.harvest < first:
-            said = worded(
-                "Harvest on {harvest} is too soon after {product} on {day}: it has to wait "
-                "{days}, until {first}.",
-                harvest=harvest, days=counted(period.days or 0, "day"),
-                first=rules.units.day(first), **named,
-            )  # fmt: skip
-            yield Caution("harvest", said, one.batch)
+    if rules.harvest is not None and first is not None and one.on <= rules.harvest < first:
+        said = worded(
+            "Harvest on {harvest} is too soon after {product} on {day}: it has to wait {days}, "
+            "until {first}.",
+            harvest=rules.units.day(rules.harvest), days=counted(period.days or 0, "day"),
+            first=rules.units.day(first), **named,
+        )  # fmt: skip
+        yield Caution("harvest", said, one.batch)
     if entry is not None:
         said = worded(
             "Do not enter before {time} on {date} where {product} was applied on {day}.",

@@ -85,7 +85,7 @@ def read(
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():
                 continue
-            contradictions(one, held).refuse(plot[1])
+            contradictions(one, held).refuse(plot[0])
         except (FieldmonError, ValueError, TypeError) as error:
             drafts.append(Draft(row, None, str(error)))
         else:

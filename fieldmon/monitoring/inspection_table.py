@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import closing
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -15,13 +14,11 @@ from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.replaced import as_it_was
-from fieldmon.monitoring.transactions import connect, copy_season
+from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable
     from datetime import date
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -32,21 +29,6 @@ _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 # of a digest
 _LENGTH = 24
-
-
-def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
-    """Return a copy of a season with only the inspections that were not undone there.
-
-    Rows `besides` them are left out too.
-    """
-    copy = folder / season.name
-    copy_season(season, copy)
-    with closing(connect(copy)) as db:
-        db.execute("BEGIN")
-        db.execute("DELETE FROM inspections WHERE undone <> 0")
-        db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
-        db.execute("COMMIT")
-    return copy
 
 
 def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:
@@ -70,7 +52,7 @@ def rows(
     """
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()
-    number = {day: _day(day, dates, plants, label, settings) for day in sorted(set(dates))}
+    number = {day: _day(day, dates, plants, grid, settings) for day in sorted(set(dates))}
     columns = zip(
         point_blobs(grid.lonlat(plants)),
         plants.tolist(),
@@ -97,18 +79,18 @@ def _day(
     on: date,
     dates: list[date],
     plants: NDArray[np.int32],
-    label: RowLabel,
+    grid: PlantGrid,
     settings: MonitoringSettings,
 ) -> int:
     """Return the number of a day; raise `SettingError` with its first plant if there is none."""
     try:
         return settings.day(on)
     except SettingError as error:
-        plant = plants[dates.index(on)]
-        line, number = int(label.line[plant]), int(label.number[plant])
+        (line,), (number,) = row_label(grid, plants[[dates.index(on)]])
         said = worded(
-            "Row {line}, plant {number}: {said}", line=line, number=number, said=error.args[0]
-        )
+            "Row {line}, plant {number}: {said}",
+            line=grid.row_signs[int(line)], number=int(number), said=error.args[0],
+        )  # fmt: skip
         raise SettingError(said) from None
 
 

@@ -135,7 +135,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     ]
     stay = _n_staying((db, other), numbers)
     before, keys = _counting(db, stay), _keys(db)
-    applied = [treatments.counted(copied["treatments"]) for copied in copies]
+    applied = [treatments.counting_of(copied["treatments"]) for copied in copies]
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])

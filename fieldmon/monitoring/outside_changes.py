@@ -14,7 +14,14 @@ import numpy as np
 from fieldmon.compute.wording import Worded, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
-from fieldmon.monitoring import batches, inspection_lots, inspection_table, replaced
+from fieldmon.monitoring import (
+    batches,
+    inspection_lots,
+    inspection_table,
+    replaced,
+    season_log,
+    treatments,
+)
 from fieldmon.monitoring.geopackage import point_blobs
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
@@ -117,6 +124,34 @@ def refuse(db: sqlite3.Connection) -> None:
             remedy=remedy,
         )
     )
+
+
+def not_as_logged(db: sqlite3.Connection) -> tuple[str, ...]:
+    """Return a sentence for each thing that the file says otherwise than its log."""
+    wrong = {
+        "inspections": inspection_table.not_what_they_say(db),
+        "treatments": treatments.not_what_they_say(db),
+    }
+    return (
+        *season_log.differing(db),
+        *(
+            worded("Row {row} of the layer {layer} is not what was recorded.", row=row, layer=layer)
+            for layer, rows in wrong.items()
+            for row in rows
+        ),
+    )
+
+
+def refuse_unlike_log(wrong: tuple[str, ...]) -> None:
+    """Raise `FileProblem` if there is anything that the file says otherwise than its log."""
+    if wrong:
+        raise FileProblem(
+            worded(
+                "The file must say what its log says, but it does not: {wrong} Go back to a copy "
+                "from before.",
+                wrong=joined(" ", wrong),
+            )
+        )
 
 
 def refuse_more(db: sqlite3.Connection) -> None:

@@ -11,6 +11,7 @@ from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 from fieldmon.monitoring.inspection_table import time_text
+from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.plot.grid import RowLabel
+    from fieldmon.plot.grid import PlantGrid
 
     #: a plant and a day
     Key = tuple[int, int]
@@ -53,14 +54,15 @@ class Contradictions:
         """Return how many there are."""
         return len(self.which)
 
-    def sentences(self, label: RowLabel) -> list[str]:
-        """Return one sentence for each; `label` names all plants of the plot."""
-        told = (self.plant, self.date, self.recorded, self.brought, self.together)
+    def sentences(self, grid: PlantGrid) -> list[str]:
+        """Return one sentence for each, with rows as the plot's file names them."""
+        label = row_label(grid, self.plant)
+        told = (*label, self.date, self.recorded, self.brought, self.together)
         sentences: list[str] = []
-        for plant, date, was, now, together in zip(*(v.tolist() for v in told), strict=True):
+        for line, number, date, was, now, together in zip(*(v.tolist() for v in told), strict=True):
             values = {
-                "line": label.line[plant],
-                "number": label.number[plant],
+                "line": grid.row_signs[line],
+                "number": number,
                 "date": date,
                 "result_names": worded(RESULT_NAMES[was]),
                 "result_names_2": worded(RESULT_NAMES[now]),
@@ -87,18 +89,19 @@ class Contradictions:
         columns = ("which", "plant", "date", "recorded", "brought", "together")
         return Contradictions(*(getattr(self, name)[stays] for name in columns))
 
-    def refuse(self, label: RowLabel) -> None:
+    def refuse(self, grid: PlantGrid) -> None:
         """Raise `ContradictionError` if there are any, with the first few by name."""
         if not len(self):
             return
-        named = joined(" ", self.sentences(label)[:_MOST_NAMED])
+        named = joined(" ", self.sentences(grid)[:_MOST_NAMED])
         more = " ..." if len(self) > _MOST_NAMED else ""
         if self.together.all():
             raise ContradictionError(
                 worded(
                     "Results that are brought must not contradict each other unless that is "
-                    "confirmed, but {n} of them do, of the same plant and day: {named}{more} "
-                    "Check both; then leave out what is wrong, or confirm that both hold.",
+                    "confirmed, but {n} of them {n:does|do}, of the same plant and day: "
+                    "{named}{more} Check both; then leave out what is wrong, or confirm that both "
+                    "hold.",
                     n=len(self),
                     named=named,
                     more=more,
@@ -108,7 +111,7 @@ class Contradictions:
             worded(
                 "Results must not contradict what is recorded of the same "
                 "plants and day unless that is confirmed, but {n} of them "
-                "contradict it: {named}{more} Check both; then undo what was "
+                "{n:contradicts|contradict} it: {named}{more} Check both; then undo what was "
                 "wrong, or confirm that these hold too.",
                 n=len(self),
                 named=named,

@@ -411,6 +411,12 @@ def watch(db: sqlite3.Connection) -> None:
             )
 
 
+def is_watched(db: sqlite3.Connection) -> bool:
+    """Tell whether the file still notes by itself what other programs change: see `watch`."""
+    names = "SELECT count(*) FROM sqlite_master WHERE type = 'trigger' AND name LIKE '%_outside'"
+    return bool(db.execute(names).fetchone()[0] == 3 * len(_WATCHED))
+
+
 def _as_json(table: GeoPackageTable) -> str:
     """Return in SQL all that a trigger's row `old` says but its place, as JSON.
 

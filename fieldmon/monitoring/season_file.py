@@ -17,12 +17,11 @@ from fieldmon.infestation.prior import prior_chance
 from fieldmon.monitoring import (
     derived_layers,
     first_morning,
-    inspection_table,
+    outside_changes,
     qgis_project,
     season_log,
     settings_log,
     tables,
-    treatments,
 )
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.mornings import Mornings
@@ -314,22 +313,7 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
     def held_to_log(self) -> tuple[str, ...]:
         """Return a sentence for each thing that the file says otherwise than its log."""
         with self.store.reading() as db:
-            wrong = {
-                "inspections": inspection_table.not_what_they_say(db),
-                "treatments": treatments.not_what_they_say(db),
-            }
-            return (
-                *season_log.differing(db),
-                *(
-                    worded(
-                        "Row {row} of the layer {layer} is not what was recorded.",
-                        row=row,
-                        layer=layer,
-                    )
-                    for layer, rows in wrong.items()
-                    for row in rows
-                ),
-            )
+            return outside_changes.not_as_logged(db)
 
     @property
     def is_short(self) -> bool:

@@ -15,7 +15,7 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.compute.wording import estimate, worded
+from fieldmon.compute.wording import estimate, filled, worded, written
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import schema, settings_log
 from fieldmon.monitoring.geopackage import touch
@@ -86,7 +86,7 @@ class LogEntry:
             what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
         undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
-        said = _SAID[self.kind].format_map(what) + undone + anew
+        said = filled(_SAID[self.kind], what) + undone + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
         return said
@@ -110,14 +110,16 @@ _SAID = {
     "begins": "the log begins: {why}",
     "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
     "batch {batch}",
-    "planned": "{date}: {stops} stops by {sampler}, about {expected} of them visibly infested",
+    "planned": "{date}: {stops} {stops:stop|stops} by {sampler}, "
+    "about {expected} of them visibly infested",
     "advised": "{date}: {said}",
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",
     "corrected": "changes of another program taken as corrections: {rows}",
     "changed": "settings: {said}",
-    "labels": "{labels} labels from {source}",
-    "merged": "another copy of the season taken in: {new} inspections, {entries} entries",
+    "labels": "{labels} {labels:label|labels} from {source}",
+    "merged": "another copy of the season taken in: {new} {new:inspection|inspections}, "
+    "{entries} {entries:entry|entries}",
     "saved": "saved from a damaged file",
 }
 
@@ -605,5 +607,6 @@ def lines(of: Sequence[LogEntry], clock: LocalClock) -> Iterator[str]:
         head = f"{entry.number:5d}  {at:%Y-%m-%dT%H:%M}  {entry.kind:9}  {who:12}"
         yield f"{head}  {entry.sentence()}"
     if of:
-        n = "1 entry" if len(of) == 1 else f"{len(of)} entries"
-        yield f"{n}, the chain holds; the last digest is {of[-1].digest}"
+        n = len(of)
+        entries_ = written(n, "entry|entries")
+        yield f"{n} {entries_}, the chain holds; the last digest is {of[-1].digest}"

@@ -166,7 +166,7 @@ class SeasonRecords(OpenSeason):
             who = as_written(known, who)
             if not confirmed and brought:
                 every = reduce(Inspections.and_those, [told for told, _ in brought])
-                contradictions(every, held).refuse(self.label)
+                contradictions(every, held).refuse(self.plot.grid)
             for (told, source), n in zip(brought, taken, strict=True):
                 inspections = _by_those_known(known, told)
                 batch, news = self._add(db, inspections, held, (source, who, into))
@@ -402,7 +402,7 @@ class SeasonRecords(OpenSeason):
         undone_in_one = (
             cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in gone
         )
-        said = *contradict.sentences(self.label), *taken.differing, *undone_in_one
+        said = *contradict.sentences(self.plot.grid), *taken.differing, *undone_in_one
         return Merged(
             taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
         )

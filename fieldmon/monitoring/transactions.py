@@ -17,7 +17,7 @@ from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import require_folder
-from fieldmon.monitoring import journals, season_log
+from fieldmon.monitoring import journals, outside_changes, season_log
 from fieldmon.monitoring.file_problems import damaged, no_file, sentences
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.migrations import MIGRATIONS
@@ -29,6 +29,7 @@ from fieldmon.monitoring.schema import (
     TABLES,
     VERSION,
     WRITTEN,
+    is_watched,
     lay_out,
     watch,
 )
@@ -220,6 +221,8 @@ class Store:
             set_meta(db, COMES, secrets.token_hex(8))
             if _version(db) == VERSION:
                 self._checked = season_log.refuse_changed(db, self._checked)
+                if not is_watched(db):  # somebody took away what would note changes
+                    outside_changes.refuse_unlike_log(outside_changes.not_as_logged(db))
             yield db
             set_meta(db, OPEN, "0")
             db.execute("UPDATE fieldmon SET value = value + 1 WHERE key = 'revision'")

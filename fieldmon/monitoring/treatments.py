@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.digest import digest
+from fieldmon.compute.units import Units
+from fieldmon.compute.wording import counted
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import irac_groups
 from fieldmon.monitoring import schema
@@ -221,7 +223,7 @@ def counting(db: sqlite3.Connection) -> list[frozenset[str]]:
     return [known_by(row) for row in _rows(db, "undone = 0")]
 
 
-def counted(rows: Iterable[Row]) -> dict[int, frozenset[str]]:
+def counting_of(rows: Iterable[Row]) -> dict[int, frozenset[str]]:
     """Return what those of rows that count are known by, by their numbers."""
     return {row["fid"]: known_by(row) for row in rows if row["undone"] == COUNTS}
 
@@ -268,8 +270,8 @@ def in_words(place: TreatedPlace, application: Application) -> str:
     if application.dose is not None:
         parts.append(str(application.dose))
     if place.area_ha is not None:
-        parts.append(f"on {place.area_ha:.3g} ha")
-    return f"{' '.join(parts)}, {int(np.count_nonzero(place.plants))} plants"
+        parts.append(f"on {Units().square(place.area_ha * 1e4)}")
+    return f"{' '.join(parts)}, {counted(int(np.count_nonzero(place.plants)), 'plant')}"
 
 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:

@@ -82,7 +82,7 @@ def _told_finds(
         return said
     rest = order[_FINDS:]
     around = counted(int(count[rest].sum()), "plant")
-    return [*said, worded("{plants} around {n} other finds.", plants=around, n=len(rest))]
+    return [*said, worded("{plants} around {n} other {n:find|finds}.", plants=around, n=len(rest))]
 
 
 def _nearest_find(

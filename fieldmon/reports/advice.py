@@ -60,7 +60,7 @@ def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
         (
             KeyFigure(words.AREA_SPRAYED, units.square(zones.m2), share),
             KeyFigure(words.PRODUCT, product or words.PRODUCT_OPEN, rate),
-            KeyFigure(words.LIQUID, litres_figure(advice.litres, " l")),
+            KeyFigure(words.LIQUID, worded(words.LITRES, value=litres_figure(advice.litres))),
             KeyFigure(words.INFESTED_INSIDE, estimate(zones.inside),
                       worded(words.AND_ELSEWHERE, n=estimate(zones.outside))),
             KeyFigure(words.ENOUGH, figure(advice.said.enough, ".0%")),

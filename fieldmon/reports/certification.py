@@ -275,7 +275,7 @@ def _log(one: _PlotRecord) -> str:
     if one.wrong:
         return worded(words.CERT_ON_PLOT, plot=one.name, said=one.wrong)
     return worded(
-        words.CERT_LOG_HOLDS, plot=one.name, n=figure(len(one.log)),
+        words.CERT_LOG_HOLDS, plot=one.name, n=len(one.log),
         since=one.units.day(one.log[0].at[:10]), digest=one.log[-1].digest,
     )  # fmt: skip
 
@@ -335,7 +335,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
         (_F["ingredient"], _plain(said.active_ingredient)),
         (_F["group"], "+".join(groups(treatment, label))),
         (_F["dose"], "" if said.dose is None else str(said.dose)),
-        (_F["water"], "" if said.water_l_ha is None else figure(said.water_l_ha, ",g", " l/ha")),
+        (_F["water"], "" if said.water_l_ha is None else worded(words.RATE, rate=said.water_l_ha)),
         (_F["area"], "" if place.area_ha is None else one.units.square(place.area_ha * 1e4)),
         (_F["plants"], figure(int(np.count_nonzero(place.plants)))),
         (_F["time"], "" if times == ["?", "?"] else f"{times[0]}–{times[1]}"),

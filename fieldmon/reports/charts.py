@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import figure
 from fieldmon.reports import colours
 from fieldmon.reports.drawing import Areas, Discs, Drawing, Lettering, Part, Strokes
 
@@ -93,7 +94,7 @@ class DayChart:
         if 2 * half < 4.0:
             return []
         return [
-            Lettering(a, b - 1.6, f"{value:.0f}", 6.0, colours.INK, "middle")
+            Lettering(a, b - 1.6, figure(value, ",.0f"), 6.0, colours.INK, "middle")
             for a, b, value in zip(x.tolist(), y.tolist(), self.value.tolist(), strict=True)
         ]
 
@@ -161,7 +162,7 @@ class _Axes:
         right, ys = self.size[0] - _RIGHT, self.y(self.ticks)
         lines = tuple(np.array([[_LEFT, y], [right, y]]) for y in ys.tolist())
         numbers = [
-            Lettering(_LEFT - 1.5, y, f"{tick:,.10g}", 6.5, colours.SOFT, "end")
+            Lettering(_LEFT - 1.5, y, figure(tick, ",.10g"), 6.5, colours.SOFT, "end")
             for tick, y in zip(self.ticks.tolist(), ys.tolist(), strict=True)
         ]
         return [

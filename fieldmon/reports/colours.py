@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import figure
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -40,5 +42,5 @@ def ranks(chance: NDArray[np.float64]) -> NDArray[np.intp]:
 
 def chance_names() -> list[str]:
     """Return what is written beside the classes: their lower ends."""
-    names = [f"{low * 100:g} %" for low in CHANCE_FROM]
-    return [*names[:-1], f"{names[-1]}+"]
+    *lower, last = (low * 100 for low in CHANCE_FROM)
+    return [*(figure(low, "g", " %") for low in lower), figure(last, "g", " %+")]

@@ -357,7 +357,7 @@ def treatment_table(
         )
     table = Table(
         words.TREATMENTS, words.TREATMENT_COLUMNS, tuple(rows), (0.18, 0.34, 0.14, 0.14, 0.2),
-        rest=words.TREATMENTS_REST, left=(0, 1),
+        rest=words.EARLIER_REST, left=(0, 1),
     )  # fmt: skip
     return [table] if rows else []
 
@@ -373,7 +373,7 @@ def _found(facts: DayFacts) -> Table:
         for line in np.unique(label.line).tolist()
     )
     return Table(
-        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=2, rest=words.FOUND_REST,
+        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=2, rest=words.REST,
         left=(1,),
     )  # fmt: skip
 
@@ -393,7 +393,10 @@ def _every_stop(facts: DayFacts) -> TickList:
     return TickList(
         words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),
         tuple(
-            (f"{k}", _clock(facts, s, "%H:%M:%S"), signs[line], f"{number}", f"{chance:.1f}", end)
+            (
+                f"{k}", _clock(facts, s, "%H:%M:%S"), signs[line], f"{number}",
+                figure(chance, ".1f"), end,
+            )
             for k, s, line, number, chance, end in rows
         ),
     )  # fmt: skip

@@ -49,7 +49,7 @@ from fieldmon.reports.settings_rows import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sized
     from datetime import date
 
     from numpy.typing import NDArray
@@ -174,9 +174,16 @@ def _stands(facts: _Facts) -> Iterator[Block]:
     beware = facts.season.cautions(facts.on, facts.units)
     if beware:
         sentences = tuple(dict.fromkeys(one.sentence for one in beware))
-        yield Listing(words.CERT_CAUTIONS, sentences[:_MOST_CAUTIONS])
+        rest = _left_out(sentences, _MOST_CAUTIONS, words.REST)
+        yield Listing(words.CERT_CAUTIONS, (*sentences[:_MOST_CAUTIONS], *rest))
     yield from facts.plot_map(by_state=False)
     yield Paragraph(joined(" ", _rows_seen(facts)))
+
+
+def _left_out(all_of: Sized, most: int, rest: str) -> tuple[str, ...]:
+    """Return what is said of those for which a page has no room."""
+    more = len(all_of) - most
+    return (worded(rest, n=more),) if more > 0 else ()
 
 
 def _figures(facts: _Facts) -> KeyFigures:
@@ -287,6 +294,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     yield from facts.plot_map(by_state=True)
     meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots, facts.state))
     yield Listing(words.HOT_LIST, meanings, numbered=bool(len(facts.status.hot_spots)))
+    yield from map(Paragraph, _left_out(facts.status.hot_spots, len(meanings), words.REST))
     plants = np.flatnonzero(facts.state == PRESENT)
     if not len(plants):
         yield Paragraph(words.FINDS_NONE)
@@ -299,7 +307,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
         rows.append((row, f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,
-        rest=words.FOUND_REST, left=(2,),
+        rest=words.REST, left=(2,),
     )  # fmt: skip
 
 
@@ -311,10 +319,12 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _treatments(facts)
     told = [one for one in facts.season.effects(facts.on, facts.units) if one.before.inspected]
     if told:
-        yield Listing("", tuple(one.sentence() for one in told[-_MOST_EFFECTS:]))
+        earlier = _left_out(told, _MOST_EFFECTS, words.EARLIER_REST)
+        yield Listing("", (*(one.sentence() for one in told[-_MOST_EFFECTS:]), *earlier))
     yield from settings_blocks(facts.goes_by, facts.units)
     if changes := tuple(_changes(facts)):
-        yield Listing(words.CHANGES, changes[-_MOST_CHANGES:])
+        earlier = _left_out(changes, _MOST_CHANGES, words.EARLIER_REST)
+        yield Listing(words.CHANGES, (*changes[-_MOST_CHANGES:], *earlier))
     yield Listing(words.MEANING, words.MEANINGS)
     yield NoteLines(words.NOTES)
 

@@ -123,7 +123,7 @@ def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
     )
     yield Table(
         words.SETTINGS, words.SETTING_COLUMNS, rows, (0.46, 0.2, 0.34), flow=2,
-        rest=words.FOUND_REST, left=(0, 1, 2), whole=True,
+        rest=words.REST, left=(0, 1, 2), whole=True,
     )  # fmt: skip
     if settings.guessed:
         yield Listing(words.GUESSED, settings.guessed[:_MOST_GUESSED])

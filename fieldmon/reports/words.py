@@ -16,12 +16,15 @@ def isolated(name: str) -> str:
 FOOTER = "fieldmon"
 PAGE = "{page} / {of}"
 UNPRINTED = (
-    "{n} characters of names cannot be printed with this program's fonts and stand as ?: {codes}."
+    "{n} {n:character|characters} of names cannot be printed with this program's fonts and "
+    "{n:stands|stand} as ?: {codes}."
 )
 FEW_FINDS = "{n:.1f} finds"
 HEADLINE = "Inspect {plants} in {rows} on {day}, {hours} h: about {finds} expected."
 HEADLINE_NONE = "Nothing to inspect on {day}."
-WORKED = "Worked on {day}: {inspected:,} plants inspected, {found:,} found infested."
+WORKED = (
+    "Worked on {day}: {inspected:,} {inspected:plant|plants} inspected, {found:,} found infested."
+)
 MISSED = "{day} is past, and no inspection of it was recorded."
 MISSED_PLAN = "Stops planned: {planned:,}."
 PLANNED_DONE = "Stops planned: {planned:,}; done: {done:,}; left out: {left:,}; added: {added:,}."
@@ -34,7 +37,10 @@ LEGEND_FOUND, LEGEND_ROUTE = "found infested", "route, arrows show the way"
 LEGEND_STATES = ("never inspected", "looked clean")
 LEGEND_GATE, LEGEND_HOT, LEGEND_ZONES = "gate", "hot spot", "zones to treat"
 NORTH = "N"
-MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
+MAP_ALT = (
+    "Map of plot {name}: {plants} {plants:plant|plants}, {stops} {stops:stop|stops} on the route, "
+    "{finds} {finds:plant|plants} found."
+)
 SETTINGS, SETTING_COLUMNS = "Settings", ("what", "value", "where from")
 
 # -- the day
@@ -50,12 +56,12 @@ OF_HIDDEN = "of {n} infested on the route, {seen} so that it can be seen"
 FOUND_TODAY, OF_INSPECTED = "Found that day", "of {n} inspected"
 STOPS, STOPS_COLUMNS = "Stops by row, in order", ("row", "from", "plants", "which")
 WHICH_MANY = "{n} between {low} and {high}"
-STOPS_REST = "... and {n} more rows; the field sheet and the route files hold every stop."
+STOPS_REST = "... and {n} more; the field sheet and the route files hold every stop."
 EVERY_STOP = "Every stop"
 EVERY_COLUMNS = ("stop", "arrive", "row", "plant", "chance %")
 TICK, WAS, RESULTS = "found?", "result", {0: "clean", 1: "found", 2: "could not inspect", -1: ""}
 FOUND_BY_ROW, FOUND_COLUMNS = "Found that day, by row", ("row", "plants found")
-FOUND_REST = "... and {n} more rows."
+REST, EARLIER_REST = "... and {n} more.", "... and {n} earlier."
 NOTES = "Notes"
 
 # -- the season
@@ -87,7 +93,7 @@ CHART_TREATED = "treated"
 CHART_ALT = "Chart by day: {title}."
 DAYS = "Day by day"
 DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "share found")
-DAYS_REST = "... and {n} earlier days; the season's file holds all of them."
+DAYS_REST = "... and {n} earlier; the season's file holds all."
 HOT_LIST = "Hot spots"
 HOT_MEANS = (
     "{rows}: {found:,} found among {inspected:,} inspected of its {plants:,} plants, where "
@@ -114,11 +120,10 @@ BATCH_UNDONE = "{kind}, taken back"
 BATCH_ELSEWHERE = "{kind}, counts in another recording"
 BATCH_PART = "{kind}, of which {n:,} {n:counts|count}"
 BATCHES_NONE = "Nothing was recorded yet."
-BATCHES_REST = "... and {n} earlier ones; fieldmon status --batches lists them."
+BATCHES_REST = "... and {n} earlier; fieldmon status --batches lists all."
 TREATMENTS = "Treatments"
 TREATMENT_COLUMNS = ("day", "product", "plants", "works on", "harvest from")
 TREATMENTS_NONE = "No treatment was noted."
-TREATMENTS_REST = "... and {n} earlier ones."
 ASSUMED = "Assumed, though nobody said so: {what}."
 ROWS_APART, PLANTS_APART = "From row to row", "From plant to plant"
 SAMPLER, HOURS = "Who chooses the plants", "Working hours"
@@ -146,10 +151,10 @@ ADVICE_TITLE = "Advice of {day}"
 ADVICE_SHEET = "Treat, or not, and where"
 ADVICE_ALT = "Map of the zones to treat."
 AREA_SPRAYED, OF_PLANTED = "To be sprayed", "{share} of {of} under plants"
-PRODUCT, PRODUCT_OPEN, RATE = "Product", "not said", "{rate:g} l/ha"
-LIQUID, INFESTED_INSIDE = "Liquid", "Infested plants inside"
+PRODUCT, PRODUCT_OPEN, RATE = "Product", "not said", "{rate:,g} l/ha"
+LIQUID, LITRES, INFESTED_INSIDE = "Liquid", "{value} l", "Infested plants inside"
 AND_ELSEWHERE, ENOUGH = "{n} elsewhere", "Chance that it is enough"
-ZONES, ZONES_REST = "Zones", "... and {n} more zones; the files for the sprayer hold all."
+ZONES, ZONES_REST = "Zones", "... and {n} more; the files for the sprayer hold all."
 ZONES_COLUMNS = ("zone", "rows", "plants of the row", "plants", "infested", "by itself")
 VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
 MEANING = "How the numbers are meant"
@@ -183,7 +188,8 @@ CERT_ON_PLOT, CERT_TITLE_OF = "On {plot}: {said}", "{number}. Treatment of {plot
 CERT_MISSING = "On {plot}, {day}: {what}."
 CERT_LOG = "Log"
 CERT_LOG_HOLDS = (
-    "On {plot}: {n} entries since {since}, the chain holds. The last digest is {digest}."
+    "On {plot}: {n:,} {n:entry|entries} since {since}, the chain holds. "
+    "The last digest is {digest}."
 )
 CERT_MEANINGS = (
     "Each entry of the log has a digest of itself and of all before it: keep the last one.",

@@ -21,5 +21,8 @@ def test_a_table_is_kept_and_listed_and_a_wrong_one_changes_nothing(run, season,
 
 
 def test_one_label_is_said_to_be_one(run, season, tmp_path):
-    (tmp_path / "labels.csv").write_text("product\nsoap\n")
-    assert "labels.csv: 1 label kept" in run("labels", season, "labels.csv")[1]
+    (tmp_path / "labels.csv").write_text("product,waiting days,max uses\nsoap,1,1\n")
+    out = run("labels", season, "labels.csv")[1]
+    assert "labels.csv: 1 label kept" in out
+    assert "soap: 1 day until harvest, 1 use a season" in out
+    assert Season(season).log()[-1].sentence() == "1 label from labels.csv"

@@ -78,7 +78,7 @@ def test_two_files_that_contradict_each_other_are_refused_before_either_is_recor
     filled_in(tmp_path / "b.csv", finds=set(), n=3)
     code, _, err, _ = run("record", season, "a.csv", "b.csv", "--date", BEGINS)
     assert code == 2
-    assert "1 of them do, of the same plant and day" in err
+    assert "1 of them does, of the same plant and day" in err
     assert not len(Season(season).history.inspections)
 
 

@@ -1,8 +1,9 @@
 """Lengths, areas and dates as people are used to reading them."""
 
+import numpy as np
 import pytest
 
-from fieldmon.compute.units import DATES, Units
+from fieldmon.compute.units import AREAS_M2, DATES, Units
 
 
 def test_units_say_what_they_measure():
@@ -12,12 +13,19 @@ def test_units_say_what_they_measure():
     assert feet.square(4046.8564224) == "1.00 acre"
     assert feet.day("2026-11-16") == "11/16/2026"
     assert Units(area="dunam").square(1000.0) == "1.00 dunam"
-    assert [Units().square(m2) for m2 in (0, 12.34, 99, 903)] == [
-        "0.00 ha",
-        "0.0012 ha",
-        "0.0099 ha",
-        "0.09 ha",
-    ]
+    assert [Units().square(m2) for m2 in (0, 12.34, 99, 150, 903, 9996, 123456)] == [
+        "0.00 ha", "0.00123 ha", "0.0099 ha", "0.015 ha", "0.0903 ha", "1.00 ha", "12.35 ha",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("area", AREAS_M2)
+def test_an_area_is_written_to_half_a_percent(area):
+    for m2 in np.logspace(0, 6, 200):
+        written = Units(area=area).square(m2).removesuffix(f" {area}").replace(",", "")
+        assert float(written) * AREAS_M2[area] == pytest.approx(m2, rel=0.00501)
+
+
+def test_lengths_and_dates_are_said_in_the_chosen_way():
     assert Units().metres(1500.0) == "1.50 km"
     assert {Units(date_like=like).day("2026-11-16") for like in DATES} == set(DATES)
 

@@ -160,7 +160,7 @@ def test_what_was_treated_that_day_is_not_proposed_anew_and_said(tmp_path):
     [
         (1000.0, 1, TREAT, "Treat the whole plot, "), (995.0, 1, TREAT, "Treat the whole plot, "),
         (990.0, 1, TREAT, " in 1 zone, 99 % of the "),
-        (250.0, 1, LEAVE, " of it in 1 zone, 25 % of the 0.10 ha under plants."),
+        (250.0, 1, LEAVE, " of it in 1 zone, 25 % of the 0.1 ha under plants."),
         (250.0, 0, LEAVE, "Do not treat today."),
         (0.0, 0, TREAT, "above the threshold, though by these costs it pays nowhere."),
     ],
@@ -222,10 +222,10 @@ def test_what_was_set_is_not_called_assumed():
 def test_a_small_zone_is_not_nothing(season):
     zones = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).zones
     small = replace(zones, m2=12.3)
-    assert small.sentence().startswith("Treat 0.0012 ha in ")
+    assert small.sentence().startswith("Treat 0.00123 ha in ")
     advice = replace(season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)), zones=small)
     said = " ".join(advice.said_of_zones())
-    assert "0.23 % of the 0.53 ha" in said
+    assert "0.23 % of the 0.526 ha" in said
     assert "It takes 0.37 l and" in said
 
 

@@ -2,7 +2,9 @@
 
 import json
 import shutil
+import sqlite3
 import uuid
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +16,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.brought_findings import read_brought, record_saved
+from fieldmon.monitoring.brought_findings import counting_copy, read_brought, record_saved
 from tests.monitoring.seasons import BEGINS
 from tests.monitoring.test_outside_changes import outside
 
@@ -95,3 +97,12 @@ def test_what_a_phone_saved_is_read_and_recorded_with_what_there_is_to_say(seaso
     assert (done.new, done.known, len(said)) == (1, 0, 2)
     assert "Other" in said[0]
     assert season.history.inspections.result.tolist() == [FOUND]
+
+
+def test_a_copy_for_another_season_holds_only_what_was_not_undone(path, tmp_path):
+    Season(path).undo(inspection=3)
+    (tmp_path / "copy").mkdir()
+    copy = counting_copy(path, tmp_path / "copy")
+    for file, n in ((path, 12), (copy, 11)):
+        with closing(sqlite3.connect(file)) as db:
+            assert db.execute("SELECT count(*) FROM inspections").fetchone() == (n,)

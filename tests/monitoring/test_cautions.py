@@ -170,6 +170,20 @@ def test_what_comes_after_the_day_is_not_looked_at():
     assert kinds([treated(9, dose=Dose(9, "l/ha"))], [LABEL], on=8) == []
 
 
+def test_the_most_urgent_comes_first_and_of_one_kind_that_of_the_last_treatment():
+    done = [
+        treated(0, waiting_days=3, reentry_hours=4.0, irac_groups=("6",)),
+        treated(2, waiting_days=12, dose=Dose(9, "l/ha"), irac_groups=("6",)),
+        treated(4, product="soap"), treated(6, product="oil", reentry_hours=48.0),
+        treated(7, reentry_hours=30.0, irac_groups=("6",)),
+    ]  # fmt: skip
+    assert kinds(done, [LABEL], harvest=date(2026, 4, 14), on=8) == [
+        ("entry", 8), ("entry", 7), ("harvest", 8), ("harvest", 3), ("harvest", 7), ("harvest", 5),
+        ("dose", 3), ("uses", 8), ("group", 8), ("waiting", 1), ("waiting", 1), ("label", 7),
+        ("label", 5),
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize("seed", range(10))
 def test_rows_of_uses_are_those_that_each_plant_alone_had(seed):
     """The rule read out for each plant: days on which a group known was used, one after another."""
@@ -198,7 +212,7 @@ def test_rows_of_uses_are_those_that_each_plant_alone_had(seed):
                 plants = counted(int(np.count_nonzero(uses == n)), "plant")
                 use = f"Use {n} of mode-of-action group {group} in a row on {plants}: "
                 wanted.append((one.batch, use))
-    told = [(one.batch, one.sentence) for one in found(done) if one.kind == "group"]
+    told = [(one.batch, one.sentence) for one in found(done)[::-1] if one.kind == "group"]
     assert len(told) == len(wanted) > 0
     for (batch, sentence), (number, said) in zip(told, wanted, strict=True):
         assert batch == number
@@ -225,6 +239,6 @@ def test_uses_of_a_season_are_the_days_on_which_each_plant_had_the_product(seed)
         for n in np.unique(uses[uses > 2]):
             plants = counted(int(np.count_nonzero(uses == n)), "plant")
             wanted.append((one.batch, f"Use {n} in this season on {plants}: "))
-    told = [(one.batch, one.sentence) for one in found(done, [label]) if one.kind == "uses"]
+    told = [(one.batch, one.sentence) for one in found(done, [label])[::-1] if one.kind == "uses"]
     assert [batch for batch, _ in told] == [batch for batch, _ in wanted]
     assert all(s.startswith(said) for (_, s), (_, said) in zip(told, wanted, strict=True))

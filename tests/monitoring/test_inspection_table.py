@@ -1,8 +1,5 @@
 """Inspections in a season's file: each once, by what was seen, and out again in their order."""
 
-import sqlite3
-from contextlib import closing
-
 import numpy as np
 import pyogrio
 import pytest
@@ -148,15 +145,6 @@ def test_what_does_not_fit_is_a_sentence(wrong, says):
 def test_dates_outside_the_season_are_a_sentence():
     with pytest.raises(SettingError, match="began on 2026-04-06"):
         inspection_table.rows(one(on=MONDAY - 1), GRID, LABEL, SETTINGS, (1, ""))
-
-
-def test_a_copy_for_another_season_holds_only_what_was_not_undone(path, tmp_path):
-    Season(path).undo(inspection=3)
-    (tmp_path / "copy").mkdir()
-    copy = inspection_table.counting_copy(path, tmp_path / "copy")
-    for file, n in ((path, 12), (copy, 11)):
-        with closing(sqlite3.connect(file)) as db:
-            assert db.execute("SELECT count(*) FROM inspections").fetchone() == (n,)
 
 
 def test_rows_that_another_program_adds_do_not_count_before_they_are_recorded(path):

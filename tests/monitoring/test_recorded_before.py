@@ -1,12 +1,13 @@
 """What is brought to a season is held to what is recorded of the same plants and days."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.recorded_before import contradicting, contradictions, said_before
-from fieldmon.plot.grid import row_label
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -61,14 +62,25 @@ def test_one_file_contradicts_itself_as_two_files_contradict_each_other():
 
 
 def test_what_is_brought_at_once_is_not_said_to_be_recorded():
-    label = row_label(rectangle(1, 9))
+    grid = rectangle(1, 9)
     both, held = results((3, FOUND), (3, CLEAN)), results((4, CLEAN))
     with pytest.raises(ContradictionError, match="brought as found and as clean") as told:
-        contradictions(both, held).refuse(label)
+        contradictions(both, held).refuse(grid)
     assert "recorded" not in str(told.value)
     found = contradictions(both.and_those(results((4, FOUND))), held)
     assert found.together.tolist() == [True, False]
-    assert "recorded as clean, now found" in found.sentences(label)[1]
+    assert "recorded as clean, now found" in found.sentences(grid)[1]
+
+
+def test_rows_are_called_as_the_file_of_the_plot_calls_them():
+    names, called = np.array(["1", "5A", "Top"]), np.array([1, 101, 102])
+    grid = replace(
+        rectangle(3, 4), line_named=names, line_called=np.stack([called, called], axis=1)
+    )
+    (said,) = contradictions(results((6, CLEAN)), results((6, FOUND))).sentences(grid)
+    assert said == "Row 101 · 5A, plant 3 on 2026-04-06: recorded as found, now clean."
+    with pytest.raises(ContradictionError, match="1 of them contradicts it: Row 101 · 5A, plant 3"):
+        contradictions(results((6, CLEAN)), results((6, FOUND))).refuse(grid)
 
 
 @pytest.fixture
@@ -172,12 +184,13 @@ def test_each_result_is_held_to_all_that_is_recorded_of_its_plant_and_day(seed):
 
 @pytest.mark.parametrize("n", [1, 5, 6])
 def test_the_first_five_contradictions_are_named_and_more_are_counted(n):
-    label = row_label(rectangle(1, 9))
+    grid = rectangle(1, 9)
     held = Inspections.of(np.arange(9), np.full(9, CLEAN), np.datetime64("2026-04-06"))
     brought = Inspections.of(np.arange(n), np.full(n, FOUND), np.datetime64("2026-04-06"))
     with pytest.raises(ContradictionError) as told:
-        contradictions(brought, held).refuse(label)
-    assert f"but {n} of them contradict it" in str(told.value)
+        contradictions(brought, held).refuse(grid)
+    said = "contradicts" if n == 1 else "contradict"
+    assert f"but {n} of them {said} it" in str(told.value)
     named = [f"Row 1, plant {k + 1} on 2026-04-06: recorded as clean, now found." for k in range(n)]
     assert [one in str(told.value) for one in named] == [k < 5 for k in range(n)]
     assert (" ... " in str(told.value)) == (n > 5)

@@ -118,6 +118,17 @@ def test_nothing_is_written_on_a_changed_past(path):
             act()
 
 
+def test_nothing_is_recorded_on_rows_that_were_changed_unnoticed(path):
+    Season(path).treat(BEGINS, 0.5)
+    by_hand(path, "SELECT 1")
+    assert Season(path).record(three_results(), "held to the log, and whole").new == 3
+    by_hand(path, "UPDATE treatments SET waiting_days = 1")
+    season = Season(path)
+    for act in (lambda: season.treat(BEGINS, 0.5), season.undo):
+        with pytest.raises(FileProblem, match="Row 1 of the layer treatments is not what was"):
+            act()
+
+
 def test_what_another_program_changes_in_the_log_is_noticed_as_elsewhere(path):
     with closing(sqlite3.connect(path)) as db:
         db.execute("DELETE FROM log WHERE fid = 2")
@@ -151,6 +162,19 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     assert season.held_to_log() == ()
     assert [one.number for one in log] == list(range(1, 9))
     assert list(season_log.lines(log, CLOCK))[-1].endswith(log[-1].digest)
+
+
+def test_the_log_speaks_of_one_thing_as_of_one():
+    one = {"stops": 1, "labels": 1, "new": 1, "entries": 1, "source": "a.csv", "said": "x"}
+    told = [
+        season_log.LogEntry(1, "", kind, "", one, "").sentence()
+        for kind in ("planned", "labels", "merged")
+    ]
+    assert told == [
+        "?: 1 stop by ?, about ? of them visibly infested",
+        "1 label from a.csv",
+        "another copy of the season taken in: 1 inspection, 1 entry",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -111,3 +111,5 @@ def test_the_log_says_what_where_and_how_much():
     assert treatments.in_words(PLACE, Application()) == (
         "a product that nobody named on 0.5 ha, 17 plants"
     )
+    single = TreatedPlace(None, np.arange(20) == 3, 0.00025)
+    assert treatments.in_words(single, Application("Solo")) == "Solo on 0.00025 ha, 1 plant"

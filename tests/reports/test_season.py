@@ -10,12 +10,15 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import estimate
+from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import PRESENT
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Application, Season
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.grid import row_label
+from fieldmon.reports import season as season_module
+from fieldmon.reports import sentences
 from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
 from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import hot_spot_meanings
@@ -182,6 +185,32 @@ def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
     season.record(looked, "finds")
     lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
     assert "About 20 more plants, which were found and only flagged, are still infested." in lead
+
+
+def test_lists_that_are_too_long_begin_with_what_counts_and_say_how_much_is_missing(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    season.change(replace(season.settings, harvest=BEGINS + timedelta(days=20)), season.settings)
+    season.keep_labels([ProductLabel("Sulfur", waiting_days=5)])
+    for day in range(7):
+        said = Application("Sulfur", waiting_days=3)
+        season.treat(BEGINS + timedelta(days=day), 0.8, application=said)
+    said = Application("Acarol", waiting_days=14)
+    season.treat(BEGINS + timedelta(days=9), 0.8, application=said)
+    report = season_report(season, BEGINS + timedelta(days=9), Units())
+    beware = one(report, Listing, "To beware of").sentences
+    assert beware[0].startswith("Harvest on 2026-04-26 is too soon after Acarol on 2026-04-15")
+    assert (len(beware), beware[-1]) == (7, "... and 3 more.")
+
+
+def test_what_no_page_has_room_for_is_counted(worked, last, monkeypatch):
+    spots = len(worked.status(last).hot_spots)
+    monkeypatch.setattr(sentences, "_MOST_SPOTS", spots - 1)
+    monkeypatch.setattr(season_module, "_MOST_EFFECTS", 0)
+    report = season_report(worked, last, Units())
+    assert "... and 1 more." in [block.text for block in on_sheet(report, 2, Paragraph)]
+    assert "... and 1 earlier." in [
+        said for block in on_sheet(report, 3, Listing) for said in block.sentences
+    ]
 
 
 def test_all_days_are_held_to_their_plans(of_season, worked):

@@ -409,8 +409,8 @@ def _whole_plants(
     if not n_plants:
         return rows, records, []
     said = worded(
-        "{n} records of single leaves became {plants} {plants:inspection|inspections} of whole "
-        "plants, found where any leaf is; counts were added.",
+        "{n} {n:record|records} of single leaves became {plants} {plants:inspection|inspections} "
+        "of whole plants, found where any leaf is; counts were added.",
         n=len(others) + n_plants,
         plants=n_plants,
     )

@@ -351,7 +351,7 @@ def _which_plot(names: list[str], wanted: str, alike: list[str] | None = None) -
     offered = alike or names
     return ChoiceNeeded(
         worded(
-            "There are {n} plots, but {value} called {wanted!r}. Choose one "
+            "There {n:is|are} {n} {n:plot|plots}, but {value} called {wanted!r}. Choose one "
             "of: {names}; or its number, as fieldmon plots lists it.",
             n=len(names),
             value="several are" if alike else "none is",

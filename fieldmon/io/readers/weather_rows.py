@@ -77,7 +77,8 @@ class WeatherRows:
             messages.append(repaired(said))
         elif step < HOUR_S:
             said = worded(
-                "Measured every {minutes:g} minutes: gathered into hours.", minutes=step / 60
+                "Measured every {minutes:g} {minutes:minute|minutes}: gathered into hours.",
+                minutes=step / 60,
             )
             messages.append(seen(said))
         weather = rows.binned(by_day=by_day, now=now)

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from markupsafe import Markup
 
+from fieldmon.compute.wording import counted
 from fieldmon.io.html import page
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
@@ -60,7 +61,7 @@ def route_sheet(plan: HandoffPlan) -> bytes:
     hours = f"{figures['seconds'] / 3600:.1f} h"
     if when:
         hours += f" ({plan.clock(0.0)[11:16]} to {plan.clock(plan.route.end_s)[11:16]})"
-    told = f"{figures['stops']} plants, {figures['drive_m'] / 1000:.2f} km, {hours}."
+    told = f"{counted(figures['stops'], 'plant')}, {figures['drive_m'] / 1000:.2f} km, {hours}."
     return page(
         "fieldmon/io/writers/field_sheet.html.j2",
         plan=plan,

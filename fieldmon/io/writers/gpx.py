@@ -8,6 +8,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from fieldmon.compute.wording import written
 from fieldmon.io.writers.day_file import DECIMALS, pieces, plain_text
 from fieldmon.io.writers.geojson import summary
 from fieldmon.plot.projection import goes_round
@@ -65,7 +66,9 @@ def route_gpx(plan: HandoffPlan) -> bytes:
 def _metadata(metadata: ET.Element, plan: HandoffPlan) -> None:
     figures = summary(plan.route, plan.notes)
     _text(metadata, "name", plan.title)
-    told = f"{figures['stops']} stops, {figures['drive_m']:.0f} m, {figures['seconds']:.0f} s"
+    n = figures["stops"]
+    stops = f"{n} {written(n, 'stop|stops')}"
+    told = f"{stops}, {figures['drive_m']:.0f} m, {figures['seconds']:.0f} s"
     _text(metadata, "desc", f"{told}. {plan.bound}" if plan.bound else told)
     start = plan.notes.start
     if start is not None and start.tzinfo is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
+from fieldmon.compute.wording import written
 from fieldmon.io.writers.day_file import DECIMALS, plain_text
 from fieldmon.io.writers.geojson import summary
 
@@ -30,7 +31,8 @@ def route_kml(plan: HandoffPlan) -> bytes:
     document = ET.SubElement(root, "Document")
     figures = summary(plan.route, plan.notes)
     _text(document, "name", plan.title)
-    told = f"{figures['stops']} stops, {figures['drive_m']:.0f} m"
+    n = figures["stops"]
+    told = f"{n} {written(n, 'stop|stops')}, {figures['drive_m']:.0f} m"
     _text(document, "description", f"{told}. {plan.bound}" if plan.bound else told)
     _styles(document)
     if len(plan.line_lonlat) > 1:
@@ -44,8 +46,8 @@ def route_kml(plan: HandoffPlan) -> bytes:
     _text(folder, "name", "stops")
     for stop in plan.stops:
         _stop(ET.SubElement(folder, "Placemark", {"id": f"stop-{stop.order}"}), stop, plan)
-    written: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return written
+    made: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return made
 
 
 def _styles(document: ET.Element) -> None:

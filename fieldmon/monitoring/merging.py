@@ -159,21 +159,31 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     after = _counting(db, stay)
     new, taken_back = len(after - before), len(before - after)
     codes = tuple(sorted(name for key, name in _keys(db).items() if key not in keys))
-    count = treatments.counting(db)
-    known, theirs = (frozenset().union(*one.values()) for one in applied)
-    n_treated = sum(known.isdisjoint(marks) for marks in count)
-    now = frozenset().union(*count)
-    here, there = ({n: marks for n, marks in one.items() if marks.isdisjoint(now)}
-                   for one in applied)  # fmt: skip
-    twice = {n for n, marks in here.items() if marks & theirs}
-    alone = {n for n, marks in there.items() if marks.isdisjoint(known)}
+    n_treated, undone = _changed_treatments(db, applied)
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
             for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
     said = *_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held)
     anew = {old: number for old, number in numbers[0].items() if old != number}
-    return MergedCopy(
-        new, taken_back, said, n_treated, codes, anew, ({*here} - twice, alone, twice)
-    )
+    return MergedCopy(new, taken_back, said, n_treated, codes, anew, undone)
+
+
+def _changed_treatments(
+    db: sqlite3.Connection, applied: list[dict[int, frozenset[str]]]
+) -> tuple[int, tuple[set[int], set[int], set[int]]]:
+    """Return how many treatments are new, and the numbers of those that count no more.
+
+    `applied` is what those that counted in each copy are known by, by their numbers there; what
+    counts no more is told apart as in `MergedCopy.gone`.
+    """
+    counting = treatments.counting(db)
+    known, theirs = (frozenset().union(*one.values()) for one in applied)
+    n_new = sum(known.isdisjoint(marks) for marks in counting)
+    now = frozenset().union(*counting)
+    here, there = ({n: marks for n, marks in one.items() if marks.isdisjoint(now)}
+                   for one in applied)  # fmt: skip
+    twice = {n for n, marks in here.items() if marks & theirs}
+    alone = {n for n, marks in there.items() if marks.isdisjoint(known)}
+    return n_new, ({*here} - twice, alone, twice)
 
 
 def _counting(db: sqlite3.Connection, stay: int) -> set[str]:

@@ -202,7 +202,7 @@ class SeasonTreatments(OpenSeason):
     def cautions_because_of(
         self, batch: int, on: date, units: Units | None = None
     ) -> tuple[Caution, ...]:
-        """Return what to beware of on a day because of a treatment, later ones' uses among it.
+        """Return what to beware of on a day because of a treatment's batch, later uses among it.
 
         Sentences speak in `units`; None: the usual ones.
         """

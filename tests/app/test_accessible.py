@@ -198,12 +198,12 @@ def test_a_day_is_done_by_keys_alone(today):
     assert file.value.path().read_bytes().startswith(b"%PDF")
     # a find
     press(page, texts.STEP_BUTTONS["record"])
-    page.locator("[data-testid=stForm]").first.wait_for()
+    page.locator(".st-key-record_one button").wait_for()
     rest(page)
     for name, number in ((texts.HISTORY_ROW, "3"), (texts.HISTORY_PLANT, "4")):
         tab_to(page, page.get_by_role("spinbutton", name=name, exact=True))
         page.keyboard.type(number)
-    radio = page.locator("[data-testid=stForm]").get_by_role("radio", name="found", exact=True)
+    radio = page.get_by_role("radio", name="found", exact=True)
     tab_to(page, page.get_by_role("radio", name="clean", exact=True).or_(radio))
     for _ in range(5):
         if radio.evaluate("(one) => one.matches(':focus')"):

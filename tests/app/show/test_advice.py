@@ -61,7 +61,8 @@ def test_a_share_and_litres_are_said_as_in_the_sentence_and_on_paper(made, monke
     of_plot = share_figure(made.zones.m2 / made.zones.plot_m2)
     assert apart(of_plot) in apart(made.headline(choices.units))
     assert apart(said[texts.DECIDE_AREA]).endswith(f"({of_plot})")
-    assert apart(said[texts.DECIDE_LIQUID]) == litres_figure(made.litres, " l")
+    liquid = f"{litres_figure(made.litres)} l"
+    assert apart(said[texts.DECIDE_LIQUID]) == liquid
     on_paper = {one.label: one for one in _figures(made, "", Units()).figures}
     assert on_paper[words.AREA_SPRAYED].note.startswith(of_plot)
-    assert on_paper[words.LIQUID].value == litres_figure(made.litres, " l")
+    assert on_paper[words.LIQUID].value == liquid

@@ -33,7 +33,7 @@ def test_figures_are_the_plot_s_in_the_units_chosen(metrics):
     plot = replace(plot, field=replace(plot.field, no_go=shed))
     plot_figures.show(plot, UnitsInLanguage())
     assert metrics == {
-        "Area": f"{area_m2(plot.field.boundary) / 1e4:.2f} ha",
+        "Area": f"{area_m2(plot.field.boundary) / 1e4:.3f} ha",
         "Plants": f"{len(plot.grid):,}",
         "Rows": plot.grid.n_rows,
         "Row direction": "20.0°",

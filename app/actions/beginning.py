@@ -146,10 +146,14 @@ def another(choices: Choices) -> None:
     st.button(texts.ANOTHER, key="begin_another", on_click=_open_files, args=(choices,))
 
 
-def _open_files(choices: Choices) -> None:
+@notices.reporting
+def _open_files(choices: Choices) -> str:
     begun_from = st.session_state.get(f"{_FROM} {choices.season.path}")
     field, nothing = choices.plot.field, plot_files.of_session() is None
+    if begun_from is None and not nothing:
+        raise SettingError(texts.ANOTHER_ELSEWHERE)
     # opened by its address: what it was begun from is not here; measured plants are files'
-    if begun_from is None and nothing and field.plants is None:
+    if begun_from is None and field.plants is None:
         drawn_plot.bring(field)
     plot_source.open_season(begun_from or plot_source.FILES)
+    return texts.ANOTHER_BARE if begun_from is None else ""

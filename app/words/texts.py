@@ -552,6 +552,11 @@ ANOTHER_NOTE = (
     "Nothing is recorded yet: another season can be begun with other rows. This one stays as it is."
 )
 ANOTHER = "Begin another season"
+ANOTHER_ELSEWHERE = (
+    "This season must be the only plot at hand, but another one is open under My plot: take it "
+    "away there, or begin the season from there."
+)
+ANOTHER_BARE = "The plot is open as it was begun, without its records of pests: bring them, too."
 DRAW, DRAW_KIND = "Gate, paths, no-go areas, rows", "A click on the map sets"
 DRAW_KINDS = {"": "nothing", "gate": "the gate", "path": "points of a path",
               "no_go": "corners of a no-go area", "row": "how rows bend",

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _DRAWS = 400
+# shares are sums of the plants' parts, which are rounded
+_ROUNDED = 1e-9
 # fields drawn at a time, so that a million plants need no gigabyte
 _CELLS_AT_ONCE = 20_000_000
 
@@ -150,7 +152,7 @@ class AskedVerdict:
 
     def of(self, shares: Floats, share: float) -> MapVerdict:
         """Return the verdict on drawn shares ``(draws,)`` of plants, `share` of them expected."""
-        above = float(np.mean(shares >= self.level))
+        above = float(np.mean(shares >= self.level * (1.0 - _ROUNDED)))
         verdict: Verdict = (
             TREAT if above >= self.sure else LEAVE if above <= 1 - self.sure else LOOK_ON
         )
@@ -347,5 +349,5 @@ def _drawn(
             became[:, None] * (right / expected),
         )
     # of plants that were found nothing is in doubt
-    certain = np.where(known, chance, 0.0) @ weights
+    certain = known.astype(np.float64) @ weights
     return read_only(np.minimum(sums + certain, 1.0))

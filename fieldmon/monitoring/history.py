@@ -55,6 +55,8 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 #: who begins later than this after the day's start, or sooner before it, has hours of their own
 BEGINS_OTHERWISE_S = 300.0
+# who begins no sooner than this before a day's start works on that day
+_BEGINS_EARLY_S = 3600.0
 
 
 class Besides(NamedTuple):
@@ -563,8 +565,8 @@ class History:
     def _work_days(self, shift: Shift, who: str | Besides | None) -> NDArray[np.int32]:
         """Return ``(k,)`` the day on which the work began in whose hours each inspection was made.
 
-        That is its own day, or the one before where somebody's work goes past midnight: until its
-        hours end or their next work begins.
+        That is its own day, or the one before where somebody's work went past midnight: until an
+        hour before their next work begins.
         """
         # asked for several times by each scene
         key = shift.aisles, shift.robot, shift.starts_s, who
@@ -592,7 +594,9 @@ class History:
             if (second < self._ends_s(shift, day, latest_s)).any():
                 resting = resting_place(shift.robot, self._last_worked(work, own, day))
                 begun_s = _begun_s(shift, self.inspections.take(mine[:1]), resting)
-                work[early[second < self._ends_s(shift, day, begun_s)]] = day
+                if (second < self._ends_s(shift, day, begun_s)).any():
+                    # it went past midnight, and may run over: until the next is about to begin
+                    work[early[second < shift.starts_s - _BEGINS_EARLY_S]] = day
         return work
 
     def _ends_s(self, shift: Shift, day: int, begun_s: float) -> float:

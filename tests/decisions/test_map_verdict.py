@@ -43,6 +43,14 @@ def test_it_treats_leaves_or_looks_on_as_sure_as_asked():
     assert verdict(0.05) == "look on"
 
 
+@pytest.mark.parametrize("n", [1, 7, 25, 333])
+def test_of_plants_that_are_known_to_be_infested_their_share_is_the_level_and_no_less(n):
+    known = np.arange(len(GRID)) < n
+    asked = AskedVerdict(n / len(GRID), found=known)
+    said = map_verdict(GRID, np.where(known, 1.0 - 1e-6, 1e-6), asked)
+    assert (said.verdict, said.chance_above) == ("treat", 1.0)
+
+
 def test_a_part_of_the_plot_is_asked_about_by_itself():
     chance = np.where(np.arange(len(GRID)) < 100, 0.4, 0.001)
     here = np.arange(len(GRID)) < 100

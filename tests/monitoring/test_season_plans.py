@@ -101,6 +101,22 @@ def test_each_night_of_a_season_has_its_own_begin_and_all_its_hours(tmp_path, re
         assert (held.left, held.added) == (0, 0)
 
 
+def test_a_night_that_runs_over_takes_nothing_from_the_next(tmp_path):
+    robot, starts = replace(ROBOT, hours=8.0), time(20)
+    season = a_season(tmp_path / "over.gpkg", robot=robot, starts=starts)
+    told = [(0, "21:00"), (1, "00:30"), (1, "03:50"), (1, "05:10"), (1, "12:30")]
+    day, clocks = zip(*told, strict=True)
+    second = [3600.0 * int(one[:2]) + 60.0 * int(one[3:]) for one in clocks]
+    noted = Inspections.of(
+        np.arange(len(told)), np.full(len(told), CLEAN),
+        np.array([on(one) for one in day], "datetime64[D]"), second=np.array(second),
+    )  # fmt: skip
+    season.record(noted, "night")
+    assert season.scene(on(1)).seconds_left == robot.day_s
+    assert season.worked(on(0)).plant.tolist() == [0, 1, 2, 3, 4]
+    assert season.plan(on(1)).route.notes.start.time() == starts
+
+
 def test_the_time_now_may_be_past_midnight_where_the_work_is(season):
     season.change(replace(season.settings, starts=time(23)), season.settings)
     assert season.scene(BEGINS, time(0, 15)).seconds_left == ROBOT.day_s - 75 * 60

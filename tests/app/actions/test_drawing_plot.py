@@ -8,7 +8,20 @@ from app.actions import drawing_plot
 from app.state import drawn_plot, plot_source, web_maps, widget_memory
 from app.words import texts
 from fieldmon.monitoring import Season
-from tests.app.driving import begun, go, map_of, metric, opened, plot_name, press, tap, texts_of
+from tests.app.driving import (
+    begun,
+    go,
+    map_of,
+    metric,
+    opened,
+    plot_name,
+    press,
+    tap,
+    texts_of,
+    upload,
+    zipped,
+)
+from tests.cli.estate import square
 
 SQUARE = ((34.9, 31.5), (34.902, 31.5), (34.902, 31.502), (34.9, 31.502))
 
@@ -77,6 +90,7 @@ def test_another_season_of_one_opened_by_its_address_has_its_boundary_gate_and_n
     assert metric(another, "Plants") == plants
     press(another, texts.ANOTHER)
     assert not another.exception
+    assert texts.ANOTHER_BARE in [one.value for one in another.success]
     assert another.selectbox(key="season").value == plot_source.FILES
     assert (metric(another, "Area"), metric(another, "Plants")) == ("4.21 ha", plants)
     assert "the gate: 1" in texts_of(another)
@@ -87,6 +101,17 @@ def test_another_season_of_one_opened_by_its_address_has_its_boundary_gate_and_n
     ]
     assert kept[0].boundary.equals_exact(kept[1].boundary, 1e-7, normalize=True)
     assert kept[0].no_go.equals_exact(kept[1].no_go, 1e-7, normalize=True)
+
+
+def test_another_season_opens_no_other_plot_that_is_at_hand(drawing, tmp_path):
+    corners(drawing, SQUARE)
+    press(drawing, texts.OUTLINE_USE)
+    begun(drawing, "Drawn 2026")
+    another = upload(opened(), plot=("plot.zip", zipped(tmp_path, square())))
+    another.selectbox(key="season").set_value("Drawn 2026").run()
+    press(go(another, "plot"), texts.ANOTHER)
+    assert texts.ANOTHER_ELSEWHERE in [one.value for one in another.error]
+    assert another.selectbox(key="season").value == "Drawn 2026"
 
 
 def test_too_few_corners_and_crossed_ones_are_refused_in_a_sentence_and_stay(drawing):

@@ -789,11 +789,20 @@ def route_of(page):
     button.wait_for()
     # until the page is at rest, the button may be drawn again under the press
     rest(page)
-    with page.expect_download() as download:
-        button.click()
+    taken = []
+
+    def is_taken():
+        # a press under which the button is drawn again is none: a person presses again, too
+        with suppress(PlaywrightTimeout), page.expect_download(timeout=30_000) as download:
+            button.click()
+        with suppress(PlaywrightTimeout):
+            taken.append(download.value)
+        return bool(taken)
+
+    until(is_taken)
     page.get_by_role("dialog").get_by_label("Close").click()
     page.get_by_role("dialog").wait_for(state="hidden")
-    return json.loads(download.value.path().read_text(encoding="utf-8"))["features"]
+    return json.loads(taken[0].path().read_text(encoding="utf-8"))["features"]
 
 
 def plants_of(features):

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.estate_day import EstatePlot
     from fieldmon.monitoring.estate_routes import EstateRoute
     from fieldmon.planning.members import TeamMember
-    from fieldmon.plot.robot import Robot
 
 Seasons = Annotated[
     list[Path], typer.Argument(help="Season files, made by fieldmon init; a plot each.")
@@ -91,17 +90,17 @@ def share(options: ShareOptions) -> None:
     """
     endings = _endings(options.formats or ["geojson"])
     seasons = opened(options.seasons)
-    plots = [*_due(seasons, day(options.on), every=options.not_due)]
-    if not plots:
+    due = [*_due(seasons, day(options.on), every=options.not_due)]
+    if not due:
         raise SettingError(
             "At least one season must have begun and be due, but none has and is. Plan those seen "
             "in the last three days with --all, or another day with --date."
         )
-    folder = options.output or Path(f"day-{min(plot.on for plot in plots)}")
+    folder = options.output or Path(f"day-{min(plot.on for _, plot in due)}")
     _require_empty(folder)
-    members, starts = _members(options, [one.season for one in plots if one.season is not None])
-    made = _planned(plots, members, starts, 60.0 * options.move)
-    tell_assumed_of_plots({_name(plot): _assumed(plot, members) for plot in plots})
+    members, starts = _members(options, [season for season, _ in due])
+    made = _planned(due, members, starts, 60.0 * options.move)
+    tell_assumed_of_plots({_name(season): _assumed(season, members) for season, _ in due})
     if not made.routes:
         raise SettingError(
             "Somebody must be able to inspect a plot within the hours, but nobody is: the plots "
@@ -123,7 +122,7 @@ def _members(
     options: ShareOptions, seasons: Sequence[Season]
 ) -> tuple[tuple[TeamMember, ...], time]:
     """Return who works, and when the first of them starts: the seasons' robot, if not told."""
-    from fieldmon.monitoring.estate_day import one_robot
+    from fieldmon.monitoring.estate_day import one_robot, robots_of
 
     worker, told = options.worker, options.robots or "1"
     robot = None if worker.scout or worker.rover else one_robot(seasons)
@@ -134,7 +133,7 @@ def _members(
             "The seasons must work with one robot, but they have several. Say who works: --scout, "
             "--rover, or a table with --robots."
         )
-    hours = {one.hours for season in seasons for one in _robots(season)}
+    hours = {one.hours for season in seasons for one in robots_of(season)}
     if told.isdecimal() and worker.hours is None and len(hours) > 1:
         listed = " and ".join(f"{one:g}" for one in sorted(hours))
         raise SettingError(
@@ -147,11 +146,6 @@ def _members(
             f"lon and lat of {', '.join(fixed)}. Leave them out."
         )
     return members, starts
-
-
-def _robots(season: Season) -> list[Robot]:
-    settings = season.settings
-    return [one.robot for one in settings.team] or [settings.robot]
 
 
 def _endings(formats: Sequence[str]) -> list[str]:
@@ -167,13 +161,15 @@ def _endings(formats: Sequence[str]) -> list[str]:
     return [*dict.fromkeys(map(ending, formats))]
 
 
-def _name(plot: EstatePlot) -> str:
-    """Return what a plot is called: its season's file says it apart from others."""
-    return "" if plot.season is None else plot.season.path.stem
+def _name(season: Season) -> str:
+    """Return what a season's plot is called: its file says it apart from others."""
+    return season.path.stem
 
 
-def _due(seasons: Sequence[Season], told: date | None, *, every: bool) -> Iterator[EstatePlot]:
-    """Yield the plots to share the day; say which are left out."""
+def _due(
+    seasons: Sequence[Season], told: date | None, *, every: bool
+) -> Iterator[tuple[Season, EstatePlot]]:
+    """Yield the seasons that share the day, with their plots; say which are left out."""
     from fieldmon.monitoring.estate_day import EstatePlot, days_since, due
 
     begun = []
@@ -182,7 +178,7 @@ def _due(seasons: Sequence[Season], told: date | None, *, every: bool) -> Iterat
         on = day_on(season.plot.field, told)
         if on < season.settings.begins:
             typer.echo(
-                f"seen: {season.path.stem} begins on {season.settings.begins} and is left out.",
+                f"seen: {_name(season)} begins on {season.settings.begins} and is left out.",
                 err=True,
             )
         else:
@@ -191,21 +187,19 @@ def _due(seasons: Sequence[Season], told: date | None, *, every: bool) -> Iterat
     wanted = range(len(begun)) if every else due(since)
     for k, (season, on) in enumerate(begun):
         if k in wanted:
-            yield EstatePlot.of(season, on)
+            yield season, EstatePlot.of(season, on)
         else:
             days = since[k] or 0
             ago = f"{counted(days, 'day')} ago" if days else "today"
-            typer.echo(f"{season.path.stem} was inspected {ago} and is not due.")
+            typer.echo(f"{_name(season)} was inspected {ago} and is not due.")
 
 
-def _assumed(plot: EstatePlot, members: tuple[TeamMember, ...]) -> str:
-    if plot.season is None:
-        return ""
-    return assumed_in_words(plot.season.assumed(replace(plot.season.settings, team=members)))
+def _assumed(season: Season, members: tuple[TeamMember, ...]) -> str:
+    return assumed_in_words(season.assumed(replace(season.settings, team=members)))
 
 
 def _planned(
-    plots: Sequence[EstatePlot],
+    due: Sequence[tuple[Season, EstatePlot]],
     members: Sequence[TeamMember],
     starts: time,
     move_s: float,
@@ -216,40 +210,35 @@ def _planned(
     from fieldmon.monitoring.estate_day import share_estate
     from fieldmon.monitoring.estate_routes import EstateRoute
 
+    seasons, plots = zip(*due, strict=True)
+    names = [_name(season) for season in seasons]
     shared = share_estate(plots, members, starts, move_s)
     said = [
-        () if one.season is None else
-        left_off_in_words(closed, (one.scene.grid, one.season.label), Units())
-        for one, closed in zip(plots, shared.closed, strict=True)
-    ]  # fmt: skip
+        [*map(str, left_off_in_words(closed, (season.plot.grid, season.label), Units()))]
+        for season, closed in zip(seasons, shared.closed, strict=True)
+    ]
     routes, worked = [], set()
     with progress("Routes", len(shared.turns)) as bar:
         for turn in shared.turns:
-            route, plot = turn.plan().route, plots[turn.plot]
+            route, k = turn.plan().route, turn.plot
             bar.update(1)
             if not len(route):
                 continue
-            worked.add(turn.plot)
-            sampler = "" if plot.season is None else plot.season.settings.sampler
-            routes.append(
-                EstateRoute(
-                    _name(plot), members[turn.who].name, turn.begins, route, sampler,
-                    [*map(str, said[turn.plot])],
-                )
-            )  # fmt: skip
+            worked.add(k)
+            who, sampler = members[turn.who].name, seasons[k].settings.sampler
+            routes.append(EstateRoute(names[k], who, turn.begins, route, sampler, said[k]))
     for one in routes:
         tell_member(f"{one.plot}, {one.who}", one.begins, one.route)
-    for plot, sentences in zip(plots, said, strict=True):
+    for name, sentences in zip(names, said, strict=True):
         for sentence in sentences:
-            typer.echo(f"seen: {_name(plot)}: {sentence}", err=True)
+            typer.echo(f"seen: {name}: {sentence}", err=True)
     without = sorted({*range(len(plots))} - worked)
-    if late := [_name(plots[k]) for k in without if not said[k]]:
+    if late := [names[k] for k in without if not said[k]]:
         typer.echo(f"No time for {', '.join(late)}.")
     busy = {one.who for one in routes}
     if free := [one.name for one in members if one.name not in busy]:
         typer.echo(f"Without a plot: {', '.join(free)}.")
-    waits = {_name(plots[k]): [*map(str, said[k])] for k in without}
-    return _SharedDay(routes, waits, free)
+    return _SharedDay(routes, {names[k]: said[k] for k in without}, free)
 
 
 def _write(folder: Path, made: _SharedDay, endings: Sequence[str]) -> None:

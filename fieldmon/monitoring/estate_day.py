@@ -124,13 +124,18 @@ def days_since(season: Season, on: date) -> int | None:
     return int((np.datetime64(on) - dates.max()) / np.timedelta64(1, "D")) if len(dates) else None
 
 
+def robots_of(season: Season) -> list[Robot]:
+    """Return the robots with which a season works: each of its team, or its only one."""
+    settings = season.settings
+    return [one.robot for one in settings.team] or [settings.robot]
+
+
 def one_robot(seasons: Iterable[Season]) -> Robot | None:
     """Return the robot with which all of these seasons work; None: they have several, or none.
 
     Hours are not compared: they are those of the first.
     """
-    settings = [season.settings for season in seasons]
-    robots = [one.robot for of in settings for one in (of.team or (of,))]
+    robots = [robot for season in seasons for robot in robots_of(season)]
     kinds = {replace(robot, hours=1.0) for robot in robots}
     return robots[0] if len(kinds) == 1 else None
 

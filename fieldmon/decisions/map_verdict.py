@@ -13,7 +13,7 @@ from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pairs import pair_chances
+from fieldmon.infestation.pairs import pairs_of
 from fieldmon.infestation.plot_estimate import doubted, draw_fields, known_infested
 
 if TYPE_CHECKING:
@@ -207,7 +207,7 @@ def map_verdict(
         raise SettingError(
             worded("A verdict must be about a plant or more, but the area holds none.")
         )
-    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
+    pairs = pairs_of((chance, pair_chance), grid)
     weights = csc_array(of[:, None] / np.count_nonzero(of))
     shares = _drawn(grid, (chance, pairs), weights, asked, key)
     return asked.of(shares[:, 0], float(chance[of].mean()))
@@ -287,8 +287,7 @@ def zone_verdicts(
     works
         Chance that treating cleans an infested plant.
     """
-    chance, pair_chance = believed
-    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
+    chance, pairs = believed[0], pairs_of(believed, grid)
     n, count = len(grid), int(zones.max(initial=-1)) + 1
     inside = np.flatnonzero(zones >= 0)
     each = np.bincount(zones[inside], minlength=max(count, 1)).clip(1)

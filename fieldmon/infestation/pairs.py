@@ -103,6 +103,17 @@ def pair_chances(
     return pair_chance
 
 
+def pairs_of(
+    believed: tuple[NDArray[np.float64], NDArray[np.float64] | None], grid: PlantGrid
+) -> NDArray[np.float64]:
+    """Return what is believed of pairs ``(e,)``; as records have it, where nothing is.
+
+    `believed` is ``chance (n,)`` and ``pair_chance (e,)`` or None.
+    """
+    chance, pair_chance = believed
+    return pair_chances(chance, grid) if pair_chance is None else pair_chance
+
+
 @loop
 def _pair_chances(
     chance: NDArray[np.float64], adjacent: Csr, clustering: float, pair_chance: NDArray[np.float64]

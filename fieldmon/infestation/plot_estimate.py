@@ -17,7 +17,7 @@ from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.chance_bounds import KNOWN
-from fieldmon.infestation.pairs import pair_chances
+from fieldmon.infestation.pairs import pairs_of
 from fieldmon.infestation.unwatched import of_odds
 
 if TYPE_CHECKING:
@@ -189,9 +189,7 @@ def _of_map(
     named: bool,
 ) -> tuple[Floats, float]:
     """Return how many of the plants asked about there may be by a map, and the chance of none."""
-    chance, pair_chance = believed
-    pairs = pair_chances(chance, grid) if pair_chance is None else pair_chance
-    numbers, none = drawn_numbers(grid, (chance, pairs), asked)
+    numbers, none = drawn_numbers(grid, (believed[0], pairs_of(believed, grid)), asked)
     if doubt <= 0.0:
         return numbers, float(np.exp(none))
     factors, n = doubted_level(doubt, named=named), max(int(np.count_nonzero(asked)), 1)

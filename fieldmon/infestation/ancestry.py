@@ -319,10 +319,19 @@ class Ancestry:
             "hiding": self.hiding,
             "earlier": self.earlier,
             "taught": self.taught,
+            **self._of_pest,
         }
 
+    @property
+    def _of_pest(self) -> dict[str, NDArray[np.generic]]:
+        if self.pest is None:
+            return {}
+        return {"nights": self.nights, "wind_m_s": np.array(self.wind_m_s)}
+
     @classmethod
-    def of_arrays(cls, grid: PlantGrid, arrays: dict[str, NDArray[Any]]) -> Ancestry:
+    def of_arrays(
+        cls, grid: PlantGrid, arrays: dict[str, NDArray[Any]], pest: Pest | None = None
+    ) -> Ancestry:
         """Return what such arrays have kept; raise `ValueError` if they are none of its plants."""
         kept = dict(arrays)
         plant, begins, ends, found, parent, children, there, earliest = kept.pop("infestations")
@@ -340,10 +349,11 @@ class Ancestry:
             plant, begins, ends, found != 0, parent, children, there != 0, earliest
         )
         rates = Rates(shares, *map(float, others))
+        x, y = kept.pop("wind_m_s", np.zeros(2)).tolist()
         return cls(
             grid, new=(), infestations=infestations, rates=rates,
             arrived=arrived, began_anew=bool(anew),
-            heard=int(heard), idle=int(idle), pest=None, wind_m_s=(0.0, 0.0), **kept,
+            heard=int(heard), idle=int(idle), pest=pest, wind_m_s=(float(x), float(y)), **kept,
         )  # fmt: skip
 
 

@@ -67,6 +67,13 @@ def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_
     (plant,) = season_named.history.inspections.plant
     label = season_named.label
     assert (label.line[plant], label.number[plant]) == (1, 5)
+    # what was recorded, and what was undone, is called as it was typed
+    go(app, "record")
+    (recorded,) = [one for one in app.button if one.label == "Undo"]
+    assert "row 1 · 5a, plant 5: found" in recorded.help
+    recorded.click()
+    app.run()
+    assert "1 · 5a" in app.success[0].value
 
 
 def expected(app):

@@ -13,7 +13,6 @@ from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes, scouts, season_log
-from fieldmon.monitoring.day_ahead import inside
 from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.mornings import is_behind
@@ -243,7 +242,7 @@ class SeasonPlans(OpenSeason):
         theirs = np.zeros(len(plants), np.bool_)
         for name, rows in codes.items():
             if person_key(name) in out:
-                theirs |= inside(self.label, rows)[plants]
+                theirs |= scouts.inside(self.label, rows)[plants]
         return plants[~theirs]
 
     def _unused_routes(

@@ -22,7 +22,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
 from ..show import day, plant_history, recorded_batches
-from ..state import chosen_day, kept_files, notices, unconfirmed
+from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
@@ -48,6 +48,7 @@ _TAPPED = "one_tapped"
 
 def show(choices: Choices) -> None:
     """Show the ways of recording, and of noting a treatment."""
+    fresh_boxes.turn(choices)
     st.markdown(f"**{texts.RECORD} · {choices.units.said_day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
     ask_about_contradictions(choices)

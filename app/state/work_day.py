@@ -8,6 +8,8 @@ from datetime import date
 
 import streamlit as st
 
+from . import fresh_boxes
+
 #: the word in the address that leads back to a day chosen on purpose
 KEY = "day"
 _CHOSEN, _READ = "days chosen", "day read from address"
@@ -43,11 +45,13 @@ def of(source: str, calendar: Calendar) -> date:
 
 def choose(source: str, day: date) -> None:
     """Choose a day on purpose; it counts until another is chosen, or today is."""
+    fresh_boxes.hold()
     _chosen()[source] = day
 
 
 def back_to_today(source: str) -> None:
     """Let today count again."""
+    fresh_boxes.hold()
     _chosen().pop(source, None)
 
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring.day_ahead import DayAhead, inside, through
+from fieldmon.monitoring.day_ahead import DayAhead, through
 from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.scouts import inside
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.wishes import Wishes

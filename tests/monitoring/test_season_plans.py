@@ -332,6 +332,30 @@ def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
     assert (held.planned, held.done, held.people) == (len(ann) + 3, 3, 1)
 
 
+def test_a_code_for_some_rows_leaves_the_rest_of_the_days_plan_as_it_is(tmp_path):
+    season = a_season(tmp_path / "rows.gpkg")
+    own = season.plan(BEGINS).route.plant
+    line, day = season.label.line, np.datetime64(BEGINS)
+    rows, last = (int(line[own[0]]),) * 2, int(line.max())
+    scouts.let_in(season, "Ann", rows)
+    ann = route_ahead(season, BEGINS, Part(rows, "Ann"))
+    others = own[line[own] != rows[0]]
+    held = season.planned_and_done(BEGINS)
+    assert (held.planned, held.people) == (len(ann) + len(others), 2)
+    season.record(Inspections.of(others[:2], np.zeros(2, np.int8), day), "typed in")
+    held = season.planned_and_done(BEGINS)
+    assert (held.done, held.added, held.left) == (2, 0, len(ann) + len(others) - 2)
+    # once others have all its rows nobody goes by it
+    routes = [ann]
+    for name, (low, high) in {"Ben": (1, rows[0] - 1), "Cem": (rows[0] + 1, last)}.items():
+        if low <= high:
+            scouts.let_in(season, name, (low, high))
+            routes.append(route_ahead(season, BEGINS, Part((low, high), name)))
+    held = season.planned_and_done(BEGINS)
+    assert held.people == len(routes)
+    assert held.left == sum(map(len, routes))
+
+
 def test_a_code_taken_back_on_a_later_day_changes_no_day_before(tmp_path):
     season = a_season(tmp_path / "out.gpkg")
     parts = [Part(name=name) for name in ("Ann", "Dan")]

@@ -3,7 +3,7 @@
 import json
 import shutil
 import uuid
-from datetime import date, time
+from datetime import date, time, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -67,6 +67,13 @@ def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_
     (plant,) = season_named.history.inspections.plant
     label = season_named.label
     assert (label.line[plant], label.number[plant]) == (1, 5)
+    # what was recorded, and what was undone, is called as it was typed
+    go(app, "record")
+    (recorded,) = [one for one in app.button if one.label == "Undo"]
+    assert "row 1 · 5a, plant 5: found" in recorded.help
+    recorded.click()
+    app.run()
+    assert "1 · 5a" in app.success[0].value
 
 
 def expected(app):
@@ -222,6 +229,19 @@ def send(app, form):
     """Press the button of some boxes."""
     app.button(key="treat" if form == "treatment" else f"record_{form}").click().run()
     assert not app.exception
+
+
+def test_what_is_typed_before_the_page_of_another_day_is_there_is_of_that_day(season_app):
+    go(season_app, "record")
+    row, day = key_of(season_app, "one_row"), season_app.date_input[0].value
+    season_app.session_state[row] = 2
+    season_app.run()
+    season_app.date_input[0].set_value(day + timedelta(days=1)).run()
+    season_app.session_state[row] = 7  # from the box still in view
+    season_app.run()
+    assert (boxed(season_app.number_input, "one_row").value, season_app.error.len) == (7, 0)
+    season_app.date_input[0].set_value(day).run()
+    assert boxed(season_app.number_input, "one_row").value == 2
 
 
 @pytest.mark.parametrize("form", ["route", "one", "treatment"])

@@ -69,10 +69,12 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
     from fieldmon.samplers import SAMPLERS
     from fieldmon.samplers.base import Sampler, Scene, Stops
+    from fieldmon.simulation.comparison import CompareSettings, Comparison, compare
     from fieldmon.simulation.library import draw_start, simulate, simulate_days
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SeasonSettings, SimulatedDay
     from fieldmon.simulation.start import Start
+    from fieldmon.simulation.statistics import Ratio
     from fieldmon.simulation.treating import TreatmentRule
 
 _MODULES = {
@@ -127,10 +129,12 @@ _MODULES = {
     "monitoring.advice": ("AdviceSettings",),
     "monitoring.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork"),
+    "simulation.comparison": ("CompareSettings", "Comparison", "compare"),
     "simulation.library": ("draw_start", "simulate", "simulate_days"),
     "simulation.metrics": ("SeasonMetrics",),
     "simulation.season": ("SeasonSettings", "SimulatedDay"),
     "simulation.start": ("Start",),
+    "simulation.statistics": ("Ratio",),
     "simulation.treating": ("TreatmentRule",),
     "io.sources": ("PlantingChoices",),
 }
@@ -145,6 +149,8 @@ __all__ = [
     "BeliefSettings",
     "Block",
     "ChoiceNeeded",
+    "CompareSettings",
+    "Comparison",
     "ContradictionError",
     "DayPlan",
     "Dose",
@@ -173,6 +179,7 @@ __all__ = [
     "PlotEstimate",
     "PriorSettings",
     "ProductLabel",
+    "Ratio",
     "Robot",
     "Route",
     "Sampler",
@@ -194,6 +201,7 @@ __all__ = [
     "Viewpoints",
     "Weather",
     "__version__",
+    "compare",
     "cut_blocks",
     "draw_start",
     "hot_spots",

@@ -304,7 +304,7 @@ def _of_settings() -> Iterator[Case]:
                  fm.MonitoringSettings(TODAY), fm.PriorSettings(), fm.TeamMember("a"),
                  fm.Teamwork(), fm.AdviceSettings(), fm.Learning(), fm.TreatmentRule(),
                  fm.Sprayer(), fm.TreatmentCosts(), fm.HotSpotSettings(),
-                 fm.PestInWeather(pest)):  # fmt: skip
+                 fm.CompareSettings(), fm.PestInWeather(pest)):  # fmt: skip
         yield Case(type(made).__name__, type(made), _fields_of(made))
     yield Case("Application.by_label", fm.Application().by_label, {"label": None})
     yield Case("Dose.share_of", fm.Dose(0.5, "l/ha").share_of,
@@ -359,6 +359,9 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
                "robot": robot, "settings": fm.SeasonSettings(n_days=2), "seed": 1})  # fmt: skip
     yield Case("simulate_days", fm.simulate_days, {"plot": plot, "start": start,
                "sampler": "naive", "robot": robot, "settings": None, "seed": 1})  # fmt: skip
+    brief = fm.CompareSettings(seeds=2, robot=robot, season=fm.SeasonSettings(n_days=1))
+    yield Case("compare", fm.compare, {"plot": plot, "chance": chance, "samplers": ("naive",),
+               "settings": brief, "progress": None, "stop": None})  # fmt: skip
     posed = {"plot": plot, "reward": chance, "robot": robot, "seconds": 0.1}
     yield Case("routes.best", fm.routes.best, posed | {"others": ()})
     yield Case("routes.bound", fm.routes.bound, posed | {"within_s": 0.1})

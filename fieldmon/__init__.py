@@ -58,9 +58,10 @@ if TYPE_CHECKING:
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
     from fieldmon.planning import routes
-    from fieldmon.planning.members import TeamMember, Teamwork
+    from fieldmon.planning.members import TeamMember, Teamwork, team_of
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
+    from fieldmon.planning.team import TeamPlan, plan_team
     from fieldmon.plot.block import Block
     from fieldmon.plot.block_cutting import cut_blocks
     from fieldmon.plot.field import Field
@@ -128,7 +129,8 @@ _MODULES = {
     "infestation.prior_settings": ("PriorSettings",),
     "monitoring.advice": ("AdviceSettings",),
     "monitoring.status": ("Status",),
-    "planning.members": ("TeamMember", "Teamwork"),
+    "planning.members": ("TeamMember", "Teamwork", "team_of"),
+    "planning.team": ("TeamPlan", "plan_team"),
     "simulation.comparison": ("CompareSettings", "Comparison", "compare"),
     "simulation.library": ("draw_start", "simulate", "simulate_days"),
     "simulation.metrics": ("SeasonMetrics",),
@@ -195,6 +197,7 @@ __all__ = [
     "Status",
     "Stops",
     "TeamMember",
+    "TeamPlan",
     "Teamwork",
     "TreatmentCosts",
     "TreatmentRule",
@@ -206,6 +209,7 @@ __all__ = [
     "draw_start",
     "hot_spots",
     "plan_day",
+    "plan_team",
     "read_inspections",
     "read_pest",
     "read_plot",
@@ -217,6 +221,7 @@ __all__ = [
     "scout",
     "simulate",
     "simulate_days",
+    "team_of",
 ]
 
 

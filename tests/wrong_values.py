@@ -359,6 +359,10 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
                "robot": robot, "settings": fm.SeasonSettings(n_days=2), "seed": 1})  # fmt: skip
     yield Case("simulate_days", fm.simulate_days, {"plot": plot, "start": start,
                "sampler": "naive", "robot": robot, "settings": None, "seed": 1})  # fmt: skip
+    yield Case("plan_team", fm.plan_team, {"plot": plot, "chance": chance,
+               "members": fm.team_of(2, fm.Robot(hours=0.1)), "progress": None,
+               "passing_m": 0.0, "on": TODAY})  # fmt: skip
+    yield Case("team_of", fm.team_of, {"n": 2, "robot": None})
     brief = fm.CompareSettings(seeds=2, robot=robot, season=fm.SeasonSettings(n_days=1))
     yield Case("compare", fm.compare, {"plot": plot, "chance": chance, "samplers": ("naive",),
                "settings": brief, "progress": None, "stop": None})  # fmt: skip

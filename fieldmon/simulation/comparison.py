@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_in, must_hold_shapes, shown
+from fieldmon.compute.arguments import chances_of, must_be_in, must_hold_shapes, shown
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import PAIRED, SHARE
 from fieldmon.compute.wording import counted
@@ -21,7 +21,6 @@ from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
 from fieldmon.simulation.paired import SameInsects, met_by_all, paired
 from fieldmon.simulation.season import SeasonSettings
-from fieldmon.simulation.start import chances_of
 from fieldmon.simulation.statistics import paired_ratio, too_few_sentence
 
 if TYPE_CHECKING:
@@ -268,7 +267,7 @@ def compare(
     True
     """
     chosen, decide = settings or CompareSettings(), _by_name(samplers)
-    insects = SameInsects(plot, chances_of(plot.grid, chance), chosen.share, chosen.season)
+    insects = SameInsects(plot, chances_of(chance, plot.n_plants), chosen.share, chosen.season)
     experiment = paired(
         [*decide],
         range(1, chosen.seeds + 1),

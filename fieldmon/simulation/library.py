@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.arguments import chances_of
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.plot.plot import must_be_plot
@@ -12,7 +13,7 @@ from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.answers import must_name_plants
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SeasonSettings, check_start, simulated_days
-from fieldmon.simulation.start import Start, chances_of, season_start
+from fieldmon.simulation.start import Start, season_start
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,7 +57,7 @@ def draw_start(
     True
     """
     must_be_plot(plot)
-    chance = chances_of(plot.grid, chance)
+    chance = chances_of(chance, plot.n_plants)
     must_be_of("The share infested at the start", "float", share)
     return season_start(plot.grid, chance, share, RandomStreams(seed))
 

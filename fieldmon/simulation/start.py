@@ -5,21 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from fieldmon.compute.arguments import (
-    array_of,
-    must_be_chances,
-    must_be_shaped,
-    must_hold_shapes,
-)
+from fieldmon.compute.arguments import must_be_chances, must_hold_shapes
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.infestation.prior import start_infested
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    import numpy as np
+    from numpy.typing import NDArray
 
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.plot.grid import PlantGrid
@@ -70,14 +64,3 @@ def season_start(
         )
     infested = start_infested(chance, share, streams.of("start"))
     return Start(infested[grid.vine], chance)
-
-
-def chances_of(grid: PlantGrid, chance: ArrayLike) -> NDArray[np.float64]:
-    """Return what a caller hands over as a first morning's chances, ``(n,)``, held to be such.
-
-    Raise `SettingError` unless it is a chance for each plant.
-    """
-    chances = array_of(np.float64, "A chance map", chance)
-    must_be_shaped("A plot's", {"chance map": (chances, (len(grid),))})
-    must_be_chances("A chance map", chances)
-    return chances

@@ -7,7 +7,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
-from fieldmon.simulation.start import Start, chances_of, season_start
+from fieldmon.simulation.start import Start, season_start
 
 GRID = rectangle(40, 50)
 CHANCE = np.linspace(0.001, 0.2, len(GRID))
@@ -54,11 +54,3 @@ def test_what_is_believed_must_be_chances(odd):
     chance[2] = odd
     with pytest.raises(SettingError, match=r"must hold chances in 0\.\.1, but plant 2 of 4 has"):
         Start(np.zeros(4, bool), chance)
-
-
-def test_chances_are_taken_as_a_list_and_refused_unless_they_are_one_for_each_plant():
-    grid = rectangle(2, 2)
-    np.testing.assert_array_equal(chances_of(grid, [0.1, 0.2, 0.3, 1]), [0.1, 0.2, 0.3, 1.0])
-    for wrong, said in (([0.1], "shape"), ([0.1, 0.2, 0.3, 2.0], "0..1"), ("soon", "numbers")):
-        with pytest.raises(SettingError, match=said):
-            chances_of(grid, wrong)

@@ -11,7 +11,6 @@ import numpy as np
 from fieldmon.compute.arguments import chances_of, must_be_in, must_hold_shapes, shown
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import PAIRED, SHARE
-from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
@@ -124,7 +123,11 @@ class Comparison:
         must_hold_shapes(self, "A comparison's", dict.fromkeys(arrays, days))
 
     def __repr__(self) -> str:
-        return f"<Comparison: {', '.join(self.samplers)}, {counted(len(self.seeds), 'season')}>"
+        return f"<Comparison: {', '.join(self.samplers)}, {self._seasons('season')}>"
+
+    def _seasons(self, what: str) -> str:
+        n = len(self.seeds)
+        return f"{n:,} {what}{'s' * (n != 1)}"
 
     @property
     def infested_plant_days(self) -> NDArray[np.int64]:
@@ -205,7 +208,7 @@ class Comparison:
         if not n:
             return "No seed has been met by every sampler yet."
         said = "; ".join(f"{name} {ratio}" for name, ratio in ratios.items())
-        seasons = counted(n, "simulated season")
+        seasons = self._seasons("simulated season")
         first = f"Infested plant-days over those of {against}, in {seasons}: {said}."
         return f"{first} {too_few_sentence(n, 'seeds')}".rstrip()
 

@@ -43,11 +43,22 @@ class FreshBoxes:
     def key(self, box: str) -> str:
         """Return the key of a box."""
         place = f"{self.choices.day} {self.choices.key}"
-        return f"{box} {self.form} {st.session_state.get(self._times, 0)} {place}"
+        return f"{box} {self.form} {self.times} {place}"
 
     @property
     def _times(self) -> str:
         return f"{_TIMES}{self.form} {self.choices.day} {self.choices.key}"
+
+    @property
+    def times(self) -> int:
+        """Return how often the boxes of this day were emptied."""
+        times: int = st.session_state.get(self._times, 0)
+        return times
+
+    def hold_anything(self) -> bool:
+        """Return whether something is said in a box that is shown."""
+        said = (widget_memory.value(key) for key, of in _shown().items() if of == self._times)
+        return any(one not in (None, "", []) for one in said)
 
     def show(self, widget: Callable[..., T], *arguments: object, box: str, **settings: object) -> T:
         """Show a box with what was said in it and not kept yet."""
@@ -79,7 +90,7 @@ class FreshBoxes:
         hold(emptied)
         for key in emptied:
             del _shown()[key]
-        st.session_state[self._times] = st.session_state.get(self._times, 0) + 1
+        st.session_state[self._times] = self.times + 1
 
 
 def hold(keys: Iterable[str] | None = None) -> None:

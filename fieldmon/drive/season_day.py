@@ -188,7 +188,7 @@ def left_of_plan(
     before = np.flatnonzero(done.plant == kept.at)
     since = done.result[before[-1] + 1 if len(before) else 0 :]
     plants = ahead.plants[name]
-    is_left = scene.last_inspected[plants] != scene.day
+    is_left = scene.are_open(plants)
     for rows in left_out:
         is_left &= ~inside(season.label, rows)[plants]
     left = through(scene, plants[is_left])

@@ -234,7 +234,7 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     to_kept = season.closed_to_kept(on, part.name, ahead.kept_as(part))
     closed = closed_plants(to_kept, len(scene.chance))
     kept = ahead.route(part)
-    kept = kept[scene.last_inspected[kept] != scene.day]
+    kept = kept[scene.are_open(kept)]
     left = kept[ahead.own(part)[kept]]
     if not len(left) or closed[left].any() or (part.name and ahead.is_others(part, kept)):
         return planned_again(season, on, part)

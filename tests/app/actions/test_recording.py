@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import streamlit as st
 
 from app.actions import recording
 from app.state.fresh_boxes import FreshBoxes
@@ -492,3 +493,60 @@ def test_what_was_not_recorded_yet_is_there_again_after_a_reload(season_app, sea
     assert said(go(go(again, "season"), "record"))[:4] == filled[:4], "and on another page"
     later = reloaded(again, season="Gate 2026", day="2026-11-17")
     assert said(later)[:5] == EMPTY[:5]
+
+
+def broken_off(monkeypatch, typed=None):
+    """Let the next run of Record be broken off before its buttons, as by what is typed then."""
+    shown, breaks = recording.ask_about_contradictions, [True]
+
+    def ask(choices):
+        if breaks:
+            breaks.clear()
+            if typed is not None:
+                typed()
+            st.rerun()
+        shown(choices)
+
+    monkeypatch.setattr(recording, "ask_about_contradictions", ask)
+
+
+@pytest.mark.parametrize("is_more_typed", [False, True])
+def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
+    season_app, season, monkeypatch, is_more_typed
+):
+    go(season_app, "record")
+    row = key_of(season_app, "one_row")
+    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+
+    def type_next():
+        st.session_state[row] = 5
+
+    broken_off(monkeypatch, type_next if is_more_typed else None)
+    send(season_app, "one")
+    (plant,) = season().history.inspections.plant
+    label = season().label
+    assert (label.line[plant], label.number[plant]) == (3, 4)
+    assert boxed(season_app.number_input, "one_row").value == (5 if is_more_typed else None)
+    assert boxed(season_app.number_input, "one_plant").value is None
+
+
+def test_a_treatment_is_noted_though_the_run_of_the_press_is_broken_off(
+    season_app, season, monkeypatch
+):
+    go(season_app, "record")
+    boxed(season_app.number_input, "efficacy").set_value(90).run()
+    broken_off(monkeypatch)
+    send(season_app, "treatment")
+    assert len(season().treatments()) == 1
+
+
+def test_stops_of_the_route_are_recorded_though_the_run_of_the_press_is_broken_off(
+    season_app, season, monkeypatch
+):
+    go(season_app, "record")
+    boxed(season_app.number_input, "stops_done").set_value(3).run()
+    broken_off(monkeypatch)
+    send(season_app, "route")
+    assert len(season().history.inspections) == 3

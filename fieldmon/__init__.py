@@ -58,9 +58,10 @@ if TYPE_CHECKING:
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
     from fieldmon.planning import routes
-    from fieldmon.planning.members import TeamMember, Teamwork
+    from fieldmon.planning.members import TeamMember, Teamwork, team_of
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
+    from fieldmon.planning.team import TeamPlan, plan_team
     from fieldmon.plot.block import Block
     from fieldmon.plot.block_cutting import cut_blocks
     from fieldmon.plot.field import Field
@@ -69,10 +70,12 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
     from fieldmon.samplers import SAMPLERS
     from fieldmon.samplers.base import Sampler, Scene, Stops
+    from fieldmon.simulation.comparison import CompareSettings, Comparison, compare
     from fieldmon.simulation.library import draw_start, simulate, simulate_days
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SeasonSettings, SimulatedDay
     from fieldmon.simulation.start import Start
+    from fieldmon.simulation.statistics import Ratio
     from fieldmon.simulation.treating import TreatmentRule
 
 _MODULES = {
@@ -126,11 +129,14 @@ _MODULES = {
     "infestation.prior_settings": ("PriorSettings",),
     "monitoring.advice": ("AdviceSettings",),
     "monitoring.status": ("Status",),
-    "planning.members": ("TeamMember", "Teamwork"),
+    "planning.members": ("TeamMember", "Teamwork", "team_of"),
+    "planning.team": ("TeamPlan", "plan_team"),
+    "simulation.comparison": ("CompareSettings", "Comparison", "compare"),
     "simulation.library": ("draw_start", "simulate", "simulate_days"),
     "simulation.metrics": ("SeasonMetrics",),
     "simulation.season": ("SeasonSettings", "SimulatedDay"),
     "simulation.start": ("Start",),
+    "simulation.statistics": ("Ratio",),
     "simulation.treating": ("TreatmentRule",),
     "io.sources": ("PlantingChoices",),
 }
@@ -145,6 +151,8 @@ __all__ = [
     "BeliefSettings",
     "Block",
     "ChoiceNeeded",
+    "CompareSettings",
+    "Comparison",
     "ContradictionError",
     "DayPlan",
     "Dose",
@@ -173,6 +181,7 @@ __all__ = [
     "PlotEstimate",
     "PriorSettings",
     "ProductLabel",
+    "Ratio",
     "Robot",
     "Route",
     "Sampler",
@@ -188,16 +197,19 @@ __all__ = [
     "Status",
     "Stops",
     "TeamMember",
+    "TeamPlan",
     "Teamwork",
     "TreatmentCosts",
     "TreatmentRule",
     "Viewpoints",
     "Weather",
     "__version__",
+    "compare",
     "cut_blocks",
     "draw_start",
     "hot_spots",
     "plan_day",
+    "plan_team",
     "read_inspections",
     "read_pest",
     "read_plot",
@@ -209,6 +221,7 @@ __all__ = [
     "scout",
     "simulate",
     "simulate_days",
+    "team_of",
 ]
 
 

@@ -9,10 +9,10 @@ from fieldmon.cli.status import status as status_command
 from fieldmon.compute.units import Units
 from fieldmon.monitoring import Season, transactions
 from fieldmon.monitoring.advice import AdviceSettings
+from fieldmon.monitoring.record_tables import treatments_table
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.certification import certification_report
 from fieldmon.reports.day import DayFacts
-from fieldmon.reports.record_tables import treatments_table
 from fieldmon.reports.season import season_report
 from tests.monitoring.open_elsewhere import as_qgis
 from tests.monitoring.seasons import BEGINS, a_season, three_results

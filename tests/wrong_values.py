@@ -157,6 +157,7 @@ _CALLED = {
     "plants": ("plant", "must be a file"), "present": ("Results",),
     "product": ("treatment",), "reentry_hours": ("Re-entry",), "reward": ("Rewards",),
     "risk": ("risk map",), "said": ("pest",), "seconds": ("time for a route",),
+    "samplers": ("sampler",),
     "source": ("file",), "state": ("plant",), "step_s": ("step",), "steps": ("Viewpoints",),
     "rate_l_ha": ("rate in the zones",), "starts_s": ("start within a day",),
     "sure": ("to be right",), "value": ("dose",), "waiting_days": ("wait",),
@@ -304,7 +305,7 @@ def _of_settings() -> Iterator[Case]:
                  fm.MonitoringSettings(TODAY), fm.PriorSettings(), fm.TeamMember("a"),
                  fm.Teamwork(), fm.AdviceSettings(), fm.Learning(), fm.TreatmentRule(),
                  fm.Sprayer(), fm.TreatmentCosts(), fm.HotSpotSettings(),
-                 fm.PestInWeather(pest)):  # fmt: skip
+                 fm.CompareSettings(), fm.PestInWeather(pest)):  # fmt: skip
         yield Case(type(made).__name__, type(made), _fields_of(made))
     yield Case("Application.by_label", fm.Application().by_label, {"label": None})
     yield Case("Dose.share_of", fm.Dose(0.5, "l/ha").share_of,
@@ -359,6 +360,13 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
                "robot": robot, "settings": fm.SeasonSettings(n_days=2), "seed": 1})  # fmt: skip
     yield Case("simulate_days", fm.simulate_days, {"plot": plot, "start": start,
                "sampler": "naive", "robot": robot, "settings": None, "seed": 1})  # fmt: skip
+    yield Case("plan_team", fm.plan_team, {"plot": plot, "chance": chance,
+               "members": fm.team_of(2, fm.Robot(hours=0.1)), "progress": None,
+               "passing_m": 0.0, "on": TODAY})  # fmt: skip
+    yield Case("team_of", fm.team_of, {"n": 2, "robot": None})
+    brief = fm.CompareSettings(seeds=2, robot=robot, season=fm.SeasonSettings(n_days=1))
+    yield Case("compare", fm.compare, {"plot": plot, "chance": chance, "samplers": ("naive",),
+               "settings": brief, "progress": None, "stop": None})  # fmt: skip
     posed = {"plot": plot, "reward": chance, "robot": robot, "seconds": 0.1}
     yield Case("routes.best", fm.routes.best, posed | {"others": ()})
     yield Case("routes.bound", fm.routes.bound, posed | {"within_s": 0.1})
@@ -426,6 +434,7 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "take_corrections": who | {"copy": season.path, "name": "a"},
         "treat": on | {"efficacy": None, "area": None, "product": "", "application": None,
                        "plants": None},
+        "to_geopandas": {"of": "plants", "on": TODAY},
         "undo": who | {"batch": None, "inspection": None},
         "undo_change": who,
         "unrecorded": {"inspections": seen},

@@ -9,7 +9,7 @@ import streamlit as st
 from ..words import texts
 
 if TYPE_CHECKING:
-    from ..state.comparison import Comparison
+    from ..state.comparison import WatchedComparison
     from ..state.driving import DriveRun
     from ..state.live_drive import LiveDrive
 
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 _STEP_S, _STEPS = 0.05, 18
 
 
-def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool) -> bool:
+def buttons(
+    work: WatchedComparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool
+) -> bool:
     """Offer to begin and to stop it; return whether it is at work. `over`: nothing is left to do.
 
     It begins before its button is drawn, by what is chosen now: so no second run has to tell the
@@ -32,7 +34,7 @@ def buttons(work: Comparison | DriveRun | LiveDrive, label: str, *, key: str, ov
     return at_work
 
 
-def show_progress(running: Comparison) -> None:
+def show_progress(running: WatchedComparison) -> None:
     """Say how far it is; while there is no answer yet, wait a little for the first."""
     if not running.running and not running.done:  # nothing was begun: that says no more than this
         return

@@ -152,8 +152,7 @@ def _open_files(choices: Choices) -> str:
     field, nothing = choices.plot.field, plot_files.of_session() is None
     if begun_from is None and not nothing:
         raise SettingError(texts.ANOTHER_ELSEWHERE)
-    # opened by its address: what it was begun from is not here; measured plants are files'
-    if begun_from is None and field.plants is None:
+    if begun_from is None:  # opened by its address: what it was begun from is not here
         drawn_plot.bring(field)
     plot_source.open_season(begun_from or plot_source.FILES)
     return texts.ANOTHER_BARE if begun_from is None else ""

@@ -59,7 +59,6 @@ if TYPE_CHECKING:
     #: waits until plants can be laid, while a plot's outline may be shown
     Wait = Callable[[Field | None], None]
 
-_DAY = "day {source}"
 # in the box names look alike that begin with the same letters, so many
 _CUT_ALIKE = 14
 _MOST_MEASURED = 500
@@ -198,7 +197,7 @@ def _from_files(source: str, wait: Wait, work: Work) -> Choices | None:
 def _day(source: str, calendar: Calendar, clock: LocalClock) -> date:
     """Show the box for the day: today on the plot, unless another was chosen on purpose."""
     work_day.begin_from_address(source)
-    key = _DAY.format(source=source)
+    key = work_day.BOX.format(source=source)
     day = st.session_state[key] = work_day.of(source, calendar)
     zone = clock.zone or texts.ZONE_OF_MACHINE
     st.date_input(

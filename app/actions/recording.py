@@ -22,7 +22,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
 from ..show import day, plant_history, recorded_batches
-from ..state import chosen_day, kept_files, notices, unconfirmed
+from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
@@ -48,6 +48,7 @@ _TAPPED = "one_tapped"
 
 def show(choices: Choices) -> None:
     """Show the ways of recording, and of noting a treatment."""
+    fresh_boxes.turn(choices)
     st.markdown(f"**{texts.RECORD} · {choices.units.said_day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
     ask_about_contradictions(choices)
@@ -84,7 +85,8 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
 
 def _show_one(choices: Choices) -> None:
     st.caption(texts.HISTORY_TAP)
-    show = FreshBoxes(_ONE, choices).show
+    boxes = FreshBoxes(_ONE, choices)
+    show = boxes.show
     # no form: what is typed into one is the browser's alone until it is sent
     left, right = st.columns(2)
     # empty: what nobody said must not be recorded by one click
@@ -98,8 +100,7 @@ def _show_one(choices: Choices) -> None:
         format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
-    pressed = st.button(texts.RECORD_BUTTON, key="record_one")
-    acting.once(pressed, _record_one, choices)
+    acting.at_press(boxes, texts.RECORD_BUTTON, _record_one, choices, key="record_one")
 
 
 @notices.reporting
@@ -133,42 +134,57 @@ def _show_route(choices: Choices) -> None:
     st.caption(texts.RECORD_REST)
     if len(kept) and len(plan.route) and not chosen_day.is_given_out(choices, plan):
         st.caption(texts.RECORD_GIVEN_OUT)
-    done = boxes.show(
-        st.number_input, texts.RECORD_STOPS, 0, len(plants), box=f"stops_done {of}"
-    )  # fmt: skip
+    boxes.show(st.number_input, texts.RECORD_STOPS, 0, len(plants), box=f"stops_done {of}")
+    marks = _Marks(boxes.key(f"marks {of}"))
     with st.container(key="route_marks"):
-        table = partial(_marks, choices, plants, boxes.key(f"marks {of}"))
-        found = boxes.show(table, box=f"marked {of}", default=[])
-    pressed = st.button(texts.RECORD_BUTTON, key="record_route", type="primary")
-    acting.once(pressed, _record_stops, choices, plants, (int(done or 0), found))
+        table = partial(marks.show, choices, plants)
+        boxes.show(table, box=f"marked {of}", default=[])
+    acting.at_press(boxes, texts.RECORD_BUTTON, _record_stops, choices, plants, (of, marks),
+                    key="record_route", type="primary")  # fmt: skip
 
 
-def _marks(
-    choices: Choices, plants: np.ndarray, editor: str, *, value: list[int], key: str
-) -> list[int]:
-    """Show the stops to be marked, those of `value` marked already; return those marked now."""
-    label, stops = row_label(choices.plot.grid, plants), np.arange(len(plants)) + 1
-    table = pd.DataFrame(
-        {
-            **day.row_column(choices.plot.grid, label.line),
-            texts.COLUMN_PLANT: label.number,
-            texts.LEGEND_STATES["found"]: np.isin(stops, value),
-        },
-        index=pd.Index(stops, name=texts.STOP_NUMBER),
-    )
-    marked = st.data_editor(
-        table, height=230, disabled=list(table.columns[:-1]), key=editor
-    )  # fmt: skip
-    found = marked.index[marked[texts.LEGEND_STATES["found"]]].tolist()
-    # what is known of it on another page: no table takes a value by its own key
-    st.session_state[key] = found
-    return found
+class _Marks:
+    """The table of a route's stops in which those are marked at which something was found."""
+
+    def __init__(self, editor: str) -> None:
+        self._editor, self._begun = editor, frozenset[int]()
+
+    def show(
+        self, choices: Choices, plants: np.ndarray, *, value: list[int], key: str
+    ) -> list[int]:
+        """Show the stops, those of `value` marked already; return those marked now."""
+        label, stops = row_label(choices.plot.grid, plants), np.arange(len(plants)) + 1
+        self._begun = frozenset(value)
+        table = pd.DataFrame(
+            {
+                **day.row_column(choices.plot.grid, label.line),
+                texts.COLUMN_PLANT: label.number,
+                texts.LEGEND_STATES["found"]: np.isin(stops, value),
+            },
+            index=pd.Index(stops, name=texts.STOP_NUMBER),
+        )
+        st.data_editor(table, height=230, disabled=list(table.columns[:-1]), key=self._editor)
+        found = self.now()
+        # what is known of it on another page: no table takes a value by its own key
+        st.session_state[key] = found
+        return found
+
+    def now(self) -> list[int]:
+        """Return the numbers of the stops marked now, also before the table is shown again."""
+        edits = st.session_state.get(self._editor, {}).get("edited_rows", {})
+        marked = set(self._begun)
+        for row, columns in edits.items():
+            for is_found in columns.values():  # there is one that can be edited
+                (marked.add if is_found else marked.discard)(int(row) + 1)
+        return sorted(marked)
 
 
 @notices.reporting
-def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, list[int]]) -> str:
+def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, _Marks]) -> str:
     """Record the stops marked as found, and the others of the first so many as clean."""
-    done, found = told
+    of, marks = told
+    done = int(FreshBoxes(_ROUTE, choices).said(f"stops_done {of}") or 0)
+    found = marks.now()
     stops = np.arange(len(plants)) + 1
     is_found = np.isin(stops, found)
     said = is_found | (stops <= done)
@@ -183,23 +199,28 @@ def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, list[in
 
 
 def _show_file(choices: Choices) -> None:
-    key = FreshBoxes(_FILE, choices).key
+    boxes = FreshBoxes(_FILE, choices)
+    key = boxes.key
     brought = st.file_uploader(texts.RECORD_FILE_IN, key=key("findings_file"))
     st.checkbox(texts.TAKE_DOUBTFUL, key=key("take_doubtful"))
     if brought is not None:
         if brought.getvalue().startswith(MAGIC):
             st.text_input(texts.CORRECTED_BY, key=key("corrected_by"),
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
-        pressed = st.button(texts.RECORD_BUTTON, key="record_file", type="primary")
-        acting.once(pressed, _record_file, choices, brought.name, brought.getvalue())
+        acting.at_press(boxes, texts.RECORD_BUTTON, _record_file, choices, key="record_file",
+                        type="primary")  # fmt: skip
 
 
 @notices.reporting
-def _record_file(choices: Choices, name: str, data: bytes) -> str:
+def _record_file(choices: Choices) -> str:
     """Record findings from a file: a route filled in, a table, positions, a copy of the season."""
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415 - late
 
     boxes, season = FreshBoxes(_FILE, choices), choices.season
+    brought = boxes.said("findings_file")
+    if brought is None:  # taken out again
+        return ""
+    name, data = brought.name, brought.getvalue()
     options = InspectionOptions(
         work_day=np.datetime64(choices.day), take_doubtful=bool(boxes.said("take_doubtful"))
     ).on(choices.plot.field)

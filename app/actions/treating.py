@@ -59,8 +59,11 @@ def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") 
     boxes.show(st.text_input, texts.TREAT_PRODUCT, box="product", default="")
     with st.expander(texts.TREAT_RECORD):
         _boxes(boxes)
-    pressed = st.button(texts.TREAT_BUTTON, key="treat")
-    acting.once(pressed, _treat, choices, boxes, area, advised)
+    todo = _treat, choices, boxes, area, advised
+    if area is None:
+        acting.at_press(boxes, texts.TREAT_BUTTON, *todo, key="treat")
+    else:  # zones follow from what is chosen above them: a press counts for those shown then
+        acting.once(st.button(texts.TREAT_BUTTON, key="treat"), *todo)
     _harvest(choices)
     with st.expander(texts.LABELS):
         _labels(choices)

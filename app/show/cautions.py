@@ -8,6 +8,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
+from fieldmon.planning.skips import left_out_in_words
 
 from ..state import chosen_day
 from ..words import texts
@@ -35,6 +36,9 @@ def show_today(choices: Choices, plan: DayPlan) -> None:
     is_ahead = harvest is not None and choices.on <= harvest
     if choices.season is not None and (left_off := _left_off(choices, plan)):
         st.warning("\n".join(f"- {sentence}" for sentence in left_off))
+    if choices.season is not None and not chosen_day.route(choices).worked:
+        for said in left_out_in_words(plan.scene, plan.route):
+            st.caption(in_words(said))
     show(choices, ("entry", "harvest") if is_ahead else ("entry",))
 
 

@@ -27,8 +27,7 @@ def in_short(result: str) -> str:
 def last(choices: Choices, said: BatchContents) -> str:
     """Return what was said last, of one plant: what an undo beside it takes back."""
     words = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
-    row = choices.plot.grid.row_signs.get(said.row, said.row)
-    return words.format(row=row, plant=said.plant, result=_result(said))
+    return words.format(row=_row(choices, said), plant=said.plant, result=_result(said))
 
 
 def source(name: str) -> str:
@@ -60,6 +59,11 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     return " · ".join(part for part in parts if part)
 
 
+def _row(choices: Choices, said: BatchContents) -> str:
+    """Return the row of the only inspection, with its name if that says more than its number."""
+    return choices.plot.grid.row_signs.get(said.row, f"{said.row}")
+
+
 def _result(said: BatchContents) -> str:
     """Return the result of the only inspection, and what was counted."""
     result = in_short(said.result)
@@ -73,4 +77,4 @@ def _what(choices: Choices, said: BatchContents) -> str:
         return texts.BATCHES_SAID["findings"].format(n=said.n, found=said.found)
     where = texts.TIP_PLANT if choices.plot.grid.in_rows else texts.TIP_ALONE
     note = texts.TIP_STATE.format(state=_result(said))
-    return where.format(row=said.row, plant=said.plant, note=note)
+    return where.format(row=_row(choices, said), plant=said.plant, note=note)

@@ -14,7 +14,7 @@ from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_d
 from fieldmon.simulation.start import season_start
 
 from .cached import FEW, WORKING
-from .comparison import Comparison
+from .comparison import WatchedComparison
 from .driving import DayInTime, DriveRun
 from .live_drive import LiveDrive
 
@@ -35,12 +35,12 @@ def comparison(
     settings: ComparisonSettings,
     robot: Robot,
     _laid: LaidPlot,
-) -> Comparison:
+) -> WatchedComparison:
     """Return the comparison of these settings on this plot; it is at work or will be.
 
     `key` stands for the plot, its chances and its pest.
     """
-    return Comparison(settings, _laid, robot)
+    return WatchedComparison(settings, _laid, robot)
 
 
 @st.cache_resource(max_entries=8)

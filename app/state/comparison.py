@@ -14,7 +14,8 @@ import numpy as np
 
 from fieldmon.planning.members import Teamwork
 from fieldmon.simulation import executor
-from fieldmon.simulation.experiment import Experiment, Memory, run
+from fieldmon.simulation.experiment import Memory, run
+from fieldmon.simulation.paired import met_by_all, paired
 from fieldmon.simulation.statistics import half_interval, summary_statistics
 from fieldmon.simulation.study_plot import Combination
 from fieldmon.simulation.team_season import Team
@@ -121,20 +122,14 @@ class Outcome:
     worked_h: float = 0.0
 
 
-class Comparison(BackgroundWork):
+class WatchedComparison(BackgroundWork):
     """A comparison that runs in a thread of its own and can be watched and stopped."""
 
     def __init__(self, settings: ComparisonSettings, laid: LaidPlot, robot: Robot) -> None:
         super().__init__()
         self.settings = settings
         self._laid, self._robot = laid, robot
-        self._experiment = Experiment(
-            settings=settings.strategies,
-            seeds=range(1, settings.seeds + 1),
-            simulate=self._season,
-            chunk_size=lambda _: 1,
-            seed_by_seed=True,
-        )
+        self._experiment = paired(settings.strategies, range(1, settings.seeds + 1), self._season)
         self._made: Memory[SeasonMetrics] = Memory()
 
     @property
@@ -163,21 +158,20 @@ class Comparison(BackgroundWork):
 
     def seasons(self) -> dict[Strategy, list[SeasonMetrics]]:
         """Return the seasons of all seeds that every strategy has been through."""
-        made: dict[Strategy, list[SeasonMetrics]] = {one: [] for one in self.settings.strategies}
-        for chunk in self._experiment.chunks():
-            if chunk.key in self._made:
-                made[chunk.setting].append(self._made[chunk.key])
-        full = min(len(seasons) for seasons in made.values())
-        return {strategy: seasons[:full] for strategy, seasons in made.items()}
+        by_seed = met_by_all(self._experiment, self._made).values()
+        return {
+            strategy: [seasons[k] for seasons in by_seed]
+            for k, strategy in enumerate(self.settings.strategies)
+        }
 
-    def _season(self, strategy: Strategy, seeds: range) -> SeasonMetrics:
+    def _season(self, strategy: Strategy, seed: int) -> SeasonMetrics:
         settings = self.settings
         levels = Combination(
             strategy.sampler, strategy.hours, strategy.inspection_s, settings.share, settings.rate
         )
         team = Team(strategy.robots, TEAMWORK)
         days = settings.n_days, settings.visit_every
-        return simulated_season(self._laid, self._robot, levels, seeds.start, days, team)
+        return simulated_season(self._laid, self._robot, levels, seed, days, team)
 
 
 def outcomes(seasons: dict[Strategy, list[SeasonMetrics]]) -> list[Outcome]:

@@ -22,7 +22,7 @@ from fieldmon.io.parse.values import positions_in_cells
 
 from ..words import language, texts
 from . import brought_files, plot_edits, plot_files, plot_source, widget_memory
-from .brought_files import PLOT
+from .brought_files import PLANTS, PLOT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,6 +39,7 @@ LEAST = 3
 # a plot as wide as this is a slip of a finger, or two plots
 _WIDEST_M = LARGEST_M2**0.5
 _OPEN, _TURN, _FILE = "draws a plot", "plot drawn anew", "drawn.geojson"
+_PLANTS_FILE = "plants.geojson"
 _NUMBER = r"(-?\d{1,3}(?:\.\d+)?)"
 _PAIR = rf"(?:loc:)?{_NUMBER}[,~\s+]+{_NUMBER}"
 # how maps on the internet write a position into an address, latitude first: a pin before the view
@@ -152,7 +153,7 @@ def use(units: UnitsInLanguage) -> None:
 
 
 def bring(field: Field) -> None:
-    """Let the plot be this one, as if it had come in a file, with what is drawn on it."""
+    """Let the plot be this one, as if it had come in files, with what is drawn on it."""
     parts = shapely.get_parts(field.boundary)
     if len(parts) == 1 and not parts[0].interiors:
         data = geojson(tuple(parts[0].exterior.coords)[:-1], field.name)
@@ -161,6 +162,8 @@ def bring(field: Field) -> None:
         feature = {"type": "Feature", "properties": {"name": field.name}, "geometry": shape}
         data = json.dumps(feature, ensure_ascii=False).encode()
     brought_files.keep_uploads(PLOT, (Upload(_FILE, data),))
+    if field.plants is not None:
+        brought_files.keep_uploads(PLANTS, (Upload(_PLANTS_FILE, measured_plants(field)),))
     drawn = [plot_edits.Edit(plot_edits.GATE, (field.gate,))] if field.gate is not None else []
     for kind, lines in (
         (plot_edits.PATH, shapely.get_parts(field.paths)),
@@ -185,6 +188,22 @@ def geojson(corners: Points, name: str) -> bytes:
     shape = {"type": "Polygon", "coordinates": [[[*at] for at in ring.coords]]}
     feature = {"type": "Feature", "properties": {"name": name}, "geometry": shape}
     return json.dumps(feature, ensure_ascii=False).encode()
+
+
+def measured_plants(field: Field) -> bytes:
+    """Return the measured plants of a plot and what they are called as a GeoJSON file."""
+    called = {"block": field.plant_blocks, "row": field.plant_rows, "plant": field.plant_names}
+    columns = {kind: names.tolist() for kind, names in called.items() if names is not None}
+    features = [
+        {
+            "type": "Feature",
+            "properties": {kind: names[k] for kind, names in columns.items()},
+            "geometry": {"type": "Point", "coordinates": at},
+        }
+        for k, at in enumerate(field.plants.tolist())
+    ]
+    whole = {"type": "FeatureCollection", "features": features}
+    return json.dumps(whole, ensure_ascii=False).encode()
 
 
 def data_of_plot() -> bytes | None:

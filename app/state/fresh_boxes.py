@@ -1,6 +1,8 @@
 """Boxes for what was done on a day: empty on each day and in each season, and once it is kept.
 
-What was said in them and not kept yet is there again on another page and after a reload.
+What was said in them and not kept yet is there again on another page and after a reload. What is
+said while another day's or the emptied boxes are on their way, in those still in view, is said in
+the ones to come.
 """
 
 from __future__ import annotations
@@ -14,12 +16,13 @@ import streamlit as st
 from . import widget_memory
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from .choices import Choices
 
 T = TypeVar("T")
 _BOXES, _TIMES = "fresh boxes", "emptied "
+_WHERE, _HELD, _LATE = "form and name of boxes", "boxes held", "boxes filled late"
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +43,31 @@ class FreshBoxes:
     def key(self, box: str) -> str:
         """Return the key of a box."""
         place = f"{self.choices.day} {self.choices.key}"
-        return f"{box} {self.form} {st.session_state.get(self._times, 0)} {place}"
+        return f"{box} {self.form} {self.times} {place}"
 
     @property
     def _times(self) -> str:
         return f"{_TIMES}{self.form} {self.choices.day} {self.choices.key}"
 
+    @property
+    def times(self) -> int:
+        """Return how often the boxes of this day were emptied."""
+        times: int = st.session_state.get(self._times, 0)
+        return times
+
+    def hold_anything(self) -> bool:
+        """Return whether something is said in a box that is shown."""
+        said = (widget_memory.value(key) for key, of in _shown().items() if of == self._times)
+        return any(one not in (None, "", []) for one in said)
+
     def show(self, widget: Callable[..., T], *arguments: object, box: str, **settings: object) -> T:
         """Show a box with what was said in it and not kept yet."""
+        late: dict[tuple[str, str], object] = st.session_state.get(_LATE, {})
+        if (self.form, box) in late:
+            self.put(box, late.pop((self.form, box)))
         _shown()[self.key(box)] = self._times
+        where: dict[str, tuple[str, str]] = st.session_state.setdefault(_WHERE, {})
+        where[self.key(box)] = self.form, box
         return widget_memory.show(widget, *arguments, key=self.key(box), **settings)
 
     def said(self, box: str) -> Any:  # noqa: ANN401 - whatever the widget holds
@@ -65,9 +84,53 @@ class FreshBoxes:
 
     def empty(self) -> None:
         """Let the boxes be empty from the next run on; those of another day stay as they are."""
-        for key in [key for key, of in _shown().items() if of == self._times]:
+        for key in [key for key in _held() if key not in _shown()]:  # emptied before: long gone
+            del _held()[key]
+        emptied = [key for key, of in _shown().items() if of == self._times]
+        hold(emptied)
+        for key in emptied:
             del _shown()[key]
-        st.session_state[self._times] = st.session_state.get(self._times, 0) + 1
+        st.session_state[self._times] = self.times + 1
+
+
+def hold(keys: Iterable[str] | None = None) -> None:
+    """Hold what was said in boxes until now, as others take their place (for callbacks).
+
+    `keys`: of which boxes; None: of all, as another day is chosen.
+    """
+    held, where = _held(), st.session_state.get(_WHERE, {})
+    for key in list(_shown() if keys is None else keys):
+        if key in where:
+            now = widget_memory.value(key)
+            held.setdefault(key, (now, now))
+
+
+def turn(choices: Choices) -> None:
+    """Show the boxes of this day from now on.
+
+    What was said since in boxes that were held will be in those that took their place. A box that
+    none took the place of, such as a stop of another route, is as it was.
+    """
+    here = f" {choices.day} {choices.key}"
+    st.session_state[_LATE] = late = {}
+    for key, (before, last) in list(_held().items()):
+        # an emptied box is shown no more, what it holds is nothing that was said
+        is_shown = key in _shown()
+        if not key.endswith(f" {choices.key}") or (is_shown and key.endswith(here)):
+            del _held()[key]
+            continue
+        now = widget_memory.value(key)
+        if now not in (before, last):  # else the browser sends again what is known
+            late[st.session_state[_WHERE][key]] = now
+            _held()[key] = (before, now)
+        if now != before and is_shown:
+            widget_memory.put(key, before)
+
+
+def _held() -> dict[str, tuple[object, object]]:
+    """Return what boxes held when others took their place, and what was said in them last."""
+    held: dict[str, tuple[object, object]] = st.session_state.setdefault(_HELD, {})
+    return held
 
 
 def unfinished() -> dict[str, Any]:

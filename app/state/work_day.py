@@ -8,8 +8,12 @@ from datetime import date
 
 import streamlit as st
 
+from . import fresh_boxes
+
 #: the word in the address that leads back to a day chosen on purpose
 KEY = "day"
+#: the key of the box that shows the day of a source
+BOX = "day {source}"
 _CHOSEN, _READ = "days chosen", "day read from address"
 
 
@@ -43,11 +47,18 @@ def of(source: str, calendar: Calendar) -> date:
 
 def choose(source: str, day: date) -> None:
     """Choose a day on purpose; it counts until another is chosen, or today is."""
+    fresh_boxes.hold()
     _chosen()[source] = day
+
+
+def chosen(source: str) -> tuple[object, ...]:
+    """Return the day chosen for a source on purpose, and what its box shows now."""
+    return _chosen().get(source), st.session_state.get(BOX.format(source=source))
 
 
 def back_to_today(source: str) -> None:
     """Let today count again."""
+    fresh_boxes.hold()
     _chosen().pop(source, None)
 
 

@@ -12,7 +12,7 @@ from fieldmon.simulation.worker import LaidPlot
 from ..actions import background, changing, comparing
 from ..show import charts, field_map, map_layers, verdicts
 from ..state import cached_simulations, chosen_day, chosen_pest
-from ..state.comparison import Comparison, curve, gains, outcomes
+from ..state.comparison import WatchedComparison, curve, gains, outcomes
 from ..words import texts
 from ..words.language import of_error
 
@@ -42,13 +42,13 @@ def show(choices: Choices) -> None:
     st.fragment(_watch, run_every=_EVERY_S if at_work else None)(choices, running, at_work=at_work)
 
 
-def _watch(choices: Choices, running: Comparison, *, at_work: bool) -> None:
+def _watch(choices: Choices, running: WatchedComparison, *, at_work: bool) -> None:
     if at_work and not running.running:
         st.rerun()  # the buttons must know
     _results(choices, running)
 
 
-def _results(choices: Choices, running: Comparison) -> None:
+def _results(choices: Choices, running: WatchedComparison) -> None:
     if running.problem is not None:
         st.error(of_error(running.problem))
         return

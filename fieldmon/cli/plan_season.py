@@ -64,6 +64,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     off = _LeftOff.of(season, on, (("", today),))
     if off.all_closed and not options.enter_treated:
         raise _nobody_may_enter(on, off)
+    _tell_skipped((today,))
     if not len(route):
         if left_h := today.scene.seconds_left / 3600:
             _tell_left_off(options, off, on_foot=True)
@@ -147,6 +148,14 @@ def _tell_left_off(options: PlanOptions, off: _LeftOff, *, on_foot: bool) -> Non
         )
 
 
+def _tell_skipped(days: tuple[DayPlan, ...]) -> None:
+    """Print how many plants are left out because nobody could inspect them."""
+    from fieldmon.planning.skips import left_out_in_words
+
+    for said in left_out_in_words(days[0].scene, *(today.route for today in days)):
+        typer.echo(f"seen: {said}", err=True)
+
+
 def _tell_settings_of_then(season: Season, on: date, settings: MonitoringSettings) -> None:
     """Print by what a past day is planned, where something else counts now."""
     from fieldmon.monitoring.settings_words import changed
@@ -183,6 +192,7 @@ def _plan_team(
     days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
     named = tuple(zip((one.name for one in team), days, strict=True))
     off = _LeftOff.of(season, on, named)
+    _tell_skipped(days)
     if not any(len(today.route) for today in days):
         if off.all_closed and not options.enter_treated:
             raise _nobody_may_enter(on, off)

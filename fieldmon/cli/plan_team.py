@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import timedelta
 from typing import TYPE_CHECKING
 
 import typer
@@ -24,9 +23,6 @@ from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from datetime import datetime
-    from pathlib import Path
-
     from fieldmon.cli.plan_options import PlanOptions
     from fieldmon.planning.team import TeamPlan
 
@@ -38,7 +34,6 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.planning import team
     from fieldmon.planning.assumptions import assumed_by_team
-    from fieldmon.planning.members import refuse_far_gates
 
     for name in ("sampler", "every", "every_plot"):
         source = context.get_parameter_source(name)
@@ -49,7 +44,6 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     starts, files = WorkStart(options.starts().on, first), files_of_each(options.output, members)
     refuse_unrecorded(None, (file for each in files for file in each))
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
-    refuse_far_gates(members, known.plot.field)
     plot, begins = known.plot, starts.on_plot(known.plot.field)
     pest_in_weather = options.pest_options.in_weather(plot.field, begins.date())
     prior = prior_of(pest_in_weather, begins.date(), options.background)
@@ -59,26 +53,17 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
     with counting("Routes") as count:
         planned = team.plan_team(
-            plot, chance, members, progress=count, passing_m=options.passing or 0.0
+            plot, chance, members, progress=count, passing_m=options.passing or 0.0, on=begins
         )
-    _tell(planned, begins)
+    _tell(planned)
     tell_assumed(assumed_by_team((), prior, members, plot.grid))
-    _write(planned, begins, plot.field.name, files)
+    for member, route, paths in zip(planned.members, planned.routes, files, strict=True):
+        write_member(member.name, route, paths)
     write_chance_map(options.chance_map, plot, chance)
 
 
-def _tell(planned: TeamPlan, begins: datetime) -> None:
-    starts = [begins + timedelta(seconds=round(float(s))) for s in planned.starts_s]
-    for member, day, start in zip(planned.members, planned.days, starts, strict=True):
-        tell_member(member.name, start, day.route)
+def _tell(planned: TeamPlan) -> None:
+    for member, route in zip(planned.members, planned.routes, strict=True):
+        if route.notes is not None and route.notes.start is not None:
+            tell_member(member.name, route.notes.start, route)
     typer.echo(f"{planned.sentence}\nPlanned as best routes, which no find changes.")
-
-
-def _write(planned: TeamPlan, begins: datetime, plot: str, files: list[list[Path]]) -> None:
-    from fieldmon.io.writers.day_file import RouteNotes
-
-    parts = zip(planned.members, planned.days, planned.starts_s, files, strict=True)
-    for member, day, starts_s, paths in parts:
-        start = begins + timedelta(seconds=round(float(starts_s)))
-        notes = RouteNotes(plot, "best routes", start, member.name)
-        write_member(member.name, replace(day.route, notes=notes), paths)

@@ -146,6 +146,11 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"({100 * now.inspected / now.plants:.0f} %), {now.found:,} found infested"
         + (f" ({now.finds:,} finds: some again)" if now.finds > now.found else "")
     )
+    if now.skipped:
+        yield (
+            f"  could not be inspected {now.skipped:6,} last time, {now.left_out:,} of them left "
+            "out of the next day's plan"
+        )
     yield from _planned_only(season, now.on)
     yield (
         f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low:,} to {ahead.high:,} "

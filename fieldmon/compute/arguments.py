@@ -237,6 +237,28 @@ def must_be_chances(what: str, chance: NDArray[np.float64]) -> None:
         )
 
 
+def chances_of(given: object, n: int) -> NDArray[np.float64]:
+    """Return what a caller hands over as the chances of n plants, ``(n,)``.
+
+    Raise `SettingError` unless it is a chance for each.
+
+    Examples
+    --------
+    >>> chances_of([0.1, 1], 2)
+    array([0.1, 1. ])
+    >>> chances_of([0.1], 2)
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A plot's chance map must have the shape (2,), but it has (1,).
+    """
+    import numpy as np  # noqa: PLC0415 - as above
+
+    chance = array_of(np.float64, "A chance map", given)
+    must_be_shaped("A plot's", {"chance map": (chance, (n,))})
+    must_be_chances("A chance map", chance)
+    return chance
+
+
 def must_be_in(what: str, allowed: AllowedRange, given: float) -> None:
     """Raise `SettingError` unless a number is in a range."""
     if rule := allowed.broken(given):

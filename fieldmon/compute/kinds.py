@@ -49,7 +49,18 @@ _INSTEAD = {
 _DAYS = frozenset({"date", "date | None"})
 #: names of protocols, and of what a function looks at itself
 _LEFT = frozenset(
-    {"Any", "object", "ArrayLike", "Belief", "Cutoff", "KernelName", "Sampler", "Source", "generic"}
+    {
+        "Any",
+        "object",
+        "ArrayLike",
+        "Belief",
+        "Cutoff",
+        "KernelName",
+        "Sampler",
+        "Samplers",
+        "Source",
+        "generic",
+    }
 )
 _ANYTHING = "something else"
 _ALIASES = {

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring.day_ahead import DayAhead, inside, through
+from fieldmon.monitoring.day_ahead import DayAhead, through
 from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.scouts import inside
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.wishes import Wishes
@@ -187,7 +188,7 @@ def left_of_plan(
     before = np.flatnonzero(done.plant == kept.at)
     since = done.result[before[-1] + 1 if len(before) else 0 :]
     plants = ahead.plants[name]
-    is_left = scene.last_inspected[plants] != scene.day
+    is_left = scene.are_open(plants)
     for rows in left_out:
         is_left &= ~inside(season.label, rows)[plants]
     left = through(scene, plants[is_left])

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
+    from pandas import DataFrame
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.plot_estimate import PlotEstimate
@@ -67,6 +68,23 @@ class Forecast:
     def nights(self) -> int:
         """Return how many nights ahead it goes."""
         return len(self.expected) - 1
+
+    def to_pandas(self) -> DataFrame:
+        """Return a line for each night ahead: ``night`` (0: this evening), and the columns.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> ahead = fm.Monitor(plot).forecast(nights=3).to_pandas()
+        >>> list(ahead.columns), len(ahead)
+        (['night', 'expected', 'low', 'high'], 4)
+        """
+        import pandas as pd  # noqa: PLC0415 - loaded when it is asked for
+
+        night = np.arange(len(self.expected))
+        columns = {"expected": self.expected, "low": self.low, "high": self.high}
+        return pd.DataFrame({"night": night, **columns})
 
     def sentence(self) -> str:
         """Return it in words."""

@@ -14,7 +14,7 @@ from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 _TABLE_OF = {
     "findings": "inspections",
@@ -207,10 +207,13 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     }
 
 
-def undo(db: sqlite3.Connection, number: int | None) -> tuple[set[int], str]:
+def undo(
+    db: sqlite3.Connection, number: int | None, signs: Mapping[int, str] | None = None
+) -> tuple[set[int], str]:
     """Mark a batch (None: the last one that counts) as undone; say what was done.
 
-    What another batch says, too, counts there. Return the batches that changed.
+    What another batch says, too, counts there. `signs` is how rows are shown, by their numbers.
+    Return the batches that changed.
     """
     waiting = [batch for batch in all_of(db) if not batch.undone]
     if number is not None:
@@ -232,14 +235,14 @@ def undo(db: sqlite3.Connection, number: int | None) -> tuple[set[int], str]:
     rows = treatments if batch.kind == "treatment" else replaced
     again = rows.count_again(db)
     touch(db, table)
-    said = _undone(batch, contents(db, [batch.number]).get(batch.number))
+    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {})
     return {batch.number, *again}, _still(said, rows.n_elsewhere(db, batch.number))
 
 
-def _undone(batch: Batch, said: BatchContents | None) -> str:
+def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str]) -> str:
     """Return what was taken back, in words."""
     if batch.kind == "findings" and said is not None and said.n == 1:
-        return _undone_one(said.row, said.plant, said.first, said.result)
+        return _undone_one(signs.get(said.row, said.row), said.plant, said.first, said.result)
     what = {
         "findings": counted(batch.rows, "inspection"),
         "corrections": counted(batch.rows, "correction"),
@@ -274,7 +277,7 @@ def _still(said: str, n: int) -> str:
     return joined(" ", (said, still))
 
 
-def _undone_one(row: int, plant: int, on: str, result: str) -> str:
+def _undone_one(row: int | str, plant: int, on: str, result: str) -> str:
     return worded(
         "Undone: row {row}, plant {plant} on {date} ({result}).",
         row=row,
@@ -301,7 +304,9 @@ def first_day(db: sqlite3.Connection, number: int) -> int:
     return max(int(day or 0), 0)
 
 
-def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[set[int], str]:
+def undo_one(
+    db: sqlite3.Connection, inspection: int, signs: Mapping[int, str] | None = None
+) -> tuple[set[int], str]:
     """Mark one inspection as undone; return the batches that changed, and what was done."""
     row = db.execute(
         "SELECT line, number, date, result, batch, digest FROM inspections "
@@ -322,7 +327,8 @@ def undo_one(db: sqlite3.Connection, inspection: int) -> tuple[set[int], str]:
     again = replaced.count_again(db)
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
-    return {row[4], *again}, _still(_undone_one(*row[:4]), replaced.n_counting(db, row[5]))
+    said = _undone_one((signs or {}).get(row[0], row[0]), *row[1:4])
+    return {row[4], *again}, _still(said, replaced.n_counting(db, row[5]))
 
 
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:

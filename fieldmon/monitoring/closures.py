@@ -115,7 +115,8 @@ def open_to_people(scene: Scene, closed: Sequence[Closure]) -> Scene:
         return scene
     plants = closed_plants(closed, len(scene.chance))
     last = np.where(plants, np.int32(scene.day), scene.last_inspected)
-    return replace(scene, last_inspected=last)
+    skipped = None if scene.skipped is None else scene.skipped & ~plants
+    return replace(scene, last_inspected=last, skipped=skipped)
 
 
 def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:

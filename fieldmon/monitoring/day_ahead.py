@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.monitoring import routes
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.photos_asked import photos_asked_in
-from fieldmon.monitoring.scouts import scouts_in
+from fieldmon.monitoring.scouts import inside, scouts_in
 from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of
@@ -234,7 +234,7 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     to_kept = season.closed_to_kept(on, part.name, ahead.kept_as(part))
     closed = closed_plants(to_kept, len(scene.chance))
     kept = ahead.route(part)
-    kept = kept[scene.last_inspected[kept] != scene.day]
+    kept = kept[scene.are_open(kept)]
     left = kept[ahead.own(part)[kept]]
     if not len(left) or closed[left].any() or (part.name and ahead.is_others(part, kept)):
         return planned_again(season, on, part)
@@ -280,14 +280,6 @@ def work_hours(season: Season, on: date, part: Part = WHOLE) -> WorkHours:
     run = now.date() == on and len(second) > 0 and bool(np.isfinite(second[0]))
     scene = season.scene(on, now.time() if run else None, part.name)
     return WorkHours(season.begun_s(on, part.name), run, float(scene.seconds_left))
-
-
-def inside(label: RowLabel, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
-    """Return ``(n,)`` which plants are in a part."""
-    if rows is None:
-        return np.ones(len(label.line), np.bool_)
-    part: NDArray[np.bool_] = (label.line >= rows[0]) & (label.line <= rows[1])
-    return part
 
 
 def _time(season: Season, on: date, seconds_left: float, member: TeamMember | None) -> time:

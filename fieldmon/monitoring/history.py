@@ -30,6 +30,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
+from fieldmon.planning.skips import Skips, without_skipped
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import driven_s, robot_clock
@@ -444,6 +445,13 @@ class History:
         last[done.plant[inspected]] = self.days[: len(done)][inspected]
         return last
 
+    def skips(self, day: int) -> Skips:
+        """Return how often in a row each plant was skipped, up to the evening of a day."""
+        done = self.until(day)
+        skipped = done.result == SKIPPED
+        days = self.days[: len(done)][skipped]
+        return Skips.of(done.plant[skipped], days, self.last_inspected(day))
+
     def states(self, day: int) -> NDArray[np.int8]:
         """Return ``(n,)`` up to `day`: 1 found infested, 0 only looked clean, -1 never seen."""
         state = np.full(len(self.grid), -1, np.int8)
@@ -497,7 +505,7 @@ class History:
         trail = self._trail(shift, day, who)
         today = made_by(self.worked(shift, day, who), who)
         resting = resting_place(robot, trail)
-        return Scene(
+        scene = Scene(
             aisles=aisles,
             robot=robot,
             # who is given a scene may write to it; the belief is kept for others
@@ -511,6 +519,7 @@ class History:
             trail=trail,
             key=shift.streams.key("sampler", day),
         )
+        return without_skipped(scene, self.skips(day - 1))
 
     def begun_s(self, shift: Shift, day: int, who: str | Besides | None = None) -> float:
         """Return the second of a day at which somebody's work began; `who` is that of `scene`.

@@ -33,6 +33,7 @@ from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.monitoring.history import BeliefSettings, in_hindsight, in_sight
 from fieldmon.planning.plan import plan_in
+from fieldmon.planning.skips import Skips, without_skipped
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import must_be_plot
@@ -236,6 +237,8 @@ class Monitor:
             plot.grid, first, None if pest is None else pest.pest, self.robot.detects
         )
         self._last_inspected = np.full(len(plot.grid), NEVER, np.int32)
+        # (2, k) plants that could not be inspected, and the day of each
+        self._skipped = np.empty((2, 0), np.int64)
         self._trail = np.empty(0, np.int32)
         self._found = np.zeros(len(plot.grid), np.bool_)
         self._last_told = self._belief, self._belief
@@ -324,6 +327,19 @@ class Monitor:
         """Day of each plant's last inspection, from 0; -1: never, ``(n,)``; read-only."""
         return as_seen(self._last_inspected)
 
+    @property
+    def left_out(self) -> NDArray[np.bool_]:
+        """Plants left out of this day's plan because nobody could inspect them, ``(n,)``.
+
+        Each is asked for again after 1 day, and after 2, 4, 8 ... if it was told None again.
+        """
+        return as_seen(self._skips.left_out(self.day_number))
+
+    @property
+    def _skips(self) -> Skips:
+        plants, days = self._skipped
+        return Skips.of(plants, days, self._last_inspected)
+
     def plan(self) -> DayPlan:
         """Return the day ahead as it is planned before anything is seen there.
 
@@ -371,7 +387,7 @@ class Monitor:
 
     def _scene(self) -> Scene:
         believed = in_sight(self._belief)
-        return Scene(
+        scene = Scene(
             aisles=self.plot.aisles,
             robot=self.robot,
             chance=believed.chance,
@@ -384,10 +400,13 @@ class Monitor:
             trail=self._trail,
             key=self._streams.key("sampler", self.day_number),
         )
+        return without_skipped(scene, self._skips)
 
     def _learn(self, day: MonitorDay) -> None:
         """Take in what was told on a day."""
         self._belief = self._believed_after(day)
+        skipped = np.stack([day.skipped, np.full(len(day.skipped), self.day_number)])
+        self._skipped = np.concatenate([self._skipped, skipped], axis=1)
         if len(day.plants):
             self._last_inspected = self._last_inspected.copy()
             self._last_inspected[day.plants] = self.day_number
@@ -456,6 +475,11 @@ class MonitorDay(AskedDay):
     def found(self) -> NDArray[np.bool_]:
         """Whether each of `plants` was found infested, ``(k,)``."""
         return np.array([seen for _, seen in self._told if seen is not None], np.bool_)
+
+    @property
+    def skipped(self) -> NDArray[np.int32]:
+        """Plants that could not be inspected, in order, ``(k,)``."""
+        return np.array([stop.plant for stop, seen in self._told if seen is None], np.int32)
 
     @property
     def detects(self) -> NDArray[np.float64]:
@@ -541,7 +565,7 @@ class MonitorDay(AskedDay):
         """Begin again where the robot stands, from what is believed after all that was told."""
         monitor = self._monitor
         believed = in_sight(monitor._believed_after(self))  # noqa: SLF001 - as above
-        last = monitor.last_inspected.copy()
+        last = self._scene.last_inspected.copy()
         last[[stop.plant for stop, _ in self._told]] = monitor.day_number
         scene = replace(
             self._scene,

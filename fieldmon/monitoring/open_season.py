@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.closures import Closure, EntryWait
     from fieldmon.monitoring.history import Treatment
+    from fieldmon.monitoring.season_log import LogEntry
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Scene
@@ -289,6 +290,14 @@ class OpenSeason:
         """Return what was read last, if the file still says it."""
         last = self._last
         return last if last is not None and last.revision == FileRevision.of(db) else None
+
+    def log(self) -> tuple[LogEntry, ...]:
+        """Return the log, the first entry first.
+
+        Raise `FileProblem` where the past was changed: at which entry.
+        """
+        with self.store.reading() as db:
+            return season_log.entries(db)
 
     def last_date(self) -> date:
         """Return the last day on which anything was planned or recorded; at first the first."""

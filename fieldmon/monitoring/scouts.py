@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import AccessError, SettingError
@@ -28,8 +30,11 @@ if TYPE_CHECKING:
     from datetime import date
     from pathlib import Path
 
+    from numpy.typing import NDArray
+
     from fieldmon.monitoring.open_season import OpenSeason
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.plot.grid import RowLabel
     from fieldmon.plot.local_clock import LocalClock
 
 _KEY_BYTES = 18
@@ -167,6 +172,14 @@ def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
         for other in overlapping(one, known[k + 1 :], settings, n_lines)
         for (low, high), (first, last) in [(one.rows or (1, n_lines), other.rows or (1, n_lines))]
     )  # fmt: skip
+
+
+def inside(label: RowLabel, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
+    """Return ``(n,)`` which plants are in a part."""
+    if rows is None:
+        return np.ones(len(label.line), np.bool_)
+    part: NDArray[np.bool_] = (label.line >= rows[0]) & (label.line <= rows[1])
+    return part
 
 
 def withdraw_key(season: OpenSeason, name: str) -> None:

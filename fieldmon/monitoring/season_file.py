@@ -33,10 +33,8 @@ from fieldmon.monitoring.open_season import (
     settings_of,
 )
 from fieldmon.monitoring.people import written_in
-from fieldmon.monitoring.season_estimates import SeasonEstimates
+from fieldmon.monitoring.season_frames import SeasonFrames
 from fieldmon.monitoring.season_plans import SeasonPlans
-from fieldmon.monitoring.season_records import SeasonRecords
-from fieldmon.monitoring.season_treatments import SeasonTreatments
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, settings_from
 from fieldmon.monitoring.transactions import Store, set_meta
 from fieldmon.planning.assumptions import assumed_by, assumed_by_team
@@ -51,7 +49,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.season_log import LogEntry
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
@@ -82,7 +79,7 @@ class SeasonChange:
 
 
 @checked
-class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
+class Season(SeasonPlans, SeasonFrames):
     """A season on disk. Begin one with `create`, come back to it with ``Season(path)``.
 
     Each call reads what is new in the file before it answers, and what it writes is one
@@ -301,14 +298,6 @@ class Season(SeasonPlans, SeasonRecords, SeasonTreatments, SeasonEstimates):
         with self._lock, self.store.writing() as db:
             if _advised(db, on)[-1:] != [said]:  # nor has anybody else written it meanwhile
                 season_log.append(db, "advised", written_in(db, who), date=str(on), said=said)
-
-    def log(self) -> tuple[LogEntry, ...]:
-        """Return the log, the first entry first.
-
-        Raise `FileProblem` where the past was changed: at which entry.
-        """
-        with self.store.reading() as db:
-            return season_log.entries(db)
 
     def held_to_log(self) -> tuple[str, ...]:
         """Return a sentence for each thing that the file says otherwise than its log."""

@@ -228,7 +228,22 @@ class SeasonPlans(OpenSeason):
         if len(last) < 2:
             return {*last}
         codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
-        return _out(last, codes, self._planned_by(contents, on, db))
+        settings = self._planned_by(contents, on, db)
+        out = _out(last, codes, settings)
+        own = routes.plants(db, last.get(""))
+        if not settings.team and len(self._in_nobodys_rows(own, codes, out)):
+            out.add("")
+        return out
+
+    def _in_nobodys_rows(
+        self, plants: NDArray[np.int32], codes: dict[str, tuple[int, int] | None], out: set[str]
+    ) -> NDArray[np.int32]:
+        """Return those of the season's own route for whose rows nobody who is out has a code."""
+        theirs = np.zeros(len(plants), np.bool_)
+        for name, rows in codes.items():
+            if person_key(name) in out:
+                theirs |= scouts.inside(self.label, rows)[plants]
+        return plants[~theirs]
 
     def _unused_routes(
         self, db: sqlite3.Connection, contents: SeasonContents, day: int, since: int
@@ -251,8 +266,9 @@ class SeasonPlans(OpenSeason):
     def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was done; None: none was kept.
 
-        `who`: of one of a team alone; None: of all who are out. Of a plan that nobody goes by any
-        more only what was done of it is part.
+        `who`: of one of a team alone; None: of all who are out, and of the season's own route
+        where nobody who is out has a code for the rows. Of a plan that nobody goes by any more
+        only what was done of it is part.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             contents = self._read(db)
@@ -268,8 +284,11 @@ class SeasonPlans(OpenSeason):
         each = every if who is None else [who]
         done = [self._worked(contents, on, one).plant for one in each]
         none = np.empty(0, np.int32)
+        goes_by = {one.who: one.last for one in kept if one.who in out}
+        if "" in goes_by and who is None:
+            goes_by[""] = self._in_nobodys_rows(goes_by[""], codes, out)
         return PlannedAndDone.of(
-            [(one.last if one.who in out else none, one.of_all) for one in kept],
+            [(goes_by.get(one.who, none), one.of_all) for one in kept],
             np.unique(np.concatenate(done)),
             [one.hours(self._begun(contents, on, one, codes)) for one in kept if one.who in out],
         )
@@ -369,8 +388,8 @@ def _out(
 ) -> set[str]:  # fmt: skip
     """Return who is out, by `person_key`, of those whose routes are kept of a day.
 
-    They are of the team or have a code. The season's own route is that of who is alone, and counts
-    where none was given to anybody.
+    They are of the team or have a code. The season's own route is that of who is alone, and that
+    of nobody here where another was given to somebody.
     """
     out = {*last} & ({person_key(one.name) for one in settings.team} | {*map(person_key, codes)})
     if not settings.team and [*codes.values()] == [None] and "" in last:

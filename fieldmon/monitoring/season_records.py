@@ -257,11 +257,12 @@ class SeasonRecords(OpenSeason):
         Both are numbers; `who` takes it back, for the log.
         Return a sentence that says what was undone. Raise `SettingError` if there is nothing.
         """
+        signs = self.plot.grid.row_signs
         with self._lock, self.store.writing() as db:
             if inspection is None:
-                changed, said = batches.undo(db, batch)
+                changed, said = batches.undo(db, batch, signs)
             else:
-                changed, said = batches.undo_one(db, inspection)
+                changed, said = batches.undo_one(db, inspection, signs)
             states = season_log.states(db, changed)
             season_log.append(db, "undone", written_in(db, who), states=states, said=said)
             self._refresh(db, min(batches.first_day(db, one) for one in changed))

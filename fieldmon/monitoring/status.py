@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.monitoring.day_figures import Progress, found_pct
 
 if TYPE_CHECKING:
     from datetime import date
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
@@ -40,6 +41,10 @@ class Status:
         Finds so far, a plant once a day.
     inspected_today, found_today
         Plants inspected and found infested on this day.
+    skipped
+        Plants that nobody could inspect when they were asked for last.
+    left_out
+        How many of those are left out of the next day's plan.
     estimate
         How many are infested and not found yet, as believed.
     flagged
@@ -71,6 +76,8 @@ class Status:
     finds: int
     inspected_today: int
     found_today: int
+    skipped: int
+    left_out: int
     estimate: PlotEstimate
     flagged: float
     learnt: tuple[Learnt, ...]
@@ -81,12 +88,14 @@ class Status:
     @classmethod
     def of(cls, history: History, morning: Belief, day: int) -> Status:
         """Return how a history stands on a day, given by its number and its morning."""
-        progress = Progress.of(history, day)
+        progress, skips = Progress.of(history, day), history.skips(day)
         return cls(
             day=day,
             on=history.date_of(day),
             plants=len(history.grid),
             **vars(progress),
+            skipped=int(np.count_nonzero(skips.times)),
+            left_out=int(np.count_nonzero(skips.left_out(day + 1))),
             estimate=history.estimate(morning, day),
             flagged=history.flagged(morning, day),
             learnt=history.learnt(morning, day),

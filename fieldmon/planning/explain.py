@@ -128,19 +128,24 @@ def _block(
     elif low == high:
         where = worded("in row {row}", row=low)
     last = scene.last_inspected[plants]
+    # they seem inspected today, but somebody wishes for them
+    skipped = np.zeros(len(plants), bool) if scene.skipped is None else scene.skipped[plants]
     unseen = last == NEVER
     never = int(np.count_nonzero(unseen & ~recorded[plants]))
     known = int(np.count_nonzero(unseen)) - never
     if never == len(plants):
         return worded("{plants} {where}: never inspected yet.", plants=plants_said, where=where)
     said = [worded("{n} known from records only", n=known)] if known else []
-    if seen := len(plants) - never - known:
-        days = counted(round(float(np.median(scene.day - last[~unseen]))), "day")
+    tried = int(np.count_nonzero(skipped))
+    if seen := len(plants) - never - known - tried:
+        days = counted(round(float(np.median(scene.day - last[~unseen & ~skipped]))), "day")
         since = worded("not inspected for {days}", days=days)
         if seen < len(plants):
             since = worded("{n} not inspected for {days}", n=seen, days=days)
         said = [since, *said]
     if never:
         said.append(worded("{n} never inspected yet", n=never))
+    if tried:
+        said.append(worded("{n} nobody could inspect last time", n=tried))
     all_said = joined(", ", said)
     return worded("{plants} {where}: {said}.", plants=plants_said, where=where, said=all_said)

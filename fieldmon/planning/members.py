@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.arguments import lonlat_of
-from fieldmon.compute.kinds import must_hold_kinds
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
@@ -113,12 +113,26 @@ class Teamwork:
             )
 
 
+@checked
 def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
-    """Return n robots of one kind.
+    """Return n robots of one kind, each called ``robot-1`` and so on.
+
+    Parameters
+    ----------
+    n
+        How many: 1 to 1000.
+    robot
+        What each is; None: the usual `Robot`.
+
+    Raises
+    ------
+    SettingError
+        If there are none, or too many.
 
     Examples
     --------
-    >>> [member.name for member in team_of(3)]
+    >>> import fieldmon as fm
+    >>> [member.name for member in fm.team_of(3)]
     ['robot-1', 'robot-2', 'robot-3']
     """
     if n < 1:

@@ -195,7 +195,7 @@ def plan_day(
     must_be_plot(plot)
     must_be_robot(robot)
     must_be_records(records)
-    starts = _starts(on, plot)
+    starts = starts_at(on, plot)
     decides = sampler_or_name(sampler)
     plans = PlanSettings(robot or Robot(), decides)
     given = Observations.none() if records is None else records
@@ -216,8 +216,8 @@ def plan_day(
     return replace(today, route=replace(today.route, notes=notes))
 
 
-def _starts(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> datetime:
-    """Return the local date and time at which work starts."""
+def starts_at(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> datetime:
+    """Return the local date and time at which work starts, see `plan_day`."""
     clock = local_clock(plot.field)
     if on is None:
         return datetime.combine(clock.today(), _STARTS)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import date, datetime, timedelta
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.arguments import chances_of
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.bound_wording import bound_sentence
 from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
-from fieldmon.planning.members import must_differ
-from fieldmon.planning.plan import DayPlan
+from fieldmon.planning.members import must_differ, refuse_far_gates
+from fieldmon.planning.plan import DayPlan, starts_at
 from fieldmon.planning.route import route_of
 from fieldmon.planning.routes import best
 from fieldmon.planning.sections import sections_of
@@ -26,9 +30,10 @@ from fieldmon.samplers.base import NEVER, Scene
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from fieldmon.planning.members import TeamMember
+    from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot
 
     Float = NDArray[np.float64]
@@ -40,8 +45,11 @@ _PAUSE_S = 1.0
 _LATER_S = 20.0
 # each route is looked for again so often in what the others leave, and so often where they meet
 _ROUNDS, _TRIES = 2, 3
+# who chose the plants, in files
+_BEST_ROUTES = "best routes"
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class TeamPlan:
     """A planned day of a team.
@@ -58,6 +66,18 @@ class TeamPlan:
         No routes of these members and hours can expect more finds together.
     passing_m
         Metres of headland that two need to pass each other; 0: they pass anywhere.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+    >>> chance = fm.plan_day(plot, on="2026-11-18").chance
+    >>> team = fm.plan_team(plot, chance, fm.team_of(2, fm.Robot(hours=0.5)))
+    >>> ann, ben = team.routes
+    >>> set(ann.plant.tolist()) & set(ben.plant.tolist())
+    set()
+    >>> team.sentence.startswith("3.5 finds expected; no routes of these hours can expect more th")
+    True
     """
 
     members: tuple[TeamMember, ...]
@@ -69,6 +89,11 @@ class TeamPlan:
     def __repr__(self) -> str:
         stops = sum(len(day.route) for day in self.days)
         return f"<TeamPlan: {counted(len(self.days), 'member')}, {counted(stops, 'stop')}>"
+
+    @property
+    def routes(self) -> tuple[Route, ...]:
+        """Return the route of each member; `Route.to_file` writes who drives it and from when."""
+        return tuple(day.route for day in self.days)
 
     @property
     def starts_s(self) -> Float:
@@ -87,56 +112,70 @@ class TeamPlan:
 
     def meetings(self) -> list[Meeting]:
         """Return where two are in one aisle at once: nowhere, if the plan is right."""
-        return meetings([day.route for day in self.days], self.starts_s)
+        return meetings(self.routes, self.starts_s)
 
     def head_on(self) -> list[HeadOn]:
         """Return where two meet head-on in a headland too narrow to pass: nowhere, likewise."""
-        return head_on([day.route for day in self.days], self.starts_s, self.passing_m)
+        return head_on(self.routes, self.starts_s, self.passing_m)
 
 
+@checked
 def plan_team(
     plot: Plot,
-    chance: Float,
+    chance: ArrayLike,
     members: Sequence[TeamMember],
     progress: Callable[[int, int], None] | None = None,
     passing_m: float = 0.0,
+    on: str | date | datetime | np.datetime64 | None = None,
 ) -> TeamPlan:
     """Plan a day of a team: no plant twice, and no two in one aisle at once.
 
-    Routes are those of `fieldmon.planning.routes.best`.
+    Routes are those of `fieldmon.planning.routes.best`: no find changes them. `Season.plan_each`
+    plans what is left of a day for the team of a season, in which one's finds count for all.
 
     Parameters
     ----------
     plot
         Plants and the ways between them.
     chance
-        ``(n,)`` believed chance of infestation.
+        ``(n,)`` believed chance of infestation, in 0..1, for instance `DayPlan.chance`.
     members
-        Who works.
+        Who works, robots and scouts: `team_of` returns several of one kind.
     progress
         Told how many routes were looked for and prices of plants tried for the bound, and of how
         many.
     passing_m
         Metres of headland that two need to pass each other: where it is narrower nobody meets
         another head-on, but begins later. 0: they pass each other anywhere.
+    on
+        The day, or when work starts on it, as `plan_day` takes it: routes say when each begins.
+
+    Returns
+    -------
+    TeamPlan
+        The days and routes of the members, in their order, and the bound.
 
     Raises
     ------
     SettingError
-        If two members share a name, there are none, or no route of any of them fits its hours.
+        If two members share a name, there are none, a gate is too far away, no route of any of
+        them fits its hours, or `chance` does not fit the plants.
 
     Examples
     --------
     >>> import fieldmon as fm
-    >>> from fieldmon.planning.members import team_of
-    >>> from fieldmon.planning.team import plan_team
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
-    >>> team = plan_team(plot, chance, team_of(2, fm.Robot(hours=0.5)))
-    >>> len(team.days), team.meetings(), team.expected_found <= team.bound
+    >>> members = fm.TeamMember("Ann", fm.scout().with_hours(1)), fm.TeamMember("robot")
+    >>> team = fm.plan_team(plot, chance, members, on="2026-11-18 05:30")
+    >>> len(team.routes), team.meetings(), team.expected_found <= team.bound
     (2, [], True)
+    >>> [f"{route.notes.who} {route.notes.start:%H:%M}" for route in team.routes]
+    ['Ann 05:30', 'robot 05:30']
     """
     must_differ(members)
+    refuse_far_gates(members, plot.field)
+    chance, begins = chances_of(chance, plot.n_plants), starts_at(on, plot)
     if not 0.0 <= passing_m < np.inf:
         raise SettingError(
             worded(
@@ -170,7 +209,22 @@ def plan_team(
             )
         )
     days = tuple(replace(day, scene=replace(day.scene, chance=chance)) for day in timed.days)
-    days = tuple(replace(day, route=route_of(day.scene, day.work)) for day in days)
+    starts_s = timed.late_s + [one.starts_s for one in members]
+    days = tuple(
+        replace(
+            day,
+            route=replace(
+                route_of(day.scene, day.work),
+                notes=RouteNotes(
+                    plot.field.name,
+                    _BEST_ROUTES,
+                    begins + timedelta(seconds=round(float(s))),
+                    member.name,
+                ),
+            ),
+        )
+        for member, day, s in zip(members, days, starts_s, strict=True)
+    )
     held = _expected(days)
     most = max(team_bound(tasks, held, search.proving), held)
     search.proving(PRICES)  # it may have ended sooner

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.samplers.base import NEVER
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -53,14 +55,17 @@ class Wishes:
     def applied_to(self, scene: Scene) -> Scene:
         """Return the scene as whoever plans is told of it.
 
-        Wanted plants seem all but surely infested; unwanted ones seem inspected today. A sampler
-        that reads no chances, as a sweep, passes wishes for more by: see `unmet`.
+        Wanted plants seem all but surely infested; unwanted ones seem inspected today. What is
+        left out because nobody could inspect it is not if it is wanted. A sampler that reads no
+        chances, as a sweep, passes wishes for more by: see `unmet`.
         """
         if not self:
             return scene
         wanted, unwanted = (np.array(some, np.intp) for some in (self.wanted, self.unwanted))
         chance, seen = scene.chance.copy(), scene.last_inspected.copy()
         chance[wanted] = np.maximum(chance[wanted], _SURE)
+        if scene.skipped is not None:
+            seen[wanted[scene.skipped[wanted]]] = NEVER
         seen[unwanted] = scene.day
         pairs = scene.pair_chance
         if pairs is not None and len(wanted):

@@ -16,6 +16,7 @@ from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import left_off_in_words
 from fieldmon.planning.members import person_key
+from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.reports import maps, words
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.units import Units
+    from fieldmon.compute.wording import Worded
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.monitoring import PlannedAndDone, Season
@@ -99,6 +101,8 @@ class DayFacts:
         nothing is known to hide.
     closed
         Plants that are left off the route as people may not be there yet.
+    skipped
+        How many are left out because nobody could inspect them.
     """
 
     name: str
@@ -120,6 +124,7 @@ class DayFacts:
     labels: tuple[ProductLabel, ...] = ()
     infested: float | None = None
     closed: tuple[Closure, ...] = ()
+    skipped: tuple[Worded, ...] = ()
 
     @classmethod
     def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
@@ -154,6 +159,7 @@ class DayFacts:
                 closed=() if worked else season.closed(
                     on, "".join(names[:1]), plan.scene.seconds_left
                 ),
+                skipped=() if worked else left_out_in_words(plan.scene, route),
             )  # fmt: skip
 
 
@@ -234,6 +240,7 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
     if not facts.worked:
         grid = facts.route.aisles.grid
         said += left_off_in_words(facts.closed, (grid, row_label(grid)), units)
+        said += facts.skipped
     return said
 
 

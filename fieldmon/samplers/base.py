@@ -97,7 +97,8 @@ class Scene:
         ``(n,)`` believed chance that each plant is infested.
     last_inspected
         ``(n,)`` int32 day on which each plant was inspected last, -1 if it was not. Plants
-        in aisles too narrow for the robot seem inspected today: nobody is sent there.
+        in aisles too narrow for the robot seem inspected today, and so do those that are left out
+        because nobody could inspect them: nobody is sent there.
     day
         Today's number. A plant inspected on this day is not visited again.
     at
@@ -117,6 +118,9 @@ class Scene:
     supposed
         Whether results are supposed, as in a plan that takes every plant for clean: from those
         nobody learns how many plants are infested.
+    skipped
+        ``(n,)`` plants that are left out today because nobody could inspect them when they were
+        asked for last; None: there are none.
 
     Examples
     --------
@@ -139,6 +143,7 @@ class Scene:
     pair_chance: NDArray[np.float64] | None = None
     traces: Traces | None = None
     supposed: bool = False
+    skipped: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         robot = self.aisles.worked_by(self.robot)
@@ -166,6 +171,14 @@ class Scene:
         if self.at >= 0:
             return self.at
         return int(self.trail[-1]) if len(self.trail) else NEVER
+
+    def are_open(self, plants: NDArray[np.integer]) -> NDArray[np.bool_]:
+        """Return which plants ``(k,)`` a route given out may lead to still.
+
+        Those that are left out only of what is planned: who gave it out wished for them.
+        """
+        opened: NDArray[np.bool_] = self.last_inspected[plants] != self.day
+        return opened if self.skipped is None else opened | self.skipped[plants]
 
     def seen(self) -> Scene:
         """Return the same scene, whose arrays cannot be written to."""

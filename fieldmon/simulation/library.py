@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from fieldmon.compute.arguments import array_of, must_be_chances, must_be_shaped
+from fieldmon.compute.arguments import chances_of
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.plot.plot import must_be_plot
@@ -20,6 +18,7 @@ from fieldmon.simulation.start import Start, season_start
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.plot.plot import Plot
@@ -58,9 +57,7 @@ def draw_start(
     True
     """
     must_be_plot(plot)
-    chance = array_of(np.float64, "A chance map", chance)
-    must_be_shaped("A plot's", {"chance map": (chance, (len(plot.grid),))})
-    must_be_chances("A chance map", chance)
+    chance = chances_of(chance, plot.n_plants)
     must_be_of("The share infested at the start", "float", share)
     return season_start(plot.grid, chance, share, RandomStreams(seed))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
+    from pandas import DataFrame
 
     from fieldmon.simulation.season import SimulatedDay
 
@@ -92,6 +93,23 @@ class SeasonMetrics:
     def visited_each_time_pct(self) -> float:
         """Return the plants inspected on a visit in percent of all plants, on average."""
         return float(self.visited_pct[self.visit].mean())
+
+    def to_pandas(self) -> DataFrame:
+        """Return a line for each day (from 1), with its columns.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
+        >>> season = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))
+        >>> season.to_pandas().day.tolist()
+        [1, 2, 3]
+        """
+        import pandas as pd  # noqa: PLC0415 - loaded when it is asked for
+
+        columns = {one.name: getattr(self, one.name) for one in fields(self)}
+        return pd.DataFrame({"day": np.arange(1, len(self.left) + 1), **columns})
 
     def first_day(self, level_pct: float) -> int | None:
         """Return the first day (from 1) at whose end `level_pct` of all so far were found.

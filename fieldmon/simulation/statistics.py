@@ -1,4 +1,4 @@
-"""What the replicates of a measure say: mean, interval and spread."""
+"""What the replicates of a measure say: mean, interval and spread, and ratios of paired ones."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _TWO_SIDED_95 = 0.975
+_RESAMPLES = 2000
+# so many seasons before an interval drawn from them means what it says (our choice)
+_ENOUGH = 20
 Number = TypeVar("Number", float, "NDArray[np.float64]")
 
 
@@ -60,3 +63,67 @@ def summary_statistics(values: NDArray[np.float64]) -> SummaryStatistics:
 def half_interval(sd: Number, n: int) -> Number:
     """Return half the 95 % interval (Student's t) of means of `n` values, by their deviations."""
     return float(stdtrit(n - 1, _TWO_SIDED_95)) * sd / math.sqrt(n)
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """A ratio of two means over the same seeds, with its 95 % interval (bootstrap over seeds).
+
+    Parameters
+    ----------
+    value
+        Mean of one over mean of the other; NaN where both are 0.
+    low, high
+        Ends of the interval; NaN for fewer than 2 seeds.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> print(fm.Ratio(0.451, 0.398, 0.52))
+    0.45 (0.40-0.52)
+    """
+
+    value: float
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        """Return the ratio as it is printed."""
+        if math.isnan(self.value):
+            return "0 of 0"
+        if math.isnan(self.low):
+            return f"{self.value:.2f}"
+        return f"{self.value:.2f} ({self.low:.2f}-{self.high:.2f})"
+
+
+def paired_ratio(one: NDArray[np.float64], other: NDArray[np.float64]) -> Ratio:
+    """Return mean of one over mean of the other, ``(seeds,)`` paired."""
+    if not one.any() and not other.any():
+        return Ratio(math.nan, math.nan, math.nan)
+    value = float(one.mean() / max(other.mean(), 1e-9))
+    if len(one) < 2:
+        return Ratio(value, math.nan, math.nan)
+    draws = np.random.default_rng(0).integers(0, len(one), (_RESAMPLES, len(one)))
+    means, others = one[draws].mean(axis=1), other[draws].mean(axis=1)
+    # where nobody lost anything there is nothing to compare
+    ratios = (means / np.maximum(others, 1e-9))[(means > 0) | (others > 0)]
+    low, high = np.quantile(ratios, [0.025, 0.975])
+    return Ratio(value, float(low), float(high))
+
+
+def too_few_sentence(seeds: int, told_by: str) -> str:
+    """Return for people that so many seasons are too few to choose by; empty where they are not.
+
+    `told_by` is how more of them are asked for.
+
+    Examples
+    --------
+    >>> too_few_sentence(10, "--seeds")
+    'With 10 seasons intervals come out too narrow. Choose nothing by fewer than 20 (--seeds).'
+    """
+    if seeds >= _ENOUGH:
+        return ""
+    return (
+        f"With {seeds} seasons intervals come out too narrow. Choose nothing by fewer than "
+        f"{_ENOUGH} ({told_by})."
+    )

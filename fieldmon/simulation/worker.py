@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.pest_prior import prior_for
 from fieldmon.infestation.prior import prior_chance
@@ -16,9 +15,9 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.own import label_of
-from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT, season_metrics
+from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT
+from fieldmon.simulation.paired import SameInsects
 from fieldmon.simulation.season import SeasonSettings
-from fieldmon.simulation.start import season_start
 from fieldmon.simulation.team_season import ONE
 
 if TYPE_CHECKING:
@@ -105,14 +104,12 @@ def simulated_season(
     `days` are how many it has, and how many from one visit to the next.
     """
     (plot, chance, pest_in_weather), (n_days, visit_every) = laid, days
-    streams = RandomStreams(seed)
-    start = season_start(plot.grid, chance, levels.infested, streams)
     spread = Spread(levels.spread)
     settings = SeasonSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
     robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
-    decides = sampler_or_name(levels.sampler)
-    return season_metrics(team.days((plot, robot), decides, start, settings, streams))
+    insects = SameInsects(plot, chance, levels.infested, settings)
+    return insects.season(sampler_or_name(levels.sampler), robot, seed, team)
 
 
 class _Unhashed:

@@ -8,7 +8,7 @@ import pytest
 
 from fieldmon.compute.wording import written
 from fieldmon.errors import ImportDoubt
-from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.applications import Application
 from tests.cli.estate import BEGINS, ZIP, filled_in
@@ -160,3 +160,20 @@ def test_of_a_team_it_is_said_of_whom_something_is_assumed_and_who_finds_otherwi
     for route in routes:
         said = json.loads(route.read_text())["features"][0]["properties"]["forecast"]
         assert said["expected"][0] == round(ahead.expected[0], 1)
+
+
+def test_plants_left_out_because_nobody_could_inspect_them_are_counted(run, season):
+    kept, begins = Season(season), date.fromisoformat(BEGINS)
+    next_day = ["plan", season, "--date", begins + timedelta(days=1), "--no-bound"]
+    assert "Left out" not in run(*next_day)[2]
+    plants = kept.plan(begins).route.plant[:3]
+    kept.record(Inspections.of(plants, np.full(3, SKIPPED), np.datetime64(BEGINS)), "x")
+    code, _, err, _ = run(*next_day)
+    assert code == 0, err
+    assert "seen: Left out of this plan: 3 plants that nobody could inspect last time." in err
+    everything = np.arange(len(kept.plot.grid))
+    all_skipped = np.full(len(everything), SKIPPED)
+    kept.record(Inspections.of(everything, all_skipped, np.datetime64(BEGINS)), "y")
+    code, _, err, _ = run(*next_day)
+    assert code != 0
+    assert f"seen: Left out of this plan: {len(everything):,} plants" in err

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.cli.status import lines
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
@@ -155,3 +155,19 @@ def test_a_season_all_of_which_lies_ahead_is_told_as_of_its_last_day(season, mon
         today = kept.settings.begins - timedelta(days=before)
         monkeypatch.setattr(LocalClock, "today", lambda _, today=today: today)
         assert kept.day_meant() == meant
+
+
+def test_plants_that_could_not_be_inspected_are_counted_with_those_left_out(tmp_path):
+    kept = a_season(tmp_path / "s.gpkg")
+    begins = kept.settings.begins
+    assert not any("could not" in one for one in lines(kept, kept.status(begins)))
+    for days, plants in ((0, [3, 4, 5]), (2, [4, 6])):
+        skipped = np.full(len(plants), SKIPPED)
+        kept.record(Inspections.of(np.array(plants), skipped, begins + timedelta(days=days)), "x")
+    for days, left_out in enumerate([3, 0, 2, 1, 0]):
+        now = kept.status(begins + timedelta(days=days))
+        assert (now.skipped, now.left_out) == (3 if days < 2 else 4, left_out)
+    (said,) = (one for one in lines(kept, kept.status(begins)) if "could not" in one)
+    assert said == (
+        "  could not be inspected      3 last time, 3 of them left out of the next day's plan"
+    )

@@ -11,6 +11,7 @@ from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import (
     array_of,
+    chances_of,
     day_of,
     days_of,
     entries_of,
@@ -181,3 +182,10 @@ def test_a_day_is_taken_from_a_text_or_a_time_and_the_rest_is_left(given, day):
 def test_a_text_that_is_no_day_is_refused():
     with pytest.raises(SettingError, match="A harvest must be a day as 2026-11-18, but it is 'soo"):
         day_of("A harvest", "soon")
+
+
+def test_chances_are_taken_as_a_list_and_refused_unless_they_are_one_for_each_plant():
+    np.testing.assert_array_equal(chances_of([0.1, 0.2, 1], 3), [0.1, 0.2, 1.0])
+    for wrong, said in (([0.1], "shape"), ([0.1, 0.3, 2.0], "0..1"), ("soon", "numbers")):
+        with pytest.raises(SettingError, match=said):
+            chances_of(wrong, 3)

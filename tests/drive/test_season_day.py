@@ -83,6 +83,17 @@ def test_a_robot_enters_where_people_may_not_be_yet_and_who_walks_does_not(seaso
     assert SeasonDay(season, ON).goes_on
 
 
+def test_a_robot_is_not_sent_the_next_day_to_plants_that_it_could_not_inspect(season):
+    asked = []
+    for number in range(2):
+        day = SeasonDay(season, ON + timedelta(days=number))
+        while (stop := day.ask()) is not None:
+            asked.append(stop.plant)
+            day.tell(None)
+        assert len(asked) > 5 * (number + 1)
+        assert len(set(asked)) == len(asked)
+
+
 def test_the_day_is_the_one_that_the_season_plans_as_long_as_nothing_is_found(season):
     planned = season.plan(ON, keep=False).route
     done, _ = driven(season, ChargedRobot(lambda stop: False))  # noqa: ARG005

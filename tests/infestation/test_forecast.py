@@ -156,3 +156,10 @@ def test_of_plants_that_were_found_and_left_nothing_is_in_doubt():
     assert ahead.high[0] < found.sum() + 30
     assert (ahead.low >= found.sum()).all()
     assert (ahead.high <= 784).all()
+
+
+def test_a_frame_has_a_line_for_each_night_this_evening_first():
+    ahead = Forecast(np.array([3.0, 4.0]), np.array([1.0, 2.0]), np.array([5.0, 7.0]))
+    assert ahead.to_pandas().to_dict("list") == {
+        "night": [0, 1], "expected": [3.0, 4.0], "low": [1.0, 2.0], "high": [5.0, 7.0],
+    }  # fmt: skip

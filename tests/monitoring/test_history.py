@@ -121,9 +121,11 @@ def test_without_noted_times_the_work_took_what_driving_and_looking_cost():
     assert HISTORY.scene(SHIFT, 2, MORNING, now_s=86_000.0).seconds_left == 0.0
 
 
-def test_nobody_is_sent_again_to_a_plant_that_could_not_be_inspected_today():
-    assert HISTORY.scene(SHIFT, 0, MORNING).last_inspected[7] == 0
-    assert HISTORY.scene(SHIFT, 1, MORNING).last_inspected[7] == NEVER
+def test_nobody_is_sent_again_on_that_day_or_the_next_to_a_plant_that_could_not_be_inspected():
+    days = [HISTORY.scene(SHIFT, day, MORNING) for day in range(3)]
+    assert [scene.last_inspected[7] for scene in days] == [0, 1, NEVER]
+    assert days[0].skipped is days[2].skipped is None
+    assert np.flatnonzero(days[1].skipped).tolist() == [7]
 
 
 def test_a_day_on_which_nothing_was_done_begins_at_the_gate_or_where_one_stayed():
@@ -182,6 +184,11 @@ def test_a_day_and_all_before_it_are_what_going_through_the_looks_says(seed, who
         trail = [one[0] for one in earlier if one[2] == earlier[-1][2]]
         own = [one for one in mine if one[2] == day]
         closed = last.copy()
+        for plant in range(N):
+            of_plant = (one for one in until if one[0] == plant and one[1] == SKIPPED)
+            times = {one[2] for one in of_plant if last[plant] < one[2] < day}
+            if times and day - max(times) <= 2 ** (len(times) - 1):
+                closed[plant] = day
         closed[[one[0] for one in today]] = day
         assert scene.last_inspected.tolist() == closed.tolist()
         assert scene.trail.tolist() == trail

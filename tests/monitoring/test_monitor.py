@@ -100,6 +100,29 @@ def test_a_plant_that_cannot_be_inspected_stays_unknown_and_is_not_asked_for_aga
     assert monitor.chance[rest].max() < before[rest].max()
 
 
+@pytest.mark.parametrize("name", ["adaptive", "dynamic", "naive", "decide"])
+def test_plants_that_are_gone_are_asked_for_again_ever_more_seldom(plot, name):
+    monitor = Monitor(plot, name, Robot(hours=1))
+    gone = np.zeros(plot.n_plants, np.bool_)
+    gone[Monitor(plot, name, Robot(hours=1)).plan().route.plant[::3]] = True
+    asked = {plant: [] for plant in np.flatnonzero(gone).tolist()}
+    for number in range(12):
+        left_out = monitor.left_out
+        with monitor.day() as day:
+            while (stop := day.ask()) is not None:
+                assert not left_out[stop.plant]
+                day.tell(None if gone[stop.plant] else False)
+                if gone[stop.plant]:
+                    asked[stop.plant].append(number)
+        assert monitor.left_out[day.skipped].all()
+        assert not monitor.left_out[~gone].any()
+        monitor.night()
+        assert monitor.left_out[day.skipped].all()
+    assert max(map(len, asked.values())) >= 1
+    for days in asked.values():
+        assert all(gap > 2**k for k, gap in enumerate(np.diff(days).tolist()))
+
+
 def test_a_robot_that_is_slower_than_charged_visits_fewer_plants_and_never_ends_late(plot):
     robot = Robot(hours=1)
     whole = len(Monitor(plot, "naive", robot).plan().route)

@@ -14,6 +14,7 @@ from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import person_key, team_of
+from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.travel import GATE
 from tests.monitoring.seasons import (
@@ -332,6 +333,30 @@ def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
     assert (held.planned, held.done, held.people) == (len(ann) + 3, 3, 1)
 
 
+def test_a_code_for_some_rows_leaves_the_rest_of_the_days_plan_as_it_is(tmp_path):
+    season = a_season(tmp_path / "rows.gpkg")
+    own = season.plan(BEGINS).route.plant
+    line, day = season.label.line, np.datetime64(BEGINS)
+    rows, last = (int(line[own[0]]),) * 2, int(line.max())
+    scouts.let_in(season, "Ann", rows)
+    ann = route_ahead(season, BEGINS, Part(rows, "Ann"))
+    others = own[line[own] != rows[0]]
+    held = season.planned_and_done(BEGINS)
+    assert (held.planned, held.people) == (len(ann) + len(others), 2)
+    season.record(Inspections.of(others[:2], np.zeros(2, np.int8), day), "typed in")
+    held = season.planned_and_done(BEGINS)
+    assert (held.done, held.added, held.left) == (2, 0, len(ann) + len(others) - 2)
+    # once others have all its rows nobody goes by it
+    routes = [ann]
+    for name, (low, high) in {"Ben": (1, rows[0] - 1), "Cem": (rows[0] + 1, last)}.items():
+        if low <= high:
+            scouts.let_in(season, name, (low, high))
+            routes.append(route_ahead(season, BEGINS, Part((low, high), name)))
+    held = season.planned_and_done(BEGINS)
+    assert held.people == len(routes)
+    assert held.left == sum(map(len, routes))
+
+
 def test_a_code_taken_back_on_a_later_day_changes_no_day_before(tmp_path):
     season = a_season(tmp_path / "out.gpkg")
     parts = [Part(name=name) for name in ("Ann", "Dan")]
@@ -363,3 +388,41 @@ def test_a_day_planned_again_with_another_start_takes_the_hours_of_its_last_plan
     season.change(replace(season.settings, starts=starts), season.settings)
     rest = season.plan(BEGINS).route
     assert season.planned_and_done(BEGINS).hours == pytest.approx(rest.end_s / 3600)
+
+
+def test_plants_that_could_not_be_inspected_are_in_nobodys_plan_of_the_next_day(tmp_path):
+    team = team_of(2, ROBOT)
+    for name, choices in (("alone", {}), ("team", {"team": team})):
+        season = a_season(tmp_path / f"{name}.gpkg", **choices)
+        stops = np.concatenate([one.route.plant for one in season.plan_each(on(0))])
+        skipped = np.sort(stops[::3])
+        season.record(Inspections.of(skipped, np.full(len(skipped), SKIPPED), np.datetime64(on(0))))
+        free = np.setdiff1d(np.arange(len(season.plot.grid)), skipped)
+        for day in (1, 2):
+            days = season.plan_each(on(day))
+            assert all(len(one.route) for one in days)
+            parts = [Part(name=one.name) for one in choices.get("team", ())] or [Part()]
+            routes = [one.route for one in days]
+            routes += [route_ahead(season, on(day), part) for part in parts]
+            asked = np.concatenate([route.plant for route in routes])
+            assert np.isin(asked, free).all() == (day == 1)
+            if day == 1:
+                assert np.flatnonzero(days[0].scene.skipped).tolist() == skipped.tolist()
+
+
+def test_who_wishes_for_a_plant_that_is_left_out_has_it_in_the_plan_and_in_the_route_given_out(
+    season,
+):
+    wanted = season.plan(on(0)).route.plant[:2]
+    for day in (0, 2, 5):  # left out for four days more
+        seen = Inspections.of(wanted, np.full(2, SKIPPED), np.datetime64(on(day)))
+        season.record(seen)
+    wishes = Wishes((int(wanted[0]),))
+    assert wanted[0] in season.plan(on(6), wishes=wishes).route.plant
+    kept = route_ahead(season, on(6))
+    assert wanted[0] in kept.plant
+    assert wanted[1] not in kept.plant
+    seen = Inspections.of(wanted[:1], np.array([SKIPPED]), np.datetime64(on(6)))
+    season.record(seen)
+    for rest in (season.plan(on(6), wishes=wishes).route, route_ahead(season, on(6))):
+        assert wanted[0] not in rest.plant

@@ -1,6 +1,8 @@
 """A day of several: no plant twice, no two in one aisle at once, and a bound for all together."""
 
+import json
 from dataclasses import replace
+from datetime import datetime, timedelta
 from itertools import pairwise
 
 import numpy as np
@@ -102,6 +104,31 @@ def test_different_members_have_their_own_hours_gates_and_eyes():
     assert np.abs(plan.days[1].route.line_m[0] - plan.days[0].route.line_m[0]).max() > 10.0
     assert (plan.days[2].route.detects == 0.95).all()
     assert plan.starts_s[1] >= 600.0
+
+
+def test_each_route_says_who_drives_it_from_when_and_goes_to_files_as_it_is(tmp_path):
+    plot = plot_of()
+    members = (TeamMember("Ann", Robot(hours=0.5)), TeamMember("Ben", Robot(hours=0.5), None, 600))
+    plan = plan_team(plot, chances(plot), members, on="2026-11-18 05:30")
+    begins = datetime(2026, 11, 18, 5, 30)
+    for member, route, starts_s in zip(members, plan.routes, plan.starts_s, strict=True):
+        assert route.notes.who == member.name
+        assert route.notes.start == begins + timedelta(seconds=round(starts_s))
+    assert plan.routes[1].notes.start >= begins + timedelta(seconds=600)
+    (file,) = plan.routes[1].to_file(tmp_path / "ben.geojson")
+    line = json.loads(file.read_text(encoding="utf-8"))["features"][0]["properties"]
+    assert (line["who"], line["start"]) == ("Ben", plan.routes[1].notes.start.isoformat())
+
+
+def test_a_gate_from_which_nobody_drives_and_what_is_no_chance_are_refused():
+    plot = plot_of()
+    far = TeamMember("Ann", gate=(0.0, 0.0))
+    with pytest.raises(SettingError, match=r"^Ann: The gate at 0, 0 .* lies"):
+        plan_team(plot, chances(plot), [far])
+    with pytest.raises(SettingError, match=r"chances in 0\.\.1"):
+        plan_team(plot, chances(plot) + 1.0, team_of(2))
+    with pytest.raises(SettingError, match="'members' of plan_team must be a sequence of"):
+        plan_team(plot, chances(plot), 2)
 
 
 @pytest.mark.parametrize("detection", [0.5, 1.0])

@@ -8,7 +8,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import estimate
-from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import PlannedAndDone
 from fieldmon.monitoring.applications import Application
 from fieldmon.planning.members import TeamMember
@@ -133,6 +133,17 @@ def test_a_day_ahead_tells_which_plants_are_left_off_as_nobody_may_enter(tmp_pat
     said = paragraphs(day_report(facts, Units()))
     assert [one for one in said if one.startswith("Closed until 05:00 on 2026-04-07 after Oil")]
     assert not (season.label.line[facts.route.plant] == 3).any()
+
+
+def test_a_day_ahead_tells_how_many_plants_are_left_out_as_nobody_could_inspect_them(tmp_path):
+    season = a_season(tmp_path / "skipped.gpkg")
+    seen = Inspections.of(np.arange(3), np.full(3, SKIPPED), np.datetime64(BEGINS))
+    season.record(seen)
+    told = "Left out of this plan: 3 plants that nobody could inspect last time."
+    for days, said in ((1, [told]), (2, [])):
+        facts = DayFacts.of_season(season, BEGINS + timedelta(days=days))
+        leads = paragraphs(day_report(facts, Units()))
+        assert [one for one in leads if one.startswith("Left out")] == said
 
 
 def test_making_a_report_keeps_nothing_in_the_season(tmp_path):

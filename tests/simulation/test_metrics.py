@@ -45,3 +45,12 @@ def test_visits_are_told_from_days():
     assert daily.visits == 6
     assert daily.visited_each_time_pct == daily.visited_pct.mean()
     assert "visit" not in repr(daily)
+
+
+def test_a_frame_has_a_line_for_each_day_and_the_columns():
+    made = season_metrics(season("naive"))
+    frame = made.to_pandas()
+    assert frame.day.tolist() == list(range(1, len(made.left) + 1))
+    assert [*frame.columns[1:]] == [*vars(made)]
+    assert frame.left.sum() == made.infested_plant_days
+    assert len(season_metrics([]).to_pandas()) == 0

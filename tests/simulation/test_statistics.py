@@ -1,4 +1,4 @@
-"""Means and their intervals."""
+"""Means and ratios, and their intervals."""
 
 import math
 
@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import stats
 
-from fieldmon.simulation.statistics import half_interval, summary_statistics
+from fieldmon.simulation.statistics import (
+    half_interval,
+    paired_ratio,
+    summary_statistics,
+    too_few_sentence,
+)
 
 
 def test_the_interval_is_students():
@@ -59,3 +64,32 @@ def test_so_many_values_are_counted_and_from_two_on_there_is_an_interval():
     # Student's t of one degree of freedom: 12.706 (ISO 2602), times sd / sqrt(2) = 1
     assert (two.low, two.high) == pytest.approx((4.0 - 12.706, 4.0 + 12.706), abs=1e-3)
     assert (two.sd, two.mean) == pytest.approx((2**0.5, 4.0))
+
+
+def test_a_ratio_of_twice_as_much_is_two_and_its_interval_holds_it():
+    values = np.random.default_rng(1).gamma(2.0, size=40)
+    twice = paired_ratio(2 * values, values)
+    assert (twice.value, twice.low, twice.high) == pytest.approx((2.0, 2.0, 2.0))
+    noisy = paired_ratio(2 * np.random.default_rng(2).gamma(2.0, size=40), values)
+    assert noisy.low < 2.0 < noisy.high
+    assert str(twice) == "2.00 (2.00-2.00)"
+
+
+def test_one_season_has_a_ratio_without_interval():
+    alone = paired_ratio(np.array([3.0]), np.array([6.0]))
+    assert (alone.value, str(alone)) == (0.5, "0.50")
+    assert math.isnan(alone.low)
+    assert math.isnan(alone.high)
+
+
+def test_of_nothing_there_is_no_ratio_and_seasons_of_nothing_do_not_widen_its_interval():
+    nothing = np.zeros(3)
+    assert str(paired_ratio(nothing, nothing)) == "0 of 0"
+    some = np.array([0.0, 4.0, 0.0])
+    same = paired_ratio(some, some)
+    assert (same.value, same.low, same.high) == (1.0, 1.0, 1.0)
+
+
+def test_only_fewer_than_twenty_seasons_are_said_to_be_too_few():
+    assert too_few_sentence(20, "--seeds") == ""
+    assert too_few_sentence(19, "--seeds").startswith("With 19 seasons")

@@ -4,21 +4,22 @@
 const SWITCH = { hot: "hot", leg: "numbers", stop: "numbers", zone: "numbers", row: "rows", place: "plan", block: "rows" };
 
 // every so many rows have their numbers, where there is not room for each
-const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, Infinity];
 
 // how much of a number others must leave free where it had rather be crowded than missing
 const TIGHT = 0.6;
 
 const NUMBERS = new Set(["leg", "stop", "zone"]);
 const numbered = new WeakMap();
+const known = new WeakMap();
 
 // Return the labels with the numbers of the hot spots that are shown: after those of stops, which
 // they never cover, before all other words.
 export function withHot(labels, jsons) {
   const hot = jsons.find((json) => json.id === "hot");
   if (!hot) return labels;
-  const known = numbered.get(hot);
-  if (known?.labels === labels) return known.made;
+  const before = numbered.get(hot);
+  if (before?.labels === labels) return before.made;
   const own = hot.data.flatMap(({ number }) => (number ? [{ p: number.at[0], at: number.at, t: number.t, k: "hot" }] : []));
   const made = [...labels.filter(({ k }) => NUMBERS.has(k)), ...own, ...labels.filter(({ k }) => !NUMBERS.has(k))];
   numbered.set(hot, { labels, made });
@@ -47,23 +48,36 @@ function pushed(viewport, p, { away, gap }, [half, tall]) {
   return [x + outX, y + outY];
 }
 
-// Return every how many rows there is room for a number: the same all over the plot, whatever is in view.
-// Of very few rows none may be a multiple of that: then those of the next smaller step are shown.
-function rowStep(rows, viewport) {
-  const at = new Map(rows.map((one) => [one.row, { size: sizeOf(one.t), xy: pushed(viewport, one.p, one, sizeOf(one.t)) }]));
-  const covered = (a, b) => Math.abs(a.xy[0] - b.xy[0]) < a.size[0] + b.size[0] && Math.abs(a.xy[1] - b.xy[1]) < a.size[1] + b.size[1];
-  const several = STEPS.filter((step) => rows.filter(({ row }) => row % step === 0).length > 1);
-  const free = several.find((step) => rows.every(({ row }) => row % step || !at.has(row + step) || !covered(at.get(row), at.get(row + step))));
-  return free ?? several.at(-1) ?? 1;
+// Return the rows that have labels, each with the number `n` by which every so many are shown: its own
+// where these follow on from row to row, else its place.
+function rowsOf(labels) {
+  if (known.has(labels)) return known.get(labels);
+  const rows = labels.filter(({ k, row }) => k === "row" && row), own = rows.map(({ t }) => Number(t)), by = own[1] - own[0];
+  const follow = Math.abs(by) === 1 && own.every((n, k) => n === own[0] + by * k);
+  const made = rows.map((one, k) => ({ ...one, n: follow ? own[k] : one.row }));
+  known.set(labels, made);
+  return made;
+}
+
+// Return the rows that have room for their numbers, with these' boxes [left, top, right, bottom]: the first
+// and the last, and every so many, the same all over the plot, whatever is in view.
+function numberedRows(labels, viewport) {
+  const rows = rowsOf(labels).map(({ row, n, t, p, ...one }) => {
+    const [half, tall] = sizeOf(t), [x, y] = pushed(viewport, p, one, [half, tall]);
+    return { row, n, box: [x - half, y - tall, x + half, y + tall] };
+  });
+  if (rows.length < 2) return rows;
+  const of = new Map(rows.map((one) => [one.n, one]));
+  const covered = ({ box: a }, { box: b }) => a[0] < b[2] && a[2] > b[0] && a[1] < b[3] && a[3] > b[1];
+  const step = STEPS.find((k) => rows.every((one) => one.n % k || !of.has(one.n + k) || !covered(one, of.get(one.n + k))));
+  const ends = [rows[0], rows.at(-1)].filter((one, k, [first]) => !k || !covered(first, one));
+  for (const one of ends) one.end = true;
+  return rows.filter((one) => one.end || (one.n % step === 0 && !ends.some((end) => covered(end, one))));
 }
 
 // Return the boxes [left, top, right, bottom] of the numbers that rows have in a view.
 export function rowBoxes(labels, viewport) {
-  const rows = labels.filter(({ k, row }) => k === "row" && row), step = rowStep(rows, viewport);
-  return rows.filter(({ row }) => row % step === 0).map((one) => {
-    const [half, tall] = sizeOf(one.t), [x, y] = pushed(viewport, one.p, one, [half, tall]);
-    return [x - half, y - tall, x + half, y + tall];
-  });
+  return numberedRows(labels, viewport).map(({ box }) => box);
 }
 
 // Return a middle from which a word reaches over neither edge, if it is not out of view.
@@ -81,7 +95,8 @@ function besides([x, y], half, over, free) {
 
 // `labels` are {p: [lon, lat], t: text, k: kind, from, to (zooms), row, at, away, gap}, the most important
 // first; `at` are the places to be tried where it may stand at several. One with `away` [lon, lat] stands
-// beyond its place in that direction, `gap` pixels from it; one that is `tight` may be crowded.
+// beyond its place in that direction, `gap` pixels from it; one that is `tight`, and the first and the last
+// row, may be crowded.
 export class Labels {
   constructor(place) {
     this.place = place;
@@ -89,13 +104,13 @@ export class Labels {
     this.placed = [];
   }
 
-  // Return every how many rows have a number: it changes with the zoom alone.
-  step(labels, viewport) {
-    const { zoom, pitch } = viewport, known = this.known;
-    if (known?.labels === labels && known.zoom === zoom && known.pitch === pitch) return known.step;
-    const step = rowStep(labels.filter(({ k, row }) => k === "row" && row), viewport);
-    this.known = { labels, zoom, pitch, step };
-    return step;
+  // Return which rows have a number, and whether each is an end: they change with the zoom alone.
+  rows(labels, viewport) {
+    const { zoom, pitch } = viewport, last = this.last;
+    if (last?.labels === labels && last.zoom === zoom && last.pitch === pitch) return last.rows;
+    const rows = new Map(numberedRows(labels, viewport).map(({ row, end }) => [row, end]));
+    this.last = { labels, zoom, pitch, rows };
+    return rows;
   }
 
   // `over` are the boxes [left, top, right, bottom] of what lies over the map: no word stands below it.
@@ -103,12 +118,13 @@ export class Labels {
   draw(labels, viewport, hidden, over = [], free = [0, viewport.width]) {
     const boxes = [...over];
     this.placed = [];
-    const step = this.step(labels, viewport);
+    const rows = this.rows(labels, viewport);
     for (const label of labels) {
       const { p, t, k, from, to, row, at, tight } = label;
-      if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99) || row % step) continue;
-      const [half, tall] = sizeOf(t).map((one) => (tight ? TIGHT * one : one));
-      const places = (at ?? [p]).map((one) => pushed(viewport, one, label, [half, tall]));
+      if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99) || (row && !rows.has(row))) continue;
+      const size = sizeOf(t).map((one) => (tight ? TIGHT * one : one));
+      const places = (at ?? [p]).map((one) => pushed(viewport, one, label, size));
+      const [half, tall] = size.map((one) => (rows.get(row) ? TIGHT * one : one));
       const place = (k === "name" ? places.flatMap((one) => besides(one, half + 4, over, free)) : places).find(([x, y]) => {
         if (x < -20 || y < -20 || x > viewport.width + 20 || y > viewport.height + 20) return false;
         return !boxes.some((b) => x - half < b[2] && x + half > b[0] && y - tall < b[3] && y + tall > b[1]);

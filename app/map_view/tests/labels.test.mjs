@@ -58,20 +58,39 @@ test("legs give way to stops at their zoom, and neither shows where it is switch
   assert.deepEqual(of(17, ["rows"]), ["1"]);
 });
 
-test("row numbers go in even steps, as many as have room, and the step does not change with what is in view", () => {
-  const rows = Array.from({ length: 45 }, (_, k) => ({ p: [0.1, -0.02 - k * 0.012], t: `${k + 1}`, k: "row", row: k + 1 }));
+test("row numbers go in even steps, as many as have room, and do not change with what is in view", () => {
   const steps = [2.1, 4.1, 11, 21].map((scale) => {
-    const closer = rows.map((one) => ({ ...one, p: [0.1, -0.02 - (one.row - 1) * scale / 1000] }));
-    const own = (labels, seen = view) => shown(labels, seen).map(({ t }) => Number(t));
-    const made = own(closer), step = made[1] - made[0];
-    assert.ok(made.length > 1 && made.every((row, k) => row === step * (k + 1)), `${scale}: ${made}`);
+    const n = Math.min(43, Math.floor(560 / scale));
+    const rows = Array.from({ length: n }, (_, k) => ({ p: [0.1, -0.02 - (k * scale) / 1000], t: `${k + 1}`, k: "row", row: k + 1 }));
+    const made = shown(rows, view).map(({ t }) => Number(t)), own = made.slice(1, -1), step = own[1] - own[0] || 20;
+    assert.deepEqual([made[0], made.at(-1)], [1, n], "the first and the last");
+    // what has no room beside these is left out
+    const fits = rows.map(({ row }) => row).filter((row) => row % step === 0 && Math.min(row - 1, n - row) * scale >= 20);
+    assert.deepEqual(own, step === 1 ? rows.slice(1, -1).map(({ row }) => row) : fits, `${scale}`);
     // two steps nearer to each other would not have room
     assert.ok(step === 1 || scale * [0, 1, 1, 1, 1, 2, 2, 2, 2, 2, 5][Math.min(step, 10)] < 20, `${scale}: ${step}`);
-    assert.deepEqual(own(closer.slice(0, 31)), made.filter((row) => row <= 31));
+    const part = { ...view, project: (p) => { const [x, y] = view.project(p); return [x, y - 200]; } };
+    assert.ok(shown(rows, part).every(({ t }) => made.includes(Number(t))));
     return step;
   });
   assert.deepEqual([...steps].sort((a, b) => b - a), steps);
   assert.equal(new Set(steps).size, 4);
+});
+
+test("the first and the last row have their numbers close beside the word of the gate, too", () => {
+  const rows = [1, 2, 3].map((row) => ({ p: [0.1, -0.1 - row * 0.03], t: `${row}`, k: "row", row }));
+  const gate = (row) => ({ p: [0.131, -0.1 - row * 0.03], t: "gate", k: "gate" });
+  const beside = (row) => shown([gate(row), ...rows], view).map(({ t }) => t);
+  assert.deepEqual([1, 2, 3].map(beside), [["gate", "1", "2", "3"], ["gate", "1", "3"], ["gate", "1", "2", "3"]]);
+});
+
+test("rows that count on from another number, or down, are shown by their own numbers", () => {
+  const of = (numbers) => shown(numbers.map((n, k) => ({ p: [0.1, -0.02 - k * 0.0041], t: `${n}`, k: "row", row: k + 1 })), view).map(({ t }) => t);
+  const from = Array.from({ length: 31 }, (_, k) => 12 + k);
+  assert.deepEqual(of(from), ["12", "20", "25", "30", "35", "42"]);
+  assert.deepEqual(of([...from].reverse()), ["42", "35", "30", "25", "20", "12"]);
+  // numbers in no order: every so many rows on the ground
+  assert.deepEqual(of([7, 3, 9, 1, 8, 2, 6, 5, 4, 11, 10, 13, 12, 14, 16, 15]), ["7", "11", "15"]);
 });
 
 test("of rows so few that none is a multiple of ten, some have their numbers", () => {

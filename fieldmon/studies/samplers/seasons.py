@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.metrics import season_metrics
+from fieldmon.simulation.paired import paired
 from fieldmon.simulation.season import simulated_days
 from fieldmon.studies.samplers.contenders import (
     CLAIRVOYANT,
@@ -21,6 +21,7 @@ from fieldmon.studies.samplers.contenders import (
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from fieldmon.simulation.experiment import Experiment
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SimulatedDay
     from fieldmon.simulation.start import Start
@@ -62,14 +63,7 @@ def study_of(
 
     A chunk's key is the scenario's name and the seed.
     """
-    return Experiment(
-        settings=scenarios,
-        seeds=seeds,
-        simulate=lambda scenario, seeds: outcomes(scenario, seeds.start),
-        chunk_size=lambda _: 1,
-        key=lambda scenario, seeds: (scenario.name, seeds.start),
-        seed_by_seed=True,
-    )
+    return paired(scenarios, seeds, outcomes, lambda one, seeds: (one.name, seeds.start))
 
 
 def outcomes(scenario: Scenario, seed: int) -> list[SeasonOutcome]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.simulation.statistics import paired_ratio, too_few_sentence
 from fieldmon.studies.samplers.contenders import (
     ADAPTIVE,
     BOUNDS,
@@ -23,29 +23,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.simulation.statistics import Ratio
     from fieldmon.studies.samplers.seasons import SeasonOutcome
 
     MeasureTable = dict[str, dict[str, NDArray[np.float64]]]
 
 #: whom Adaptive is held against
 OTHERS = (PAIRS, WORDED, TUNED, NAIVE)
-_RESAMPLES = 2000
 _NEVER_WORSE = 1.05
-# so many seasons before an interval drawn from them means what it says (our choice)
-_ENOUGH = 20
-
-
-@dataclass(frozen=True)
-class Ratio:
-    """A ratio of two means over the same seeds, with its 95 % interval (bootstrap over seeds)."""
-
-    value: float
-    low: float
-    high: float
-
-    def __str__(self) -> str:
-        """Return the ratio as it is printed."""
-        return f"{self.value:.2f} ({self.low:.2f}-{self.high:.2f})"
 
 
 def by_scenario(outcomes: Sequence[SeasonOutcome], measure: str) -> MeasureTable:
@@ -60,20 +45,12 @@ def by_scenario(outcomes: Sequence[SeasonOutcome], measure: str) -> MeasureTable
     }
 
 
-def ratio(one: NDArray[np.float64], other: NDArray[np.float64]) -> Ratio:
-    """Return mean of one over mean of the other, ``(seeds,)`` paired."""
-    draws = np.random.default_rng(0).integers(0, len(one), (_RESAMPLES, len(one)))
-    ratios = one[draws].mean(axis=1) / np.maximum(other[draws].mean(axis=1), 1e-9)
-    low, high = np.quantile(ratios, [0.025, 0.975])
-    return Ratio(float(one.mean() / max(other.mean(), 1e-9)), float(low), float(high))
-
-
 def ratios(outcomes: Sequence[SeasonOutcome]) -> dict[str, dict[str, Ratio]]:
     """Return Adaptive's infested plant-days over each other's, by scenario and `OTHERS`."""
     loss = by_scenario(outcomes, "infested_plant_days")
     return {
         name: {
-            other: ratio(who[ADAPTIVE], who[other])
+            other: paired_ratio(who[ADAPTIVE], who[other])
             for other in OTHERS
             if len(who[other]) == len(who[ADAPTIVE])
         }
@@ -100,7 +77,7 @@ def sentences(outcomes: Sequence[SeasonOutcome]) -> list[str]:
     loss = by_scenario(outcomes, "infested_plant_days")
     said = verdict(outcomes)
     for other in (WORDED, TUNED):
-        ratios = {name: ratio(who[ADAPTIVE], who[other]).value for name, who in loss.items()}
+        ratios = {name: paired_ratio(who[ADAPTIVE], who[other]).value for name, who in loss.items()}
         half = sum(value <= 0.5 for value in ratios.values())
         below = sum(value < 1.0 for value in ratios.values())
         worst = max(ratios, key=ratios.__getitem__)
@@ -152,13 +129,8 @@ def verdict(outcomes: Sequence[SeasonOutcome]) -> list[str]:
                 f"{ADAPTIVE} against {other}: surely fewer in {fewer}, surely more in {more}, not "
                 f"sure in {len(held) - fewer - more} (95 % interval of the ratio)."
             )
-    seeds = len({outcome.seed for outcome in outcomes})
-    if seeds < _ENOUGH:
-        said.append(
-            f"With {seeds} seasons intervals come out too narrow. Choose nothing by fewer than "
-            f"{_ENOUGH} (--seeds)."
-        )
-    return said
+    few = too_few_sentence(len({outcome.seed for outcome in outcomes}), "--seeds")
+    return [*said, few] if few else said
 
 
 def _looks(outcomes: Sequence[SeasonOutcome]) -> str:

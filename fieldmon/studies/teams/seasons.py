@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 
 from fieldmon.compute.digest import digest
-from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import prior_chance
@@ -22,10 +21,8 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler as sampler_of
-from fieldmon.simulation.experiment import Experiment
-from fieldmon.simulation.metrics import season_metrics
+from fieldmon.simulation.paired import SameInsects, paired
 from fieldmon.simulation.season import SeasonSettings
-from fieldmon.simulation.start import season_start
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.simulation.experiment import Experiment
     from fieldmon.simulation.team_season import Team
 
 _DIGITS = 8
@@ -173,32 +171,25 @@ def study_of(
     settings: Sequence[TeamSetting], seeds: range
 ) -> Experiment[TeamSetting, list[TeamOutcome]]:
     """Return the study of teams in scenarios: all of them meet a scenario's insects of a seed."""
-    return Experiment(
-        settings=settings,
-        seeds=seeds,
-        simulate=lambda setting, seeds: [outcome(setting, seeds.start)],
-        chunk_size=lambda _: 1,
-        key=lambda setting, seeds: (
-            *(setting.scenario.name, setting.who, setting.team.robots, seeds.start),
-        ),
-        seed_by_seed=True,
+    return paired(
+        settings,
+        seeds,
+        lambda setting, seed: [outcome(setting, seed)],
+        lambda one, seeds: (one.scenario.name, one.who, one.team.robots, seeds.start),
     )
 
 
 def outcome(setting: TeamSetting, seed: int) -> TeamOutcome:
     """Return what a season of a team comes to."""
-    scenario, streams = setting.scenario, RandomStreams(seed)
-    plot = scenario.plot
-    start = season_start(plot.grid, scenario.chance, scenario.infested, streams)
+    scenario = setting.scenario
     season = SeasonSettings(
         n_days=scenario.n_days,
         spread=scenario.spread,
         pest=scenario.pest_in_weather,
         visit_every=scenario.visit_every,
     )
-    decides = sampler_of(setting.sampler)
-    works = plot, scenario.robot
-    made = season_metrics(setting.team.days(works, decides, start, season, streams))
+    insects = SameInsects(scenario.plot, scenario.chance, scenario.infested, season)
+    made = insects.season(sampler_of(setting.sampler), scenario.robot, seed, setting.team)
     return TeamOutcome(
         scenario.name, setting.who, setting.team.robots, seed,
         round(scenario.hectares, 3), scenario.rate_per_day,

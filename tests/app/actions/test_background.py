@@ -1,12 +1,12 @@
 """Work in the background is begun and stopped by buttons."""
 
-from app.state.comparison import Comparison
+from app.state.comparison import WatchedComparison
 from tests.app.driving import go
 
 
 def test_numbers_typed_just_before_pressing_compare_are_those_compared(app, monkeypatch):
     begun = []
-    monkeypatch.setattr(Comparison, "start", lambda self: begun.append(self.settings.seeds))
+    monkeypatch.setattr(WatchedComparison, "start", lambda self: begun.append(self.settings.seeds))
     go(app, "compare")
     app.number_input(key="seeds").set_value(7)
     app.button(key="run").click().run()

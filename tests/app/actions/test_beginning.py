@@ -140,6 +140,21 @@ def test_while_nothing_is_recorded_another_season_is_begun_with_other_rows(
     assert texts.ANOTHER not in {one.label for one in go(app, "plot").button}
 
 
+def test_another_season_of_one_opened_by_its_address_has_its_measured_plants_and_their_names(
+    season_named, seasons_folder
+):
+    app = go(opened(season_named.path.stem), "plot")
+    press(app, texts.ANOTHER)
+    assert not app.exception
+    assert not app.error
+    begun(app, "Own again")
+    before, after = season_named.plot, Season(seasons_folder / "Own again.gpkg").plot
+    assert np.array_equal(before.field.plants, after.field.plants)
+    assert np.allclose(before.grid.lonlat(), after.grid.lonlat(), rtol=0.0, atol=1e-8)
+    assert list(before.grid.row_signs.values()) == list(after.grid.row_signs.values())
+    assert np.array_equal(before.field.plant_names, after.field.plant_names)
+
+
 def test_the_gate_is_set_on_the_map_before_a_season_begins(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square())))
     go(app, "today")

@@ -3,11 +3,12 @@
 import json
 import shutil
 import uuid
-from datetime import date, time
+from datetime import date, time, timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
+import streamlit as st
 
 from app.actions import recording
 from app.state.fresh_boxes import FreshBoxes
@@ -67,6 +68,13 @@ def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_
     (plant,) = season_named.history.inspections.plant
     label = season_named.label
     assert (label.line[plant], label.number[plant]) == (1, 5)
+    # what was recorded, and what was undone, is called as it was typed
+    go(app, "record")
+    (recorded,) = [one for one in app.button if one.label == "Undo"]
+    assert "row 1 · 5a, plant 5: found" in recorded.help
+    recorded.click()
+    app.run()
+    assert "1 · 5a" in app.success[0].value
 
 
 def expected(app):
@@ -222,6 +230,19 @@ def send(app, form):
     """Press the button of some boxes."""
     app.button(key="treat" if form == "treatment" else f"record_{form}").click().run()
     assert not app.exception
+
+
+def test_what_is_typed_before_the_page_of_another_day_is_there_is_of_that_day(season_app):
+    go(season_app, "record")
+    row, day = key_of(season_app, "one_row"), season_app.date_input[0].value
+    season_app.session_state[row] = 2
+    season_app.run()
+    season_app.date_input[0].set_value(day + timedelta(days=1)).run()
+    season_app.session_state[row] = 7  # from the box still in view
+    season_app.run()
+    assert (boxed(season_app.number_input, "one_row").value, season_app.error.len) == (7, 0)
+    season_app.date_input[0].set_value(day).run()
+    assert boxed(season_app.number_input, "one_row").value == 2
 
 
 @pytest.mark.parametrize("form", ["route", "one", "treatment"])
@@ -472,3 +493,60 @@ def test_what_was_not_recorded_yet_is_there_again_after_a_reload(season_app, sea
     assert said(go(go(again, "season"), "record"))[:4] == filled[:4], "and on another page"
     later = reloaded(again, season="Gate 2026", day="2026-11-17")
     assert said(later)[:5] == EMPTY[:5]
+
+
+def broken_off(monkeypatch, typed=None):
+    """Let the next run of Record be broken off before its buttons, as by what is typed then."""
+    shown, breaks = recording.ask_about_contradictions, [True]
+
+    def ask(choices):
+        if breaks:
+            breaks.clear()
+            if typed is not None:
+                typed()
+            st.rerun()
+        shown(choices)
+
+    monkeypatch.setattr(recording, "ask_about_contradictions", ask)
+
+
+@pytest.mark.parametrize("is_more_typed", [False, True])
+def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
+    season_app, season, monkeypatch, is_more_typed
+):
+    go(season_app, "record")
+    row = key_of(season_app, "one_row")
+    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+
+    def type_next():
+        st.session_state[row] = 5
+
+    broken_off(monkeypatch, type_next if is_more_typed else None)
+    send(season_app, "one")
+    (plant,) = season().history.inspections.plant
+    label = season().label
+    assert (label.line[plant], label.number[plant]) == (3, 4)
+    assert boxed(season_app.number_input, "one_row").value == (5 if is_more_typed else None)
+    assert boxed(season_app.number_input, "one_plant").value is None
+
+
+def test_a_treatment_is_noted_though_the_run_of_the_press_is_broken_off(
+    season_app, season, monkeypatch
+):
+    go(season_app, "record")
+    boxed(season_app.number_input, "efficacy").set_value(90).run()
+    broken_off(monkeypatch)
+    send(season_app, "treatment")
+    assert len(season().treatments()) == 1
+
+
+def test_stops_of_the_route_are_recorded_though_the_run_of_the_press_is_broken_off(
+    season_app, season, monkeypatch
+):
+    go(season_app, "record")
+    boxed(season_app.number_input, "stops_done").set_value(3).run()
+    broken_off(monkeypatch)
+    send(season_app, "route")
+    assert len(season().history.inspections) == 3

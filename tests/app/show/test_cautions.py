@@ -1,13 +1,15 @@
 """What to beware of after treatments is said in the page's words."""
 
-from datetime import time
+from datetime import time, timedelta
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from app.show import cautions, day
 from app.words import texts
 from app.words.units import UnitsInLanguage
+from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring.applications import Application
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -75,3 +77,21 @@ def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
     assert shown == []  # not that hours are too short
     cautions.show_today(today, today.plan())
     assert shown[0][1].endswith(texts.KEPT_ALL_CLOSED.format(n=len(given)))
+
+
+def test_today_tells_how_many_plants_are_left_out_as_nobody_could_inspect_them(shown, tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    seen = Inspections.of(np.arange(4), np.full(4, SKIPPED), np.datetime64(BEGINS))
+    season.record(seen)
+    for days, said in ((1, 1), (2, 0)):
+        on = BEGINS + timedelta(days=days)
+        today = SimpleNamespace(
+            **vars(choices(season)) | {"on": on}, plot=season.plot, who=None, day=f"{on}",
+            key=f"{tmp_path}", revision=season.revision,
+        )  # fmt: skip
+        plan = season.plan(on, keep=False)
+        today.plan = lambda plan=plan: plan
+        shown.clear()
+        cautions.show_today(today, plan)
+        told = "Left out of this plan: 4 plants that nobody could inspect last time."
+        assert shown == [("caption", told)] * said

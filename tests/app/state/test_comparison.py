@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from app.state.comparison import (
-    Comparison,
     ComparisonSettings,
     Strategy,
+    WatchedComparison,
     curve,
     gains,
     outcomes,
@@ -33,7 +33,7 @@ def compared(plot, strategies, seeds=4, pest_in_weather=None):
     settings = ComparisonSettings(
         tuple(strategies), n_days=5, share=0.05, rate=0.1, visit_every=1, seeds=seeds
     )
-    running = Comparison(settings, LaidPlot(plot, chance, pest_in_weather), Robot())
+    running = WatchedComparison(settings, LaidPlot(plot, chance, pest_in_weather), Robot())
     running.start()
     running.wait(180)
     assert running.done == running.total
@@ -76,7 +76,7 @@ def test_a_stopped_comparison_goes_on_where_it_stood(plot):
     settings = ComparisonSettings(
         tuple(SHORT), n_days=3, share=0.05, rate=0.1, visit_every=1, seeds=200
     )
-    running = Comparison(settings, LaidPlot(plot, np.full(len(plot.grid), 0.01)), Robot())
+    running = WatchedComparison(settings, LaidPlot(plot, np.full(len(plot.grid), 0.01)), Robot())
     running.start()
     running.stop()
     running.wait(180)

@@ -1,7 +1,7 @@
 """Strategies are compared while the page waits for nothing."""
 
 from app.state import chosen_pest
-from app.state.comparison import Comparison
+from app.state.comparison import WatchedComparison
 from tests.app.driving import go, press, texts_of
 
 
@@ -48,7 +48,9 @@ def test_what_a_second_robot_would_save_on_this_plot_is_said(app):
 
 def test_seasons_are_those_of_the_pest_that_was_chosen(app, monkeypatch):
     begun = []
-    monkeypatch.setattr(Comparison, "start", lambda self: begun.append(self._laid.pest_in_weather))
+    monkeypatch.setattr(
+        WatchedComparison, "start", lambda self: begun.append(self._laid.pest_in_weather)
+    )
     go(app, "plot")
     app.selectbox(key=chosen_pest.WHICH).set_value("whitefly").run()
     go(app, "compare")

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from fieldmon.studies.samplers.contenders import (
@@ -18,7 +17,6 @@ from fieldmon.studies.samplers.seasons import MEASURES, SeasonOutcome
 from fieldmon.studies.samplers.summary import (
     by_scenario,
     means,
-    ratio,
     ratio_lines,
     ratios,
     sentences,
@@ -36,15 +34,6 @@ MADE = [
     for seed in range(4)
     for name in (ADAPTIVE, WORDED, TUNED, "naive")
 ]
-
-
-def test_a_ratio_of_twice_as_much_is_two_and_its_interval_holds_it():
-    values = np.random.default_rng(1).gamma(2.0, size=40)
-    twice = ratio(2 * values, values)
-    assert (twice.value, twice.low, twice.high) == pytest.approx((2.0, 2.0, 2.0))
-    noisy = ratio(2 * np.random.default_rng(2).gamma(2.0, size=40), values)
-    assert noisy.low < 2.0 < noisy.high
-    assert str(twice) == "2.00 (2.00-2.00)"
 
 
 def test_values_stand_by_scenario_and_contender_in_the_order_of_their_seeds():

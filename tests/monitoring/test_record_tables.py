@@ -14,13 +14,13 @@ from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Application, Season
-from fieldmon.reports.certification import _inspections, _PlotRecord
-from fieldmon.reports.record_tables import (
+from fieldmon.monitoring.record_tables import (
     csv_bytes,
     inspections_table,
     log_table,
     treatments_table,
 )
+from fieldmon.reports.certification import _inspections, _PlotRecord
 from tests.monitoring.seasons import BEGINS, a_plot, a_season, some_results
 from tests.monitoring.test_outside_changes import outside
 

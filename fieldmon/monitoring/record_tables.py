@@ -20,13 +20,15 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.open_season import OpenSeason
+    from fieldmon.monitoring.season_records import SeasonRecords
+    from fieldmon.monitoring.season_treatments import SeasonTreatments
 
 #: what stands in each line, by column
 Table = dict[str, list[Any]]
 
 
-def treatments_table(season: Season) -> Table:
+def treatments_table(season: SeasonTreatments) -> Table:
     """Return a line for each treatment that counts: GLOBALG.A.P.'s fields, and how it is kept."""
     return _by_column(_treatments(season))
 
@@ -39,7 +41,7 @@ def _by_column(lines: Iterable[dict[str, object]]) -> Table:
     return table
 
 
-def _treatments(season: Season) -> Iterator[dict[str, object]]:
+def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
     with season.one_moment():
         labels, treatments = season.labels(), season.treatments()
     for one in treatments:
@@ -76,7 +78,7 @@ def _treatments(season: Season) -> Iterator[dict[str, object]]:
         }
 
 
-def inspections_table(season: Season) -> Table:
+def inspections_table(season: SeasonRecords) -> Table:
     """Return a line for each inspection that counts: recorded again, they change nothing."""
     with season.one_moment():
         done, corrected = season.history.inspections, season.corrected_by()
@@ -113,7 +115,7 @@ def _each(values: NDArray[np.float64], said: Callable[[float], object]) -> list[
     return [each[k] for k in of.tolist()]
 
 
-def log_table(season: Season) -> Table:
+def log_table(season: OpenSeason) -> Table:
     """Return a line for each entry of the log."""
     return _by_column(
         {
@@ -130,7 +132,11 @@ def log_table(season: Season) -> Table:
 
 
 #: what can be handed out as a table
-TABLES = {"treatments": treatments_table, "inspections": inspections_table, "log": log_table}
+TABLES: dict[str, Callable[[Any], Table]] = {
+    "treatments": treatments_table,
+    "inspections": inspections_table,
+    "log": log_table,
+}
 
 
 def csv_bytes(tables: Iterable[Table]) -> bytes:

@@ -1,0 +1,104 @@
+"""Plants that nobody could inspect: how long they are left out of plans, and how that is said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.wording import counted, worded
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.compute.wording import Worded
+    from fieldmon.planning.route import Route
+    from fieldmon.samplers.base import Scene
+
+# left out for longer than any season lasts
+_MOST_DOUBLED = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Skips:
+    """How often in a row each plant was skipped: somebody stood before it and could not inspect it.
+
+    A plant that was skipped is left out of plans for the next day. Each further skip in a row
+    doubles that: 1, 2, 4, 8 ... days. An inspection ends the row, at whatever time of the same day.
+
+    Parameters
+    ----------
+    times
+        ``(n,)`` days in a row on which it was skipped; 0: it was inspected since, or never skipped.
+    last
+        ``(n,)`` number of the last of these days; meaningless where there is none.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> plant, day = np.array([0, 0, 1, 2]), np.array([3, 5, 5, 5])
+    >>> skips = Skips.of(plant, day, last_inspected=np.array([-1, 2, 5]))
+    >>> skips.times
+    array([2, 1, 0])
+    >>> [skips.left_out(day).tolist() for day in (6, 7, 8)]
+    [[True, True, False], [True, False, False], [False, False, False]]
+    """
+
+    times: NDArray[np.int64]
+    last: NDArray[np.int64]
+
+    @classmethod
+    def of(
+        cls,
+        plant: NDArray[np.integer],
+        day: NDArray[np.integer],
+        last_inspected: NDArray[np.integer],
+    ) -> Skips:
+        """Return it of the plants ``(k,)`` that were skipped and the days on which they were.
+
+        `last_inspected`: ``(n,)`` day of the last inspection of each plant, or `NEVER`.
+        """
+        n = len(last_inspected)
+        since = day > last_inspected[plant]
+        # two who could not inspect it on one day say the same
+        on_day, skipped = np.divmod(np.unique(day[since].astype(np.int64) * n + plant[since]), n)
+        last = np.full(n, -1, np.int64)
+        np.maximum.at(last, skipped, on_day)
+        return cls(np.bincount(skipped, minlength=n), last)
+
+    def left_out(self, day: int) -> NDArray[np.bool_]:
+        """Return ``(n,)`` the plants that are left out of the plans of a day after these skips."""
+        doubled = np.clip(self.times - 1, 0, _MOST_DOUBLED)
+        out: NDArray[np.bool_] = (self.times > 0) & (day - self.last <= 1 << doubled)
+        return out
+
+
+def without_skipped(scene: Scene, skips: Skips) -> Scene:
+    """Return a scene in which nobody is sent to plants left out: they seem inspected today.
+
+    Those that were inspected today are not among its `skipped` plants.
+    """
+    skipped = skips.left_out(scene.day) & (scene.last_inspected != scene.day)
+    if not skipped.any():
+        return scene
+    last = np.where(skipped, np.int32(scene.day), scene.last_inspected)
+    return replace(scene, last_inspected=last, skipped=skipped)
+
+
+def left_out_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
+    """Return how many plants a day's routes leave out as nobody could inspect them, if any."""
+    if scene.skipped is None:
+        return ()
+    out = scene.skipped.copy()
+    for route in routes:
+        out[route.plant] = False  # somebody wishes for them
+    n = int(np.count_nonzero(out))
+    if not n:
+        return ()
+    return (
+        worded(
+            "Left out of this plan: {plants} that nobody could inspect last time.",
+            plants=counted(n, "plant"),
+        ),
+    )

@@ -1,0 +1,324 @@
+"""Samplers compared on a plot, over seasons in which all of them meet the same insects."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fieldmon.compute.arguments import chances_of, must_be_in, must_hold_shapes, shown
+from fieldmon.compute.kinds import checked, must_hold_kinds
+from fieldmon.compute.ranges import PAIRED, SHARE
+from fieldmon.errors import SettingError
+from fieldmon.plot.robot import Robot
+from fieldmon.samplers import sampler_or_name
+from fieldmon.samplers.answers import Checked, must_name_plants
+from fieldmon.samplers.own import label_of
+from fieldmon.simulation import executor
+from fieldmon.simulation.experiment import Memory, run
+from fieldmon.simulation.paired import SameInsects, met_by_all, paired
+from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.statistics import paired_ratio, too_few_sentence
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+    from pandas import DataFrame
+
+    from fieldmon.plot.plot import Plot
+    from fieldmon.samplers.base import Sampler
+    from fieldmon.simulation.metrics import SeasonMetrics
+    from fieldmon.simulation.statistics import Ratio
+
+    Samplers = Sequence[str | Sampler] | Mapping[str, str | Sampler]
+
+# arrays of a comparison, as they are called in a season
+_COLUMNS = "detection_pct", "visited_pct", "found", "left", "worked_h"
+
+
+@dataclass(frozen=True)
+class CompareSettings:
+    """On what seasons samplers are compared, and who works.
+
+    Parameters
+    ----------
+    seeds
+        Simulated seasons for each sampler, of seeds 1, 2 and so on: 2 or more.
+    share
+        Share of all plants infested at the start on average, above 0 and below 1.
+    robot
+        Who inspects.
+    season
+        Days, visits, and what insects do at night.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> settings = fm.CompareSettings(seeds=50, season=fm.SeasonSettings(n_days=10))
+    >>> settings.robot.hours
+    12.0
+    """
+
+    seeds: int = 20
+    share: float = 0.02
+    robot: Robot = field(default_factory=Robot)
+    season: SeasonSettings = field(default_factory=SeasonSettings)
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A comparison's")
+        must_be_in("A comparison's seeds", PAIRED, self.seeds)
+        must_be_in("A comparison's share", SHARE, self.share)
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What k samplers came to in the same s simulated seasons of d days.
+
+    Entry ``[i, j]`` of each array is of the i-th sampler and the j-th seed.
+
+    Parameters
+    ----------
+    samplers
+        The k names under which samplers were compared.
+    seeds
+        ``(s,)`` the seasons that every sampler has been through.
+    detection_pct
+        ``(k, s, d)`` all finds so far in percent of all infestations so far, each evening.
+    visited_pct
+        ``(k, s, d)`` plants inspected on each day in percent of all plants.
+    found
+        ``(k, s, d)`` plants found infested on each day.
+    left
+        ``(k, s, d)`` infested plants after each day's work.
+    worked_h
+        ``(k, s, d)`` hours worked on each day.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> chance = fm.plan_day(plot, on="2026-11-18").chance
+    >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+    >>> made = fm.compare(plot, chance, ("bouncy", "naive"), short)
+    >>> made.left.shape, made.infested_plant_days.shape
+    ((2, 3, 4), (2, 3))
+    """
+
+    samplers: tuple[str, ...]
+    seeds: NDArray[np.int64]
+    detection_pct: NDArray[np.float64]
+    visited_pct: NDArray[np.float64]
+    found: NDArray[np.int64]
+    left: NDArray[np.int64]
+    worked_h: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A comparison's")
+        days = len(self.samplers), len(self.seeds), self.left.shape[-1]
+        arrays = [name for name in vars(self) if name not in ("samplers", "seeds")]
+        must_hold_shapes(self, "A comparison's", dict.fromkeys(arrays, days))
+
+    def __repr__(self) -> str:
+        return f"<Comparison: {', '.join(self.samplers)}, {self._seasons('season')}>"
+
+    def _seasons(self, what: str) -> str:
+        n = len(self.seeds)
+        return f"{n:,} {what}{'s' * (n != 1)}"
+
+    @property
+    def infested_plant_days(self) -> NDArray[np.int64]:
+        """Return the sum over all evenings of the plants still infested, ``(k, s)``."""
+        lost: NDArray[np.int64] = self.left.sum(axis=2)
+        return lost
+
+    def ratios(self, against: str) -> dict[str, Ratio]:
+        """Return the infested plant-days of each other sampler over those of one.
+
+        Each with its 95 % interval, by bootstrap over the seeds that both met.
+
+        Parameters
+        ----------
+        against
+            Name of the sampler that the others are held against.
+
+        Raises
+        ------
+        SettingError
+            If no sampler of that name was compared.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> chance = fm.plan_day(plot, on="2026-11-18").chance
+        >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+        >>> ratio = fm.compare(plot, chance, ("bouncy", "naive"), short).ratios("naive")["bouncy"]
+        >>> ratio.low <= ratio.value <= ratio.high
+        True
+        """
+        if against not in self.samplers:
+            raise SettingError(
+                f"'against' must be one of {', '.join(self.samplers)}, which were compared, but it "
+                f"is {shown(against)}."
+            )
+        lost = dict(zip(self.samplers, self.infested_plant_days.astype(np.float64), strict=True))
+        return {
+            name: paired_ratio(one, lost[against]) for name, one in lost.items() if name != against
+        }
+
+    def to_pandas(self) -> DataFrame:
+        """Return a line for each sampler, seed and day (from 1), with a column for each array.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> chance = fm.plan_day(plot, on="2026-11-18").chance
+        >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+        >>> days = fm.compare(plot, chance, ("bouncy", "naive"), short).to_pandas()
+        >>> days.groupby(["sampler", "seed"]).left.sum().shape
+        (6,)
+        """
+        import pandas as pd  # noqa: PLC0415 - loaded when it is asked for
+
+        shape = self.left.shape
+        sampler, seed, day = (one.ravel() for one in np.indices(shape))
+        columns = {name: getattr(self, name).ravel() for name in _COLUMNS}
+        names = np.array(self.samplers, object)[sampler]
+        return pd.DataFrame({"sampler": names, "seed": self.seeds[seed], "day": day + 1, **columns})
+
+    def sentence(self, against: str) -> str:
+        """Return the ratios for people, and whether the seasons are too few to choose by.
+
+        Parameters
+        ----------
+        against
+            As `ratios` takes it.
+
+        Raises
+        ------
+        SettingError
+            As `ratios` does.
+        """
+        ratios, n = self.ratios(against), len(self.seeds)
+        if not n:
+            return "No seed has been met by every sampler yet."
+        said = "; ".join(f"{name} {ratio}" for name, ratio in ratios.items())
+        seasons = self._seasons("simulated season")
+        first = f"Infested plant-days over those of {against}, in {seasons}: {said}."
+        return f"{first} {too_few_sentence(n, 'seeds')}".rstrip()
+
+
+@checked
+def compare(
+    plot: Plot,
+    chance: ArrayLike,
+    samplers: Samplers = ("adaptive", "dynamic", "naive"),
+    settings: CompareSettings | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> Comparison:
+    """Compare samplers on a plot, in simulated seasons of the same insects.
+
+    All samplers meet the insects of every seed: the same start, the same nights, and the same
+    detection at the same plant. Seed s is the season that `simulate` makes of
+    ``draw_start(plot, chance, share, seed=s)`` and ``seed=s``, so that seasons of two calls are
+    paired, too.
+
+    Parameters
+    ----------
+    plot
+        Plants and the ways between them.
+    chance
+        ``(n,)`` chance of infestation as believed on the first morning, in 0..1, for instance
+        `DayPlan.chance`.
+    samplers
+        Names of samplers, or samplers of your own, which go by the names of their classes; or a
+        dict of them by names of your choice. Several threads simulate, unless one is your own.
+    settings
+        Seasons, share infested, robot, days; None: as `CompareSettings` has them.
+    progress
+        Told how many seasons are done, and of how many.
+    stop
+        Asked before each season whether to stop. What every sampler has been through is returned.
+
+    Returns
+    -------
+    Comparison
+        Arrays ``(k, s, d)``: samplers, seeds, days.
+
+    Raises
+    ------
+    SettingError
+        If there is no such sampler, two share a name, there is none, `chance` does not fit the
+        plants, or one of your own names no plant on any day.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> chance = fm.plan_day(plot, on="2026-11-18").chance
+    >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+    >>> made = fm.compare(plot, chance, ("bouncy", "naive"), short)
+    >>> made
+    <Comparison: bouncy, naive, 3 seasons>
+    >>> made.sentence("naive").startswith("Infested plant-days over those of naive, in 3 simul")
+    True
+    """
+    chosen, decide = settings or CompareSettings(), _by_name(samplers)
+    insects = SameInsects(plot, chances_of(chance, plot.n_plants), chosen.share, chosen.season)
+    experiment = paired(
+        [*decide],
+        range(1, chosen.seeds + 1),
+        lambda name, seed: insects.season(decide[name], chosen.robot, seed),
+    )
+    made: Memory[SeasonMetrics] = Memory()
+    # what one of a caller's own keeps in mind is of one season at a time
+    own = any(isinstance(one, Checked) for one in decide.values())
+    with nullcontext(executor.here()) if own else executor.threads() as workers:
+        run(experiment, workers, made, progress, stop or (lambda: False))
+    by_seed = met_by_all(experiment, made)
+    for sampler, seasons in zip(decide.values(), zip(*by_seed.values(), strict=True), strict=False):
+        if not any(season.ever_visited_pct.any() for season in seasons):
+            must_name_plants(sampler, plot.aisles, chosen.robot)
+    shape = len(decide), len(by_seed), chosen.season.n_days
+    columns: dict[str, Any] = {name: _column(name, by_seed.values(), shape) for name in _COLUMNS}
+    return Comparison(tuple(decide), np.array([*by_seed], np.int64), **columns)
+
+
+def _column(
+    name: str, by_seed: Iterable[list[SeasonMetrics]], shape: tuple[int, int, int]
+) -> NDArray[Any]:
+    """Return one column of all seasons, ``(k, s, d)``."""
+    columns = np.empty(shape, np.int64 if name in ("found", "left") else np.float64)
+    for seed, seasons in enumerate(by_seed):
+        columns[:, seed] = [getattr(season, name) for season in seasons]
+    return columns
+
+
+def _by_name(samplers: Samplers) -> dict[str, Sampler]:
+    """Return samplers by the names under which they are compared."""
+    if isinstance(samplers, dict):
+        named = [*samplers.items()]
+    elif isinstance(samplers, list | tuple):
+        named = [(_name(one), one) for one in samplers]
+    else:
+        raise SettingError(
+            "'samplers' of compare must be a list of names or samplers, or a dict of them by name, "
+            f"but it is {shown(samplers)}. Give ('adaptive', 'naive')."
+        )
+    names = [name for name, _ in named]
+    if not names or len(set(names)) < len(names) or not all(isinstance(n, str) for n in names):
+        raise SettingError(
+            "'samplers' of compare must have one sampler or more, of different names, but they are "
+            f"{', '.join(map(str, names)) or 'none'}. Give a dict of them by name."
+        )
+    return {name: sampler_or_name(one) for name, one in named}
+
+
+def _name(sampler: str | Sampler) -> str:
+    return label_of(sampler) if isinstance(sampler, str) else type(sampler).__name__

@@ -72,7 +72,7 @@ _MOST = 0.95
 _TINY = float(np.finfo(np.float32).tiny)
 
 
-class Night(NamedTuple):
+class ToldNight(NamedTuple):
     """What is told of a night.
 
     Parameters
@@ -261,7 +261,7 @@ class Ancestry:
         updates = _on(self.heard - 1, _UPDATES) * (1 + self.idle)
         return (*[few] * min(updates, _SEEDS[2] - 1), many)
 
-    def overnight(self, night: Night) -> tuple[Ancestry, NDArray[np.float64] | None]:
+    def overnight(self, night: ToldNight) -> tuple[Ancestry, NDArray[np.float64] | None]:
         """Return what is known the next morning, and each plant's chance ``(n,)``.
 
         There are no chances (None) where nothing was inspected since the night before: what was

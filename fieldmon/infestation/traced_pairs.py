@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry, Night
+from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry, ToldNight
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
@@ -425,11 +425,11 @@ class TracedPairs:
             return by_origins
         hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
         ancestry = replace(self.ancestry, hiding=hiding, wind_m_s=by_origins.wind_m_s)
-        night = Night(sends, self._told_from_outside(spread))
+        night = ToldNight(sends, self._told_from_outside(spread))
         if isinstance(spread, PestSpread):
             # what goes far comes from anywhere
             afar = 0.0 if spread.movement is None else spread.movement.share_of_long_jumps
-            night = Night(sends * (1.0 - afar), night.arrive, (spread.days, *spread.warmth))
+            night = ToldNight(sends * (1.0 - afar), night.arrive, (spread.days, *spread.warmth))
         ancestry, chance = ancestry.overnight(night)
         if chance is not None:
             # a logarithmic pool of both maps (Genest & Zidek 1986)

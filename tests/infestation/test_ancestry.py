@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation import ancestry as module
-from fieldmon.infestation.ancestry import Ancestry, Night
+from fieldmon.infestation.ancestry import Ancestry, ToldNight
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.course import BEFORE, Course
 from fieldmon.infestation.spread import Spread
@@ -27,7 +27,7 @@ def after(plants, found, ancestry=None, detects=0.84):
     plants = np.asarray(plants, np.int32)
     ancestry = Ancestry.of(GRID, FLAT) if ancestry is None else ancestry
     known = ancestry.learn(plants, np.asarray(found, bool), np.full(len(plants), detects))
-    return known.overnight(Night(0.3))
+    return known.overnight(ToldNight(0.3))
 
 
 def test_weeks_of_clean_inspections_that_hardly_overlook_anything_leave_numbers():
@@ -139,7 +139,7 @@ def test_finds_that_stand_apart_teach_that_insects_jump():
 def test_nothing_is_known_before_anything_was_inspected():
     known = Ancestry.of(GRID, FLAT)
     for _ in range(3):
-        known, chance = known.overnight(Night(0.3))
+        known, chance = known.overnight(ToldNight(0.3))
         assert chance is None
     assert not known.knows
     belief = TracedPairs.of(GRID, FLAT)
@@ -153,9 +153,9 @@ def test_a_day_in_two_parts_is_one_day():
     plants = np.arange(0, N, 7, dtype=np.int32)
     found, detects = plants % 5 == 0, np.full(len(plants), 0.84)
     first = Ancestry.of(GRID, FLAT)
-    once, chance = first.learn(plants, found, detects).overnight(Night(0.3))
+    once, chance = first.learn(plants, found, detects).overnight(ToldNight(0.3))
     twice = first.learn(plants[:20], found[:20], detects[:20])
-    twice, same = twice.learn(plants[20:], found[20:], detects[20:]).overnight(Night(0.3))
+    twice, same = twice.learn(plants[20:], found[20:], detects[20:]).overnight(ToldNight(0.3))
     assert (chance == same).all()
     assert (once.missed == twice.missed).all()
 
@@ -239,7 +239,7 @@ def test_both_maps_are_pooled():
     found = plants % 11 == 0
     belief = TracedPairs.of(GRID, FLAT).learn(plants, found, Learning())
     alone = replace(belief, ancestry=None).overnight(SPREAD)
-    _, chance = belief.ancestry.overnight(Night(0.3))
+    _, chance = belief.ancestry.overnight(ToldNight(0.3))
     pooled = belief.overnight(SPREAD).chance
     odds = [p / (1.0 - p) for p in (chance, alone.chance, pooled)]
     assert odds[2] == pytest.approx(1.15 * odds[0] ** 0.63 * odds[1] ** 0.42)
@@ -290,7 +290,7 @@ def test_by_the_evening_it_is_known_what_was_inspected_that_day():
     plants = np.arange(N)
     evening = known.learn(plants, plants == 22, np.full(N, 0.95))
     assert evening.waits
-    so_far, (morning, _) = evening.overnight(Night(0.0))[0], evening.overnight(Night(0.3))
+    so_far, (morning, _) = evening.overnight(ToldNight(0.0))[0], evening.overnight(ToldNight(0.3))
     assert so_far.infested_at_start.value == pytest.approx(
         morning.infested_at_start.value, rel=0.05
     )
@@ -302,7 +302,7 @@ def test_nights_without_inspections_teach_nothing_of_the_past():
     known, _ = after(np.arange(60), np.arange(60) % 10 == 0)
     first, numbers = known, []
     for _ in range(6):
-        known, _ = known.overnight(Night(0.05))
+        known, _ = known.overnight(ToldNight(0.05))
         assert np.array_equal(known.rates.shares, first.rates.shares)
         assert known.rates[1:] == first.rates[1:]
         numbers.append(known.infested_at_start.value)
@@ -317,7 +317,7 @@ def test_nights_without_inspections_teach_nothing_of_the_past():
 def test_what_was_learnt_of_arrivals_and_jumps_outlives_a_beginning_anew():
     finds = [[21], *([20 * (2 * day + 1) + 7 * day % 19] for day in range(1, 9))]
     known = whole_plot(finds)
-    quiet, _ = known.anew(FLAT).overnight(Night(0.3))
+    quiet, _ = known.anew(FLAT).overnight(ToldNight(0.3))
     assert quiet.arrivals.value == pytest.approx(known.arrivals.value)
     later, _ = after(np.arange(N), np.zeros(N, bool), known.anew(FLAT), 0.95)
     assert later.arrivals.value == pytest.approx(known.arrivals.value, rel=0.2)

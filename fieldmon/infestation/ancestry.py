@@ -16,17 +16,18 @@ import numpy as np
 from fieldmon.infestation.ancestry_moves import Infestations, Weights
 from fieldmon.infestation.ancestry_rates import (
     ARRIVAL_FINDS,
-    BEFORE,
     KERNELS,
-    SHARES,
     DrawnEvidence,
     Rates,
 )
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
+from fieldmon.infestation.cohorts import Age
+from fieldmon.infestation.course import BEFORE, Course
 from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
-from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.landing import SHARES, landing_of, pest_landing_of
 from fieldmon.infestation.latency import HIDDEN_NIGHTS
-from fieldmon.infestation.origins import ARRIVE, SIGMAS, Estimate
+from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE, SIGMAS, Estimate
+from fieldmon.infestation.pest_in_weather import kernel_of
 from fieldmon.infestation.squares import NOBODY
 from fieldmon.infestation.unseen_offspring import Unseen, stays_unseen, unseen_now
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.landing import Landing
+    from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.floating[Any]]
@@ -54,6 +56,8 @@ _SETTLED = 10
 MOST_PLANTS = 10_000
 # after so many days, or with so many infestations, an ancestry begins anew
 _MOST_DAYS, _MOST_INFESTATIONS = 30, 1500
+# and of a pest that grows before it spreads: those that have not must be told from others
+_MOST_DAYS_OF_GROWING = 90
 # places for infestations that were not found: at least, and as a share of all
 _LEAST_ROOM, _ROOM = 32, 0.25
 # how far the number at the start may be off beyond what drawn ancestries say of it, since they take
@@ -66,6 +70,24 @@ _SEEDS = (100_000, 8, 16)
 _MOST = 0.95
 # what is divided by is never nothing
 _TINY = float(np.finfo(np.float32).tiny)
+
+
+class ToldNight(NamedTuple):
+    """What is told of a night.
+
+    Parameters
+    ----------
+    sends
+        How many infestations an infested plant sends out.
+    arrive
+        The share of all plants that is infested from outside: anywhere, and by the edge.
+    length
+        How long it is with its day, in days, and how warm for each stage of the pest.
+    """
+
+    sends: float
+    arrive: tuple[float, float] = (ARRIVE, ARRIVE_BY_EDGE)
+    length: tuple[float, ...] = (1.0,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +104,7 @@ class Ancestry:
         ``(t, n)`` the logarithm of the chance that each day's inspections of a plant overlook it.
         It and `taken` have few digits, since a season's file keeps them.
     sends
-        ``(t,)`` what an infested plant sent out in each night.
+        ``(t,)`` what an infested plant sent out in each night, once it was grown.
     last_find
         ``(n,)`` the day of each plant's last find, or -1 minus the nights before the season.
     new
@@ -107,6 +129,13 @@ class Ancestry:
     earlier, taught
         ``(2, 10)`` what ancestries before this one taught of jumps and arrivals, and what all have,
         see `Rates.taught`.
+    pest
+        What lives on the plot; None: nobody named it.
+    nights
+        ``(t, 1 + stages)`` how long each night and its day were, and how warm for each stage of the
+        pest, as `Course.of_pest` takes them.
+    wind_m_s
+        Where the wind has gone of late.
     """
 
     grid: PlantGrid
@@ -126,6 +155,9 @@ class Ancestry:
     hiding: Floats = field(default_factory=lambda: np.eye(len(HIDDEN_NIGHTS))[0])
     earlier: Floats = field(default_factory=lambda: np.zeros((2, KERNELS + 2)))
     taught: Floats = field(default_factory=lambda: np.zeros((2, KERNELS + 2)))
+    pest: Pest | None = None
+    nights: Floats = field(default_factory=lambda: np.zeros((0, 1)))
+    wind_m_s: tuple[float, float] = (0.0, 0.0)
 
     def __repr__(self) -> str:
         return f"<Ancestry of {np.count_nonzero(self.infestations.found)} finds>"
@@ -136,6 +168,25 @@ class Ancestry:
         nothing = np.zeros((0, len(grid)), np.float16)
         never = np.full(len(grid), -BEFORE - 1)
         return cls(grid, chance, nothing, np.zeros(0), never, (), nothing)
+
+    def of_pest(self, pest: Pest) -> Ancestry:
+        """Return one that has just begun, of a plot on which this pest lives."""
+        of = replace(self, pest=pest, nights=np.zeros((0, 1 + len(pest.stages))))
+        return replace(of, rates=Rates.at_first(of.landing.first))
+
+    @property
+    def landing(self) -> Landing:
+        """Where jumps land."""
+        if self.pest is None or self.pest.movement.kernel == "adjacent":
+            return landing_of(self.grid)
+        return pest_landing_of(self.grid, kernel_of(self.pest.movement), self.wind_m_s)
+
+    @property
+    def course(self) -> Course:
+        """When infestations can be seen, and send something out."""
+        if self.pest is None:
+            return Course.that_may_hide(BEFORE + len(self.sends) + 1, self.hiding)
+        return Course.of_pest(self.pest, self.nights)
 
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], detects: Floats
@@ -161,6 +212,7 @@ class Ancestry:
         return replace(
             begun, rates=rates, at_start=self.at_start, began_anew=True, heard=self.heard,
             idle=self.idle, hiding=self.hiding, earlier=self.taught, taught=self.taught,
+            pest=self.pest, nights=self.nights[:0], wind_m_s=self.wind_m_s,
         )  # fmt: skip
 
     @property
@@ -209,53 +261,47 @@ class Ancestry:
         updates = _on(self.heard - 1, _UPDATES) * (1 + self.idle)
         return (*[few] * min(updates, _SEEDS[2] - 1), many)
 
-    def overnight(
-        self, sends: float, arrive: float = ARRIVE
-    ) -> tuple[Ancestry, NDArray[np.float64] | None]:
+    def overnight(self, night: ToldNight) -> tuple[Ancestry, NDArray[np.float64] | None]:
         """Return what is known the next morning, and each plant's chance ``(n,)``.
 
         There are no chances (None) where nothing was inspected since the night before: what was
         found has had its say.
-
-        Parameters
-        ----------
-        sends
-            How many infestations an infested plant sends out in this night.
-        arrive
-            The share of all plants that is told to be infested from outside in a night.
         """
         day, n = len(self.sends), len(self.grid)
         hears = bool(self.new) or bool(self.missed[day:].any())
         nothing = np.zeros((day + 1 - len(self.missed), n), np.float16)
-        night = _with_finds(
+        anywhere, by_edge = night.arrive
+        after = _with_finds(
             replace(
                 self,
                 missed=np.concatenate([self.missed, nothing]),
-                sends=np.append(self.sends, sends),
+                sends=np.append(self.sends, night.sends),
+                nights=np.concatenate([self.nights, [night.length]]),
                 rates=self.rates
                 if day or self.began_anew
-                else self.rates._replace(anywhere=arrive),
+                else self.rates._replace(anywhere=anywhere, by_edge=by_edge),
                 heard=self.heard + hears,
                 idle=self.idle + (self.knows and not hears),
             )
         )
         if not hears:
-            return night, None
-        many = int(np.count_nonzero(night.infestations.there))
-        for k in range(_on(night.heard - 1, _ROUNDS)):
-            night, hidden, unseen = _drawn(night, landing_of(self.grid), k, arrive)
-        night = replace(night, idle=0)
+            return after, None
+        many = int(np.count_nonzero(after.infestations.there))
+        for k in range(_on(after.heard - 1, _ROUNDS)):
+            after, hidden, unseen = _drawn(after, after.landing, k, night.arrive)
+        after = replace(after, idle=0)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
         )
-        if night.is_old or many > _MOST_INFESTATIONS:
-            night = night.anew(chance)
-        return night, chance
+        if after.is_old or many > _MOST_INFESTATIONS:
+            after = after.anew(chance)
+        return after, chance
 
     @property
     def is_old(self) -> bool:
         """Tell whether it goes back so far that it is to begin anew."""
-        return len(self.sends) >= _MOST_DAYS
+        grows = self.pest is not None and not Age().mobile(self.pest)
+        return len(self.sends) >= (_MOST_DAYS_OF_GROWING if grows else _MOST_DAYS)
 
     @property
     def arrays(self) -> dict[str, NDArray[np.generic]]:
@@ -273,10 +319,19 @@ class Ancestry:
             "hiding": self.hiding,
             "earlier": self.earlier,
             "taught": self.taught,
+            **self._of_pest,
         }
 
+    @property
+    def _of_pest(self) -> dict[str, NDArray[np.generic]]:
+        if self.pest is None:
+            return {}
+        return {"nights": self.nights, "wind_m_s": np.array(self.wind_m_s)}
+
     @classmethod
-    def of_arrays(cls, grid: PlantGrid, arrays: dict[str, NDArray[Any]]) -> Ancestry:
+    def of_arrays(
+        cls, grid: PlantGrid, arrays: dict[str, NDArray[Any]], pest: Pest | None = None
+    ) -> Ancestry:
         """Return what such arrays have kept; raise `ValueError` if they are none of its plants."""
         kept = dict(arrays)
         plant, begins, ends, found, parent, children, there, earliest = kept.pop("infestations")
@@ -294,10 +349,11 @@ class Ancestry:
             plant, begins, ends, found != 0, parent, children, there != 0, earliest
         )
         rates = Rates(shares, *map(float, others))
+        x, y = kept.pop("wind_m_s", np.zeros(2)).tolist()
         return cls(
             grid, new=(), infestations=infestations, rates=rates,
             arrived=arrived, began_anew=bool(anew),
-            heard=int(heard), idle=int(idle), **kept,
+            heard=int(heard), idle=int(idle), pest=pest, wind_m_s=(float(x), float(y)), **kept,
         )  # fmt: skip
 
 
@@ -337,11 +393,14 @@ class _Inspected(NamedTuple):
         How likely they do, if it hides as it may.
     unseen
         How likely nothing is seen of it and of what comes from it.
+    course
+        When they can be seen, and send something out.
     """
 
     missed: Floats
     overlooked: Floats
     unseen: Unseen
+    course: Course
 
     @classmethod
     def by(cls, of: Ancestry, landing: Landing) -> _Inspected:
@@ -353,11 +412,12 @@ class _Inspected(NamedTuple):
         missed = np.zeros((t, n), np.float32)
         np.cumsum(of.missed[::-1], axis=0, out=missed[BEFORE:-1][::-1])
         missed[:BEFORE] = missed[BEFORE]
-        overlooked = _overlooked(missed, of.hiding)
+        course = of.course
+        overlooked = _overlooked(missed, course)
         alone = overlooked.copy()
         alone[np.arange(t)[:, None] <= of.last_find + BEFORE] = 0.0
-        unseen = stays_unseen(alone, taken, of.sent(of.rates), of.rates.shares, landing)
-        return cls(missed, overlooked, unseen)
+        unseen = stays_unseen(alone, taken, (of.sent(of.rates), of.rates.shares), landing, course)
+        return cls(missed, overlooked, unseen, course)
 
 
 @dataclass(frozen=True, eq=False)
@@ -399,10 +459,10 @@ class _Draws:
         lasting = np.ones((n + len(found), t), np.float32)
         np.multiply(inspected.overlooked.T, inspected.unseen.offspring.T, out=lasting[:n])
         lasting[n:][found] = _until_found(
-            inspected.missed, inspected.unseen.offspring, finds, of.hiding
+            inspected.missed, inspected.unseen, finds, inspected.course
         )
         np.maximum(lasting, _TINY, out=lasting)
-        drawn = DrawnSums.none(t, n, landing.kernels.shape[1])
+        drawn = DrawnSums.none(t, n, landing.kernels.shape[1], delays=inspected.course.delays)
         at = _places(infestations, n)
         return cls(of, landing, inspected, infestations, at, finds, lasting, drawn)
 
@@ -413,29 +473,34 @@ class _Draws:
         roots = rates.roots(self.of.start, self.landing.at_edge, t)
         return Weights(
             self.landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), self.of.sent(rates),
-            np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED, self.lasting,
+            np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED,
+            self.inspected.course.grown, self.inspected.course.grown_by, self.lasting,
         )  # fmt: skip
 
     def draw(self, weights: Weights, seed: int, sweeps: int) -> int:
-        """Draw anew, and sum up; but for who was active, return means. Return of how many."""
+        """Draw anew, and sum up; but for who was there, return means. Return of how many."""
         for sums in self.drawn:
             sums.fill(0.0)
         draws = seed, sweeps, int(_LEFT_OUT * sweeps)
         last_find = self.of.last_find + BEFORE
         kept = draw_ancestries(self.infestations, self.at, weights, last_find, draws, self.drawn)
-        for sums in self.drawn[1:]:
+        for sums in self.drawn[2:]:
             np.divide(sums, kept, out=sums)
         return kept
 
     def counted(self, kept: int, weights: Weights, shares: Floats) -> _Counted:
         """Return what the last draw says of each plant, of so many ancestries."""
-        active = self.drawn.active
-        active /= kept
-        taken = active.copy()
+        taken, active = self.drawn.there, self.drawn.active
+        taken /= kept
+        if active is None:
+            active = taken.copy()
+        else:
+            active /= kept
         taken[self.finds] = 1.0
         unfound = unseen_now(
-            self.inspected.unseen, active, weights.roots.T, weights.sends, shares, self.landing
-        )
+            self.inspected.unseen, active, weights.roots.T, (weights.sends, shares),
+            self.landing, self.inspected.course,
+        )  # fmt: skip
         return _Counted(active, taken, unfound)
 
 
@@ -458,7 +523,7 @@ class _Counted(NamedTuple):
 
 
 def _drawn(
-    of: Ancestry, landing: Landing, nth: int, arrive: float
+    of: Ancestry, landing: Landing, nth: int, arrive: tuple[float, float]
 ) -> tuple[Ancestry, Floats, NDArray[np.float64]]:
     """Draw ancestries for the `nth` time in a night, and estimate rates by them.
 
@@ -476,7 +541,7 @@ def _drawn(
             counted = draws.counted(kept, weights, rates.shares)
         night = DrawnEvidence(
             of.start, weights.sends, weights.kernel, seen, counted.taken, drawn, counted.active,
-            counted.unfound, arrive, of.earlier,
+            draws.inspected.course.sending(counted.unfound), arrive, of.earlier,
         )  # fmt: skip
         if k == 0:
             exposure = rates.exposure(night, landing)
@@ -510,7 +575,7 @@ def _at_start(drawn: DrawnSums, infestations: Infestations, unfound: float) -> F
     return np.array([number, variance, np.count_nonzero(found & (infestations.ends == BEFORE))])
 
 
-def _overlooked(missed: Floats, hiding: Floats) -> Floats:
+def _overlooked(missed: Floats, course: Course) -> Floats:
     """Return how likely infestations are overlooked until the last morning, ``(t, n)``.
 
     Parameters
@@ -518,44 +583,37 @@ def _overlooked(missed: Floats, hiding: Floats) -> Floats:
     missed
         ``(t, n)`` the same if nothing hides, as a logarithm, of an infestation that begins on each
         morning.
-    hiding
-        ``(4,)`` how likely they hide for each of `HIDDEN_NIGHTS`; those of before the season do
-        not.
+    course
+        When they can be seen.
     """
     once_shown = np.exp(missed)
     overlooked = np.zeros_like(once_shown)
-    for nights, likely in zip(HIDDEN_NIGHTS, hiding.tolist(), strict=True):
-        for begins, shows in enumerate(_shows(len(missed), nights)):
-            overlooked[begins] += likely * once_shown[shows]
+    for shows, likely in zip(course.shows, course.likely.tolist(), strict=True):
+        for begins, shown in enumerate(shows):
+            overlooked[begins] += likely * once_shown[shown]
     return overlooked
 
 
 def _until_found(
     missed: Floats,
-    offspring: Floats,
+    unseen: Unseen,
     finds: _Finds,
-    hiding: Floats,
+    course: Course,
 ) -> Floats:
     """Return how likely it is to find what was found, when it was, ``(k, t)``, by its beginning.
 
-    `finds` are mornings and plants, ``(k,)`` each; `missed` and `hiding` are as `_overlooked` has
-    them, `offspring` as `Unseen` has it.
+    `finds` are mornings and plants, ``(k,)`` each; `missed` and `course` are as `_overlooked` has
+    them.
     """
     ends, plant = finds
     chance = np.zeros((len(plant), len(missed)))
-    for nights, likely in zip(HIDDEN_NIGHTS, hiding, strict=True):
-        shows = _shows(len(missed), nights)
+    for shows, likely in zip(course.shows, course.likely, strict=True):
         seen = shows <= ends[:, None]
         overlooked = missed[:, plant][shows].T - missed[ends, plant][:, None]
         chance += likely * seen * np.exp(np.where(seen, overlooked, 0.0))
-    sent = offspring[:, plant].T / np.maximum(offspring[ends, plant], _TINY)[:, None]
+    sent_later = np.maximum(unseen.sent_since[ends, plant], _TINY)
+    sent = unseen.offspring[:, plant].T / sent_later[:, None]
     return chance * np.minimum(sent, 1.0)
-
-
-def _shows(mornings: int, nights: int) -> NDArray[np.int64]:
-    """Return the morning from which on an infestation can be seen, by that on which it begins."""
-    begins = np.arange(mornings)
-    return np.where(begins <= BEFORE, begins, np.minimum(begins + nights, mornings - 1))
 
 
 def _on(day: int, numbers: tuple[int, ...]) -> int:

@@ -95,6 +95,8 @@ class Weights(NamedTuple):
     season, settled
         The first morning of the season, and that until which infestations have ended that stay as
         they are.
+    grown, grown_by
+        ``(t,)`` as `fieldmon.infestation.course.Course` has them.
     lasting
         ``(n + m, t)`` how likely it is that an infestation that begins on a morning goes on to its
         end as it was seen, if it sends out only what the ancestry has: of one that was not found at
@@ -108,6 +110,8 @@ class Weights(NamedTuple):
     roots: Floats
     season: int
     settled: int
+    grown: Ints
+    grown_by: Ints
     lasting: Floats
 
 
@@ -175,18 +179,15 @@ def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
 
 
 @part
-def _children(infestations: Infestations, i: int, worked: Worked) -> int:
-    """List the children of an infestation; return the first one's morning.
-
-    It is that before which it has begun; without any, the morning after it ends.
-    """
-    first, k, j = int(infestations.ends[i] + 1), 0, worked.first_child[i]
+def _children(infestations: Infestations, i: int, weights: Weights, worked: Worked) -> int:
+    """List the children of an infestation; return the last morning on which it may have begun."""
+    latest, k, j = int(infestations.ends[i]), 0, worked.first_child[i]
     while j != NOBODY:
         worked.child[k] = j
-        first = min(first, int(infestations.begins[j]))
+        latest = min(latest, int(weights.grown_by[infestations.begins[j] - 1]))
         k += 1
         j = worked.siblings[0, j]
-    return first
+    return latest
 
 
 @part
@@ -195,7 +196,7 @@ def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -
 
     The only child of one that was not found keeps its parent: that would be without a find.
     """
-    latest = _children(infestations, i, worked) - 1
+    latest = _children(infestations, i, weights, worked)
     earliest = infestations.earliest[i]
     if latest < earliest:
         return
@@ -203,9 +204,9 @@ def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -
     parent, alone = infestations.parent[i], _only_child(infestations, i)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     if alone:
-        infestations.begins[i] = _when_by(infestations, parent, when, worked)
+        infestations.begins[i] = _when_by(infestations, parent, when, weights, worked)
         return
-    other, begins = _draw_origin(infestations, total, when, worked)
+    other, begins = _draw_origin(infestations, total, when, weights, worked)
     _hang(infestations, i, other, worked)
     infestations.begins[i] = begins
 
@@ -228,14 +229,15 @@ def put_in(
     if plant < 0 or at[plant] >= 0 or plant == infestations.plant[i]:
         return
     begins = infestations.begins[i]
-    earliest, latest = max(0, last_find[plant] + 1), begins - 1
+    earliest = max(0, last_find[plant] + 1)
+    latest = int(weights.grown_by[begins - 1]) if begins > 0 else -1
     if latest < earliest:
         return
     last = weights.roots.shape[1] - 1
     now = _explained(infestations, i, NOBODY, weights, worked)
     when = (plant, earliest, latest, plant)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
-    other, since = _draw_origin(infestations, total, when, worked)
+    other, since = _draw_origin(infestations, total, when, weights, worked)
     removable = worked.many[_REMOVABLE] + 1
     if other != parent:
         # the one before has a child less then, and the new one's parent one more
@@ -271,12 +273,13 @@ def take_out(
     place = worked.removable[np.random.randint(removable)]  # noqa: NPY002
     if _only_child(infestations, place):
         return
-    _children(infestations, place, worked)
+    _children(infestations, place, weights, worked)
     child = worked.child[0]
     if infestations.ends[child] <= weights.settled:
         return
     begins, plant = infestations.begins[child], infestations.plant[place]
-    when = (plant, infestations.earliest[place], begins - 1, plant)
+    latest = int(weights.grown_by[begins - 1])
+    when = (plant, infestations.earliest[place], latest, plant)
     total = _weigh(infestations, when, (place, child), weights, worked)
     now = _explained(infestations, child, place, weights, worked)
     many = in_one_cell(weights.cells, plant)
@@ -285,7 +288,7 @@ def take_out(
         return
     when = (infestations.plant[child], begins, begins, _row(infestations, child, weights))
     total = _weigh(infestations, when, (child, place), weights, worked)
-    other, _ = _draw_origin(infestations, total, when, worked)
+    other, _ = _draw_origin(infestations, total, when, weights, worked)
     _hang(infestations, child, other, worked)
     _hang(infestations, place, NOBODY, worked)
     leave(worked.squares, place)
@@ -307,7 +310,7 @@ def try_others(
     The first is where it is, the others are drawn as where one of its children came from.
     """
     at, last_find = found_at
-    latest = _children(infestations, i, worked) - 1
+    latest = _children(infestations, i, weights, worked)
     children, d = infestations.children[i], weights.kernel.shape[0]
     anchor = worked.child[np.random.randint(children)]  # noqa: NPY002
     parent, alone = infestations.parent[i], _only_child(infestations, i)
@@ -355,13 +358,13 @@ def go_to_one(
     if k == 0 or worked.likely[k] <= 0.0:
         return
     plant, parent = worked.tried[k], infestations.parent[i]
-    latest = _children(infestations, i, worked) - 1
+    latest = _children(infestations, i, weights, worked)
     when = (plant, max(0, last_find[plant] + 1), latest, plant)
     total = _weigh(infestations, when, (i, NOBODY), weights, worked)
     if _only_child(infestations, i):
-        begins = _when_by(infestations, parent, when, worked)
+        begins = _when_by(infestations, parent, when, weights, worked)
     else:
-        parent, begins = _draw_origin(infestations, total, when, worked)
+        parent, begins = _draw_origin(infestations, total, when, weights, worked)
     at[infestations.plant[i]] = NOBODY
     at[plant] = i
     infestations.plant[i], infestations.earliest[i] = plant, when[1]
@@ -397,7 +400,7 @@ def _weigh(
     near = gather(squares, y, x, half)
     for k in range(near):
         j = squares.near[k]
-        first = max(infestations.begins[j] + 1, earliest)
+        first = max(weights.grown[infestations.begins[j]] + 1, earliest)
         last = min(infestations.ends[j], latest)
         if last >= first and j != without[0] and j != without[1]:
             times = worked.by_parent[last - earliest + 1] - worked.by_parent[first - earliest]
@@ -425,6 +428,7 @@ def _draw_origin(
     infestations: Infestations,
     total: float,
     when: tuple[int, int, int, int],
+    weights: Weights,
     worked: Worked,
 ) -> tuple[int, int]:
     """Return a parent and a beginning, drawn from what was weighed."""
@@ -435,7 +439,7 @@ def _draw_origin(
         while worked.so_far[k] <= u:
             k += 1
         parent = int(worked.squares.near[k])
-        return parent, _when_by(infestations, parent, when, worked)
+        return parent, _when_by(infestations, parent, when, weights, worked)
     u = np.random.random() * worked.by_none[latest - earliest + 1]  # noqa: NPY002
     k = 0
     while earliest + k < latest and worked.by_none[k + 1] <= u:
@@ -448,11 +452,12 @@ def _when_by(
     infestations: Infestations,
     parent: int,
     when: tuple[int, int, int, int],
+    weights: Weights,
     worked: Worked,
 ) -> int:
     """Return when an infestation by this parent began, drawn from what was weighed."""
     _, earliest, latest, _ = when
-    first = max(infestations.begins[parent] + 1, earliest)
+    first = max(weights.grown[infestations.begins[parent]] + 1, earliest)
     last = min(infestations.ends[parent], latest)
     low, high = worked.by_parent[first - earliest], worked.by_parent[last - earliest + 1]
     u = low + np.random.random() * (high - low)  # noqa: NPY002

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
+from fieldmon.infestation.course import BEFORE
+from fieldmon.infestation.landing import SHARES
 from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE
 
 if TYPE_CHECKING:
@@ -21,16 +23,11 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.floating[Any]]
 
-#: how many nights before the season are thought of
-BEFORE = 6
 # what share of the infestations that come from none began on the first of them (our choice:
 # clusters mostly are of one age)
 _OF_ONE_AGE = 0.7
 # what an infested plant sent out in a night then, and how many finds that is worth (our choice)
 _SENT_BEFORE, _SENT_BEFORE_FINDS = 0.4, 4.0
-#: how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
-#: the kernels of `reach` (our choice)
-SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
 #: how many kernels there are
 KERNELS = len(SHARES)
 #: how many finds the first guess of what arrives is worth (our choice)
@@ -65,9 +62,10 @@ class DrawnEvidence(NamedTuple):
     drawn, active
         Means over the ancestries; the second is `DrawnSums.active`.
     unseen
-        ``(t, n)`` how many infestations there are of which nothing was seen.
+        ``(t, n)`` how many infestations send something out of which nothing was seen.
     arrive
-        The share of all plants that is told to be infested from outside in a night.
+        The share of all plants that is told to be infested from outside in a night: anywhere, and
+        by the edge.
     earlier
         ``(2, 10)`` what ancestries before these taught, see `Rates.taught`.
     """
@@ -80,7 +78,7 @@ class DrawnEvidence(NamedTuple):
     drawn: DrawnSums
     active: Floats
     unseen: Floats
-    arrive: float
+    arrive: tuple[float, float]
     earlier: Floats
 
     def __repr__(self) -> str:
@@ -135,9 +133,9 @@ class Rates(NamedTuple):
     by_edge: float = ARRIVE_BY_EDGE
 
     @classmethod
-    def at_first(cls) -> Rates:
-        """Return what is believed before anything was found."""
-        return cls(SHARES / SHARES.sum())
+    def at_first(cls, first: Floats = SHARES) -> Rates:
+        """Return what is believed before anything was found, with the `first` of a `Landing`."""
+        return cls(first / first.sum())
 
     def roots(self, start: Floats, at_edge: Floats, mornings: int) -> Floats:
         """Return how many infestations come to each plant from none, ``(mornings, n)``.
@@ -198,8 +196,8 @@ class Rates(NamedTuple):
 
     def with_jumps(self, night: DrawnEvidence, exposure: Exposure, landing: Landing) -> Rates:
         """Return the same with the jumps that were drawn."""
-        jumps = SHARES + night.earlier[0, :KERNELS] + self._jumps(night, landing)
-        shares = jumps / (SHARES.sum() + night.earlier[1, :KERNELS] + exposure.by_kernel)
+        jumps = landing.first + night.earlier[0, :KERNELS] + self._jumps(night, landing)
+        shares = jumps / (landing.first.sum() + night.earlier[1, :KERNELS] + exposure.by_kernel)
         before = _SENT_BEFORE_FINDS + float(night.drawn.jumps[0].sum())
         before /= _SENT_BEFORE_FINDS / _SENT_BEFORE + exposure.before
         return self._replace(shares=shares / shares.sum(), before=before)
@@ -215,7 +213,7 @@ class Rates(NamedTuple):
         told, first = self._told(night.start), exposure.at_start
         seen = float(first @ told), float(first @ at_edge * told.mean())
         found, known = night.earlier[:, KERNELS:]
-        expected = ARRIVAL_FINDS / np.array([night.arrive, ARRIVE_BY_EDGE])
+        expected = ARRIVAL_FINDS / np.array(night.arrive)
         parts, rates = self._parts(night, at_edge), self
         for _ in range(_SHARED_OUT):
             start, start_by_edge = _shared_out(parts[0], rates.start, rates.start_by_edge)

@@ -51,8 +51,9 @@ class DrawnSums(NamedTuple):
     Parameters
     ----------
     turned
-        ``(t, n)`` in how many each plant began to send something out on a morning, less in how many
-        it ended, see `active`.
+        ``(t, n)`` in how many each plant became infested by a morning, less in how many it ended.
+    grown
+        The same of what sends something out; empty: all do at once.
     hidden
         ``(n,)`` in how many it is infested now, unfound.
     jumps
@@ -64,27 +65,38 @@ class DrawnSums(NamedTuple):
     """
 
     turned: Floats
+    grown: Floats
     hidden: Floats
     jumps: Floats
     roots: Floats
     at_start: Floats
 
     @classmethod
-    def none(cls, t: int, n: int, d: int) -> DrawnSums:
-        """Return sums of nothing."""
+    def none(cls, t: int, n: int, d: int, *, delays: bool = False) -> DrawnSums:
+        """Return sums of nothing, `delays` where infestations grow before they send out others."""
         turned = np.zeros((t, n), np.float32)
-        return cls(turned, np.zeros(n), np.zeros((2, d, d)), np.zeros((2, n)), np.zeros(2))
+        grown = np.zeros((t, n) if delays else (0, n), np.float32)
+        return cls(turned, grown, np.zeros(n), np.zeros((2, d, d)), np.zeros((2, n)), np.zeros(2))
 
     @property
-    def active(self) -> Floats:
-        """In how many each plant sent something out in a night, ``(t, n)``."""
-        active = self.turned.copy()
-        for before, row in pairwise(active):
-            np.add(before, row, out=row)
-        return active
+    def there(self) -> Floats:
+        """In how many each plant was infested on a morning, ``(t, n)``."""
+        return _running(self.turned)
+
+    @property
+    def active(self) -> Floats | None:
+        """In how many each plant sent something out in a night, ``(t, n)``; None: as `there`."""
+        return _running(self.grown) if len(self.grown) else None
 
     def __repr__(self) -> str:
         return f"<Drawn: {self.jumps.sum():.0f} jumps>"
+
+
+def _running(turned: Floats) -> Floats:
+    running = turned.copy()
+    for before, row in pairwise(running):
+        np.add(before, row, out=row)
+    return running
 
 
 @routine
@@ -128,7 +140,7 @@ def draw_ancestries(
         counts = 1.0 if sweep >= left_out else 0.0
         _go_elsewhere(infestations, found_at, weights, worked, counts, drawn.hidden)
         if sweep >= left_out:
-            _sum_up(infestations, weights.season, worked, drawn)
+            _sum_up(infestations, weights, worked, drawn)
     return max(sweeps - left_out, 0)
 
 
@@ -175,8 +187,9 @@ def _go_elsewhere(
 
 
 @part
-def _sum_up(infestations: Infestations, season: int, worked: Worked, drawn: DrawnSums) -> None:
+def _sum_up(infestations: Infestations, weights: Weights, worked: Worked, drawn: DrawnSums) -> None:
     """Add an ancestry to the sums."""
+    season = weights.season
     half, at_start, squares = drawn.jumps.shape[1] // 2, 0.0, worked.squares
     for i in range(infestations.plant.size):
         if not infestations.there[i]:
@@ -184,6 +197,9 @@ def _sum_up(infestations: Infestations, season: int, worked: Worked, drawn: Draw
         plant, begins = infestations.plant[i], infestations.begins[i]
         drawn.turned[begins, plant] += 1.0
         drawn.turned[infestations.ends[i], plant] -= 1.0
+        if drawn.grown.shape[0] > 0 and weights.grown[begins] < infestations.ends[i]:
+            drawn.grown[weights.grown[begins], plant] += 1.0
+            drawn.grown[infestations.ends[i], plant] -= 1.0
         at_start += 1.0 if begins <= season else 0.0
         parent, in_season = infestations.parent[i], 0 if begins <= season else 1
         if parent < 0:

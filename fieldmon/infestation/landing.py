@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.infestation.reach import RADIUS, KernelsOnCells, reach_of, transformed
+from fieldmon.infestation.reach import (
+    OF_PEST,
+    KernelsOnCells,
+    pest_kernels,
+    reach_of,
+    transformed,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.kernels import DistanceKernel
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.floating[Any]]
+
+#: how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
+#: the kernels of `reach` (our choice)
+SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
+#: the same of a pest with a kernel of its own, which brings what lands next to a plant, too
+SHARES_OF_PEST = np.concatenate([[0.3, 0.3], (SHARES.sum() - 0.6) * OF_PEST])
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +36,15 @@ class Landing(KernelsOnCells):
     """The kernels by which insects go from plant to plant, ``(8, d, d)``.
 
     To the next plant along the row, across the rows, and those of
-    :func:`fieldmon.infestation.reach.kernels`.
+    :func:`fieldmon.infestation.reach.kernels` or, of a pest that has its own, of `pest_kernels`.
+
+    Parameters
+    ----------
+    first
+        ``(8,)`` how jumps are shared out before anything is found, in finds.
     """
+
+    first: Floats = field(default_factory=lambda: SHARES)
 
     def met(self, sent: Floats, there: Floats, first: int) -> Floats:
         """Return how much of what was sent would meet something there, by each kernel, ``(2, 8)``.
@@ -54,11 +74,25 @@ class Landing(KernelsOnCells):
 @lru_cache(maxsize=2)
 def landing_of(grid: PlantGrid) -> Landing:
     """Return the kernels of a plot, made once."""
-    reach = reach_of(grid)
-    beside = np.zeros((2, 2 * RADIUS + 1, 2 * RADIUS + 1))
-    beside[0, RADIUS, [RADIUS - 1, RADIUS + 1]] = 0.5
-    beside[1, [RADIUS - 1, RADIUS + 1], RADIUS] = 0.5
-    kernels = np.concatenate([beside, reach.kernels])
+    return _landing(grid, reach_of(grid).kernels, SHARES)
+
+
+@lru_cache(maxsize=8)
+def pest_landing_of(
+    grid: PlantGrid, kernel: DistanceKernel, wind_m_s: tuple[float, float] = (0.0, 0.0)
+) -> Landing:
+    """Return the kernels of a pest on a plot in a wind, made once."""
+    kernels = pest_kernels(reach_of(grid).cells.size_m, kernel, wind_m_s)
+    return _landing(grid, kernels, SHARES_OF_PEST)
+
+
+def _landing(grid: PlantGrid, kernels: Floats, first: Floats) -> Landing:
+    reach, radius = reach_of(grid), kernels.shape[1] // 2
+    beside = np.zeros((2, 2 * radius + 1, 2 * radius + 1))
+    beside[0, radius, [radius - 1, radius + 1]] = 0.5
+    beside[1, [radius - 1, radius + 1], radius] = 0.5
+    kernels = np.concatenate([beside, kernels])
     spectra, padded = transformed(reach.cells, kernels)
     # half the digits take half the time, and ancestries are not drawn as exactly as that
-    return Landing(reach.cells, kernels, spectra.astype(np.complex64), padded, reach.at_edge)
+    spectra = spectra.astype(np.complex64)
+    return Landing(reach.cells, kernels, spectra, padded, reach.at_edge, first)

@@ -153,10 +153,7 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
         at_start = estimate(AT_START, suspected) + estimate(AT_START_ELSEWHERE, elsewhere)
     else:
         # nothing was inspected yet: in as much doubt as what is there now
-        now = estimate_plot(
-            belief.grid, belief.chance, belief.pair_chance, doubt=belief.doubt,
-            named=belief.pest is not None,
-        )  # fmt: skip
+        now = estimate_plot(belief.grid, belief.chance, belief.pair_chance, doubt=belief.doubt)
         told = (suspected + elsewhere) / now.expected
         at_start = Estimate(suspected + elsewhere, now.low * told, now.high * told)
     return (

@@ -65,7 +65,7 @@ def level_range(belief: Belief, sure: float = 0.9) -> LevelRange:
     share = float(np.mean(chance))
     if doubt <= 0.0 or not 0.0 < share < MOST_CHANCE:
         return LevelRange()
-    factors = doubted_level(doubt, named=belief.pest is not None)
+    factors = doubted_level(doubt)
     factors = factors if since is None else factors * since.times
     by = np.quantile(factors, [0.5 - sure / 2, 0.5 + sure / 2])
     ends = share * by / (1.0 + share * (by - 1.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -53,6 +53,8 @@ class PlotEstimate:
         Interval that holds the number with the chance asked for (90 % unless told).
     chance_clean
         Chance that no plant is infested.
+    found
+        So many more were found infested and only flagged; the others do not count them.
 
     Examples
     --------
@@ -67,6 +69,7 @@ class PlotEstimate:
     low: int
     high: int
     chance_clean: float
+    found: int = 0
 
     def beside(self, found: int) -> PlotEstimate:
         """Return the same with so many more plants, which were found infested and left."""
@@ -75,10 +78,18 @@ class PlotEstimate:
 
     def sentence(self) -> str:
         """Return the estimate in words."""
+        within, clean = (
+            f"between {self.low:,} and {self.high:,}",
+            f"{100 * self.chance_clean:.0f} %",
+        )
+        if self.found == 0:
+            return (
+                f"About {self.expected:,.0f} plants are still infested ({within}); "
+                f"the chance that the plot is clean is {clean}."
+            )
         return (
-            f"About {self.expected:,.0f} plants are still infested "
-            f"(between {self.low:,} and {self.high:,}); "
-            f"the chance that the plot is clean is {100 * self.chance_clean:.0f} %."
+            f"About {self.expected:,.0f} plants are infested ({within}) beside the {self.found:,} "
+            f"that were found and only flagged; the chance that there is no other is {clean}."
         )
 
 
@@ -88,8 +99,6 @@ def estimate_plot(
     pair_chance: NDArray[np.float64] | None = None,
     sure: float = 0.9,
     doubt: float = 0.0,
-    *,
-    named: bool = False,
 ) -> PlotEstimate:
     """Return what a chance map ``(n,)`` says of the whole plot.
 
@@ -103,12 +112,10 @@ def estimate_plot(
         Chance that the interval holds the number.
     doubt
         How far the expected number may be off beyond that, as a share (`Belief.doubt`).
-    named
-        Whether somebody named the pest (`Belief.pest`), see `doubted_level`.
     """
     must_be_sure(sure)
     every = np.ones(len(chance), np.bool_)
-    numbers, clean = _of_map(grid, (chance, pair_chance), every, doubt, named=named)
+    numbers, clean = _of_map(grid, (chance, pair_chance), every, doubt)
     return _estimate(float(chance.sum()), numbers, (clean, sure), exact=doubt <= 0.0)
 
 
@@ -145,18 +152,19 @@ def estimate_of(
     True
     """
     must_be_sure(sure)
-    chance, doubt, named = belief.chance, level_doubt(belief), belief.pest is not None
+    chance, doubt = belief.chance, level_doubt(belief)
     known = known_infested(belief, found)
     asked, n_known = ~known, np.count_nonzero(known)
     expected = float(chance[asked].sum())
     if (since := belief.since_inspected) is not None:
-        factors = doubted_level(doubt, named=named)
+        factors = doubted_level(doubt)
         numbers = since.numbers(factors, expected, int(np.count_nonzero(asked)))
         clean = since.chance_of_none(factors, expected)
     else:
-        numbers, clean = _of_map(grid, (chance, belief.pair_chance), asked, doubt, named=named)
+        numbers, clean = _of_map(grid, (chance, belief.pair_chance), asked, doubt)
     unknown = _estimate(expected, numbers, (clean, sure), exact=doubt <= 0.0)
-    return unknown.beside(int(n_known if found is None else n_known - np.count_nonzero(found)))
+    n_found = 0 if found is None else int(np.count_nonzero(found))
+    return replace(unknown.beside(int(n_known) - n_found), found=n_found)
 
 
 def known_infested(belief: Belief, found: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
@@ -185,14 +193,12 @@ def _of_map(
     believed: tuple[Floats, Floats | None],
     asked: NDArray[np.bool_],
     doubt: float,
-    *,
-    named: bool,
 ) -> tuple[Floats, float]:
     """Return how many of the plants asked about there may be by a map, and the chance of none."""
     numbers, none = drawn_numbers(grid, (believed[0], pairs_of(believed, grid)), asked)
     if doubt <= 0.0:
         return numbers, float(np.exp(none))
-    factors, n = doubted_level(doubt, named=named), max(int(np.count_nonzero(asked)), 1)
+    factors, n = doubted_level(doubt), max(int(np.count_nonzero(asked)), 1)
     return of_odds(numbers, factors, n), float(np.exp(none * factors).mean())
 
 
@@ -214,16 +220,16 @@ def drawn_numbers(
 ) -> tuple[Floats, float]:
     """Return how many of the plants asked about are infested in drawn fields, ``(400,)``.
 
-    And the logarithm of the chance that none is. `believed` is ``chance (n,)`` and
-    ``pair_chance (e,)``.
+    And the logarithm of the chance that none is, all others being known to be. `believed` is
+    ``chance (n,)`` and ``pair_chance (e,)``.
     """
     chance, pair_chance = believed
     table = _table(chance, pair_chance, grid.adjacent)
     drawn = _drawn(table, _KEY, asked)
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     right = float(chance[asked].sum()) / max(float(drawn.mean()), 1e-9)
-    # the chain of plants draws no infested one
-    none = float(np.log1p(-table[-1][asked]).sum())
+    # of the others, the chain of plants draws no infested one
+    none = float(np.log1p(-_beside_known(table, ~asked)[asked]).sum())
     return (drawn * right).clip(0.0, np.count_nonzero(asked)), none
 
 
@@ -246,16 +252,11 @@ def doubted(doubt: float) -> Floats:
     return factors
 
 
-def doubted_level(doubt: float, *, named: bool) -> Floats:
-    """Return what a plot's odds may have to be multiplied by: of a pest that is named, or not."""
-    return doubted(doubt) if named else _doubted_widely(doubt)
+def doubted_level(doubt: float) -> Floats:
+    """Return what a plot's odds may have to be multiplied by, as the doubt itself may be off.
 
-
-def _doubted_widely(doubt: float) -> Floats:
-    """Return `doubted` where the doubt itself may be off: a logarithm with Student's tails.
-
-    On mornings of seasons that no map was told of, nine tenths of a gamma held six to nine numbers
-    of ten. Of a pest that is named, they hold as many as they should.
+    A logarithm with Student's tails: on mornings of seasons that no map was told of, nine tenths of
+    a gamma held six to nine numbers of ten, and of pests that were named one to ten.
     """
     places = ((np.arange(_DRAWS) + 1) * _SILVER) % 1.0
     wide = np.sqrt(_TAILS / (2.0 * gammaincinv(_TAILS / 2.0, places)))
@@ -354,6 +355,15 @@ def _table(chance: NDArray[np.float64], pair_chance: NDArray[np.float64], adjace
         start[i + 1] = at
         alone[i] = min(given / (1.0 + given), 1.0 - 1e-9)
     return start, plant[:at], factor[:at], odds, alone
+
+
+@routine
+def _beside_known(table: _Table, known: NDArray[np.bool_]) -> Floats:
+    """Return the chance of each plant if of those before it only the known ones are infested."""
+    field, given = known.reshape((known.size, 1)), np.empty(known.size)
+    for i in range(known.size):
+        given[i] = _given(table, field, i, 0)
+    return given
 
 
 @inlined

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry
+from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry, ToldNight
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
@@ -120,8 +120,8 @@ class TracedPairs:
     slope_sums
         ``(6,)`` how far differences between chances came true, see `calibration_slope`.
     ancestry
-        Who infested whom; None: a pest was named, finds are left where they are, or the plot has
-        too many plants.
+        Who infested whom; None: finds are left where they are, the plot has too many plants, or
+        infestations of the pest that was named end of themselves.
     unwatched
         The days without inspections until now.
     """
@@ -174,7 +174,10 @@ class TracedPairs:
     def of_pest(self, pest: Pest) -> TracedPairs:
         """Return the same, of a plot on which this pest lives."""
         cohorts = Cohorts.none(pest, len(self.chance))
-        return replace(self, cohorts=cohorts, latency=None, ancestry=None)
+        # an ancestry knows no infestation that ends of itself
+        lives = pest.mortality_per_day == 0.0
+        ancestry = self.ancestry.of_pest(pest) if lives and self.ancestry is not None else None
+        return replace(self, cohorts=cohorts, latency=None, ancestry=ancestry)
 
     @property
     def pest(self) -> Pest | None:
@@ -254,7 +257,7 @@ class TracedPairs:
     @property
     def since_inspected(self) -> Since | None:
         """What the number may have become on days without inspections, see `Belief`."""
-        return self.unwatched.draws(named=self.pest is not None, arrivals_found=self.arrivals_found)
+        return self.unwatched.draws(self.arrivals_found)
 
     @property
     def _left_in_doubt(self) -> float:
@@ -263,9 +266,7 @@ class TracedPairs:
 
     @property
     def _variance_since_inspected(self) -> float:
-        return self.unwatched.variance(
-            named=self.pest is not None, arrivals_found=self.arrivals_found
-        )
+        return self.unwatched.variance(self.arrivals_found)
 
     @property
     def _brought_so_far(self) -> Floats:
@@ -423,8 +424,13 @@ class TracedPairs:
         if self.ancestry is None:
             return by_origins
         hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
-        arrive = max(spread.arrivals_per_day, ARRIVE)
-        ancestry, chance = replace(self.ancestry, hiding=hiding).overnight(sends, arrive)
+        ancestry = replace(self.ancestry, hiding=hiding, wind_m_s=by_origins.wind_m_s)
+        night = ToldNight(sends, self._told_from_outside(spread))
+        if isinstance(spread, PestSpread):
+            # what goes far comes from anywhere
+            afar = 0.0 if spread.movement is None else spread.movement.share_of_long_jumps
+            night = ToldNight(sends * (1.0 - afar), night.arrive, (spread.days, *spread.warmth))
+        ancestry, chance = ancestry.overnight(night)
         if chance is not None:
             # a logarithmic pool of both maps (Genest & Zidek 1986)
             odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(by_origins.chance) ** _ORIGINS
@@ -446,7 +452,9 @@ class TracedPairs:
         return float(np.diff(self.grid.adjacent.start).mean())
 
     def _sends(self, spread: Spread) -> float:
-        """Return what an infested plant sends out in a night to the plants beside it."""
+        """Return what an infested plant sends out in a night."""
+        if isinstance(spread, PestSpread) and self.known_to_jump:
+            return spread.sends
         return spread.rate_per_day * (self._degree if spread.to != "one" else 1.0)
 
     def _overnight(self, spread: Spread, *, tells_apart: bool) -> TracedPairs:
@@ -455,7 +463,6 @@ class TracedPairs:
         if isinstance(spread, PestSpread) and self.cohorts is not None:
             moves = self.chance * (1.0 - self.cohorts.still)
             reach = self._reach(spread.wind_m_s)
-            sends = spread.sends if self.known_to_jump else sends
             each = spread.sends * reach.adjacent / max(degree, 1.0) if self.known_to_jump else None
             spread = _moving(spread, each, float(moves.sum() / self.chance.sum()))
         # of a pest with a kernel of its own, the rate is of the plants beside it already
@@ -514,12 +521,19 @@ class TracedPairs:
 
     def _from_outside(self, reach: Reach, spread: Spread) -> tuple[float, Floats]:
         """Return what a night brings a plant from outside: anywhere, and by the edge ``(n,)``."""
-        scale, by_edge = self.counts.scale, ARRIVE_BY_EDGE
+        scale, (anywhere, by_edge) = self.counts.scale, self._told_from_outside(spread)
+        return anywhere * float(scale[ANYWHERE]), by_edge * scale[BY_EDGE] * reach.at_edge
+
+    def _told_from_outside(self, spread: Spread) -> tuple[float, float]:
+        """Return the share of all plants infested from outside in a night, as told.
+
+        Anywhere, and by the edge.
+        """
+        by_edge = ARRIVE_BY_EDGE
         if isinstance(spread, PestSpread):
             # told of plants at the edge
-            by_edge = max(by_edge, spread.edge_per_day / float(reach.at_edge.max()))
-        anywhere = max(spread.arrivals_per_day, ARRIVE) * float(scale[ANYWHERE])
-        return anywhere, by_edge * scale[BY_EDGE] * reach.at_edge
+            by_edge = max(by_edge, spread.edge_per_day / float(self.reach.at_edge.max()))
+        return max(spread.arrivals_per_day, ARRIVE), by_edge
 
     def _shares_after(self, beside: Floats, gain: Floats, brought: Floats) -> NDArray[np.float32]:
         """Return the shares of the origins after a night that brought so much."""

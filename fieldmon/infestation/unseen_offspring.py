@@ -19,6 +19,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.infestation.course import Course
     from fieldmon.infestation.landing import Landing
 
     Floats = NDArray[np.floating[Any]]
@@ -33,17 +34,20 @@ class Unseen(NamedTuple):
         That nothing is seen of it and of all that comes from it.
     offspring
         That nothing is seen of what it sends out.
+    sent_since
+        That nothing is seen of what one sends out from a morning on.
     """
 
     chance: Floats
     offspring: Floats
+    sent_since: Floats
 
     def __repr__(self) -> str:
         return f"<Unseen on {len(self.chance)} mornings>"
 
 
 def stays_unseen(
-    alone: Floats, taken: Floats, sends: Floats, shares: Floats, landing: Landing
+    alone: Floats, taken: Floats, jumps: tuple[Floats, Floats], landing: Landing, course: Course
 ) -> Unseen:
     """Return how likely infestations stay unseen.
 
@@ -54,24 +58,34 @@ def stays_unseen(
         since.
     taken
         ``(t, n)`` the chance that the plant is infested already: what lands there does nothing.
-    sends
-        ``(t,)`` what an infested plant sends out in a night.
-    shares
-        ``(k,)`` how much of it goes by each kernel.
+    jumps
+        ``(t,)`` what an infested plant sends out in a night, and ``(k,)`` how much of it goes by
+        each kernel.
+    course
+        When they send something out.
     """
+    sends, shares = jumps
     back, lost = np.conj(landing.mixed(shares)), np.zeros_like(alone[0])
     chance, offspring = np.empty((2, *alone.shape), alone.dtype)
+    sent_since = np.empty_like(offspring) if course.delays else offspring
     for night in range(len(alone) - 1, -1, -1):
-        np.exp(lost, out=offspring[night])
+        np.exp(lost, out=sent_since[night])
+        if course.delays:
+            offspring[night] = sent_since[course.grown[night]]
         np.multiply(alone[night], offspring[night], out=chance[night])
         if night:
             caught = (1.0 - chance[night]) * (1.0 - taken[night])
             lost -= float(sends[night - 1]) * landing.landed(caught, back)
-    return Unseen(chance, offspring)
+    return Unseen(chance, offspring, sent_since)
 
 
 def unseen_now(
-    unseen: Unseen, active: Floats, roots: Floats, sends: Floats, shares: Floats, landing: Landing
+    unseen: Unseen,
+    active: Floats,
+    roots: Floats,
+    jumps: tuple[Floats, Floats],
+    landing: Landing,
+    course: Course,
 ) -> Floats:
     """Return how many infestations of which nothing was seen are expected, ``(t, n)``.
 
@@ -83,14 +97,15 @@ def unseen_now(
         ``(t, n)`` how likely a plant of the finds' ancestry sends something out in a night.
     roots
         ``(t, n)`` how many infestations come to a plant from none.
-    sends, shares
+    jumps, course
         As for `stays_unseen`.
     """
+    sends, shares = jumps
     mixed = landing.mixed(shares)
     so_far = np.empty_like(active)
     np.multiply(roots[0], unseen.chance[0], out=so_far[0])
     for night, (before, there) in enumerate(pairwise(so_far)):
-        new = landing.landed(active[night] + before, mixed)
+        new = landing.landed(active[night] + so_far[course.grown_by[night]], mixed)
         new *= float(sends[night])
         new += roots[night + 1]
         new *= unseen.chance[night + 1]

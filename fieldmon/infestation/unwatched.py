@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: how far a number may be off beyond what the chance map says of itself, where nobody named the
-#: pest and where somebody did; and how far the logarithm of the rate at which it grows (1 sigma;
-#: our choice)
-LEVEL_DOUBT, OF_A_PEST = 0.3, 0.25
+#: how far a number may be off beyond what the chance map says of itself; and how far the logarithm
+#: of the rate at which it grows (1 sigma; our choice)
+LEVEL_DOUBT = 0.3
 RATE_DOUBT = 0.5
 # what arrives from outside is a guess of ours: how many finds it is worth, and how many of those
 # found are not told from others. So it may well be that nothing arrives, or many times as much
@@ -169,27 +168,25 @@ class Unwatched(NamedTuple):
     looked: bool = False
     counted: Counted | None = None
 
-    def variance(self, *, named: bool, arrivals_found: float = 0.0) -> float:
+    def variance(self, arrivals_found: float = 0.0) -> float:
         """Return by how much the number varies, as a share of it, squared.
 
-        `named` tells of a named pest, and `arrivals_found` of finds that came from outside.
+        `arrivals_found` tells of finds that came from outside.
         """
         if self.days == 0:
             return self.left
-        level = OF_A_PEST if named else LEVEL_DOUBT
         by_arrivals = self.arrived**2 / arrivals_known(arrivals_found)
         by_rate = RATE_DOUBT**2 * (self.grown**2 + self.sent**2)
-        since = level**2 + by_rate + by_arrivals
+        since = LEVEL_DOUBT**2 + by_rate + by_arrivals
         return self.left + min(since, _MOST_VARIANCE)
 
-    def draws(self, *, named: bool, arrivals_found: float = 0.0) -> Since | None:
+    def draws(self, arrivals_found: float = 0.0) -> Since | None:
         """Return what the number may have become; None: there was no day without inspections."""
         if self.counted is None:
             return None
         draws = len(self.counted.drawn)
         one, other, third = ((np.arange(draws) + 1) * step % 1.0 for step in _STEPS)
-        level = OF_A_PEST if named else LEVEL_DOUBT
-        levels = gammaincinv(level**-2.0, one) * level**2.0
+        levels = gammaincinv(LEVEL_DOUBT**-2.0, one) * LEVEL_DOUBT**2.0
         faster = np.exp(RATE_DOUBT * ndtri(other))
         known = arrivals_known(arrivals_found)
         arrived = self.arrived * (1.0 - self.sent) * gammaincinv(known, third) / known

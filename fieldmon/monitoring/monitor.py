@@ -341,7 +341,11 @@ class Monitor:
         return Skips.of(plants, days, self._last_inspected)
 
     def plan(self) -> DayPlan:
-        """Return the day ahead as it goes if nothing is found."""
+        """Return the day ahead as it is planned before anything is seen there.
+
+        Clean inspections of the day say something, too, so a day on which nothing is found may go
+        on otherwise: `MonitorDay.ahead` follows it.
+        """
         return plan_in(self._scene(), self._sampler)
 
     def day(self) -> MonitorDay:

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 import fieldmon.infestation
+import fieldmon.pests
 from fieldmon.compute.digest import digest
 from fieldmon.infestation.ancestry import Ancestry
+from fieldmon.infestation.cohorts import Age, Cohorts
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import OriginCounts
 from fieldmon.infestation.pairs import PairApproximation
@@ -41,6 +43,8 @@ _EVERY, _IN_FILE = 8, 2
 _LATENCY = "latency_"
 # and that are of who infested whom
 _ANCESTRY = "ancestry_"
+# and that are of how old infestations of a named pest are
+_COHORTS = "cohorts_"
 _UNWATCHED = "unwatched"
 
 
@@ -112,8 +116,6 @@ class Mornings:
 
 def take(db: sqlite3.Connection, mornings: Mornings) -> None:
     """Add the mornings that the file keeps, and the estimate of its last day."""
-    if mornings.history.pest_in_weather is not None:
-        return
     late = "SELECT day, causes, content, chances FROM mornings WHERE day > 0"
     for day, *kept in db.execute(late):
         mornings.kept[day] = _KeptMorning(*kept)
@@ -127,24 +129,17 @@ def take(db: sqlite3.Connection, mornings: Mornings) -> None:
             mornings.history.remember(mornings.known[day], day, estimate)
 
 
-def causes_of(history: History, day: int, estimate: PlotEstimate) -> str | None:
-    """Return a name for an estimate of a day's evening and all from which it follows.
-
-    None: it follows from more than the season's file says.
-    """
-    if history.pest_in_weather is not None:
-        return None
+def causes_of(history: History, day: int, estimate: PlotEstimate) -> str:
+    """Return a name for an estimate of a day's evening and all from which it follows."""
     said = estimate.expected, estimate.low, estimate.high, estimate.chance_clean
     return digest(_causes(history, day + 1), said)
 
 
 def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
     """Keep the latest mornings in the file, within the transaction that changes it."""
-    wanted: set[int] = set()
-    if mornings.history.pest_in_weather is None:
-        eighths = range(newest - newest % _EVERY, 0, -_EVERY)[:_IN_FILE]
-        # that before the newest: who corrects the last day's work begins there
-        wanted = {day for day in (*eighths, newest - 1, newest) if day > 0}
+    eighths = range(newest - newest % _EVERY, 0, -_EVERY)[:_IN_FILE]
+    # that before the newest: who corrects the last day's work begins there
+    wanted = {day for day in (*eighths, newest - 1, newest) if day > 0}
     causes = {day: _causes(mornings.history, day) for day in wanted}
     for day, of_kept in db.execute("SELECT day, causes FROM mornings WHERE day > 0").fetchall():
         if causes.get(day) == of_kept:
@@ -162,7 +157,7 @@ def is_behind(db: sqlite3.Connection, mornings: Mornings, newest: int) -> bool:
 
     As after a new version of fieldmon: who only reads works it out again each time.
     """
-    if mornings.history.pest_in_weather is not None or newest not in mornings.known or newest == 0:
+    if newest not in mornings.known or newest == 0:
         return False
     row = db.execute("SELECT causes FROM mornings WHERE day = ?", (newest,)).fetchone()
     return row is None or row[0] != _causes(mornings.history, newest)
@@ -176,7 +171,9 @@ def _causes(history: History, day: int) -> str:
     treated = [
         digest(one.day, one.plants, one.efficacy) for one in history.treatments if one.day < day
     ]
+    pest = () if history.pest_in_weather is None else history.pest_in_weather.content
     return digest(
+        *pest,
         *(rules(), first.chance, first.pair_chance, _learnt_before(first), said, day, treated),
         *(done.plant, done.result, done.date, told),
     )
@@ -192,8 +189,9 @@ def _learnt_before(first: Belief) -> bytes:
 @cache
 def rules() -> str:
     """Return a name for the program that works mornings out: another one begins at the first."""
-    folder = Path(fieldmon.infestation.__file__).parent
-    files = [*sorted(folder.glob("*.py")), Path(causes_of_a_morning.__file__)]
+    rooms = [Path(room.__path__[0]) for room in (fieldmon.infestation, fieldmon.pests)]
+    files = [file for room in rooms for file in sorted(room.glob("*.py"))]
+    files.append(Path(causes_of_a_morning.__file__))
     return digest(*(file.read_bytes() for file in files))
 
 
@@ -211,7 +209,7 @@ def _packed(morning: Belief) -> bytes | None:
 def _arrays(morning: Belief) -> Arrays | None:
     if isinstance(morning, PairApproximation):
         return {"chance": morning.chance, "pair_chance": morning.pair_chance}
-    if not isinstance(morning, TracedPairs) or morning.cohorts is not None:
+    if not isinstance(morning, TracedPairs):
         return None
     latency = {} if morning.latency is None else vars(morning.latency)
     ancestry = {} if morning.ancestry is None else morning.ancestry.arrays
@@ -226,6 +224,19 @@ def _arrays(morning: Belief) -> Arrays | None:
         _UNWATCHED: morning.unwatched.array,
         **{f"{_LATENCY}{name}": values for name, values in latency.items()},
         **{f"{_ANCESTRY}{name}": values for name, values in ancestry.items()},
+        **{f"{_COHORTS}{name}": values for name, values in _aged(morning).items()},
+    }
+
+
+def _aged(morning: TracedPairs) -> Arrays:
+    """Return how old infestations of a named pest are, and where the wind has gone of late."""
+    if morning.cohorts is None:
+        return {}
+    ages = np.array([[age.stage, age.progress, age.days] for age in morning.cohorts.ages])
+    return {
+        "ages": ages.reshape((-1, 3)),
+        "shares": morning.cohorts.shares,
+        "wind_m_s": np.array(morning.wind_m_s),
     }
 
 
@@ -239,36 +250,50 @@ def _arrays_in(chances: bytes) -> dict[str, NDArray[Any]]:
 
 def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     """Return a kept morning of the season that began with `first`, or None: it is of another."""
+    wanted = _arrays(first)
     try:
         arrays = _arrays_in(chances)
     except (sqlite3.DatabaseError, zipfile.BadZipFile, ValueError, OSError, EOFError):
         return None
-    # one that ends with a find that is left where it is holds none
-    ancestry = _taken_out(arrays, _ANCESTRY)
-    wanted = _arrays(first)
     if wanted is None:
         return None
+    # one that ends with a find that is left where it is holds no ancestry
+    ancestry, aged = _taken_out(arrays, _ANCESTRY), _taken_out(arrays, _COHORTS)
     _taken_out(wanted, _ANCESTRY)
+    ages = _taken_out(wanted, _COHORTS).keys()
     # a day without inspections has more of it
     unwatched = arrays.pop(_UNWATCHED, None)
     if (unwatched is None) != (wanted.pop(_UNWATCHED, None) is None):
         return None
-    if wanted.keys() != arrays.keys():
+    if wanted.keys() != arrays.keys() or ages != aged.keys():
         return None
     if any(wanted[name].shape != values.shape for name, values in arrays.items()):
         return None
-    counts = arrays.pop("counts", None)
     own: dict[str, object] = {}
-    if counts is not None:
-        own["counts"] = OriginCounts(*counts)
+    if isinstance(first, TracedPairs):
+        own = _of_traced(first, arrays, ancestry, aged)
     if unwatched is not None:
         own["unwatched"] = Unwatched.of_array(unwatched)
+    return replace(first, **arrays, **own)  # type: ignore[type-var]
+
+
+def _of_traced(
+    first: TracedPairs, arrays: Arrays, ancestry: dict[str, Any], aged: dict[str, Any]
+) -> dict[str, object]:
+    """Take out of `arrays` what is more than an array of a morning; return it by its name."""
+    pest = first.pest
+    own: dict[str, object] = {
+        "counts": OriginCounts(*arrays.pop("counts")),
+        "ancestry": Ancestry.of_arrays(first.grid, ancestry, pest) if ancestry else None,
+    }
     latency = _taken_out(arrays, _LATENCY)
     if latency:
         own["latency"] = Latency(**latency)
-    if isinstance(first, TracedPairs):
-        own["ancestry"] = Ancestry.of_arrays(first.grid, ancestry) if ancestry else None
-    return replace(first, **arrays, **own)  # type: ignore[type-var]
+    if pest is not None:
+        ages = tuple(Age(int(stage), *rest) for stage, *rest in aged["ages"].tolist())
+        own["cohorts"] = Cohorts(pest, ages, aged["shares"])
+        own["wind_m_s"] = tuple(aged["wind_m_s"].tolist())
+    return own
 
 
 def _taken_out(arrays: Arrays, beginning: str) -> dict[str, Any]:

@@ -67,7 +67,7 @@ class DayPlan:
     scene
         All that was known when it was planned.
     work
-        Which plants are inspected when, ``(k,)`` each, if nothing is found.
+        Which plants are inspected when, ``(k,)`` each, as planned before anything is seen there.
     route
         The same as it is driven, for files and maps.
 
@@ -277,8 +277,9 @@ def plan_believed(
 
 
 def plan_in(scene: Scene, sampler: Sampler, wishes: Wishes | None = None) -> DayPlan:
-    """Plan the rest of the day that a scene stands in, as it goes if nothing is found.
+    """Plan the rest of the day that a scene stands in, before anything is seen there.
 
+    A day on which nothing is found may go on otherwise: clean inspections say something, too.
     Wishes change where it goes, not what is believed of the plants.
     """
     must_detect(sampler, scene.robot)

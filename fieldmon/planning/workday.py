@@ -64,7 +64,7 @@ class Workday:
 
 
 def plan_work(scene: Scene, sampler: Sampler) -> Workday:
-    """Return the rest of the day as it goes if nothing is found."""
+    """Return the rest of the day as it is planned before anything is seen there."""
     supposed = replace(scene, supposed=True)
     return work_day(supposed, sampler, np.zeros(len(scene.chance), np.bool_))
 

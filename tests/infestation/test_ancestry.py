@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation import ancestry as module
-from fieldmon.infestation.ancestry import Ancestry
-from fieldmon.infestation.ancestry_rates import BEFORE
+from fieldmon.infestation.ancestry import Ancestry, ToldNight
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.course import BEFORE, Course
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.unseen_offspring import Unseen
 from fieldmon.pests.pest import Pest
 from fieldmon.plot.layout import rectangle
 
@@ -26,7 +27,7 @@ def after(plants, found, ancestry=None, detects=0.84):
     plants = np.asarray(plants, np.int32)
     ancestry = Ancestry.of(GRID, FLAT) if ancestry is None else ancestry
     known = ancestry.learn(plants, np.asarray(found, bool), np.full(len(plants), detects))
-    return known.overnight(0.3)
+    return known.overnight(ToldNight(0.3))
 
 
 def test_weeks_of_clean_inspections_that_hardly_overlook_anything_leave_numbers():
@@ -91,7 +92,8 @@ def test_nights_are_mixed_as_they_are_likely():
     missed[BEFORE:-1, 0] = np.log(0.2) * np.arange(4, 0, -1)
     missed[:BEFORE] = missed[BEFORE]
     hiding = np.array([0.5, 0.3, 0.15, 0.05])
-    overlooked = module._overlooked(missed, hiding)[:, 0]
+    course = Course.that_may_hide(t, hiding)
+    overlooked = module._overlooked(missed, course)[:, 0]
     assert overlooked[: BEFORE + 1] == pytest.approx(0.2**4)
     for began in range(1, 5):
         # as many inspections as it could have been seen by
@@ -99,7 +101,8 @@ def test_nights_are_mixed_as_they_are_likely():
         assert overlooked[BEFORE + began] == pytest.approx(hiding @ 0.2 ** np.array(many))
     # the same until a find on the last day but one, where it must show by then
     finds = np.array([BEFORE + 3]), np.array([0])
-    until = module._until_found(missed, np.ones((t, 1)), finds, hiding)[0]
+    ones = np.ones((t, 1))
+    until = module._until_found(missed, Unseen(ones, ones, ones), finds, course)[0]
     assert until[: BEFORE + 1] == pytest.approx(0.2**3)
     for began in range(1, 4):
         each = [0.2 ** (3 - began - k) if k <= 3 - began else 0.0 for k in (0, 2, 4, 7)]
@@ -136,7 +139,7 @@ def test_finds_that_stand_apart_teach_that_insects_jump():
 def test_nothing_is_known_before_anything_was_inspected():
     known = Ancestry.of(GRID, FLAT)
     for _ in range(3):
-        known, chance = known.overnight(0.3)
+        known, chance = known.overnight(ToldNight(0.3))
         assert chance is None
     assert not known.knows
     belief = TracedPairs.of(GRID, FLAT)
@@ -150,9 +153,9 @@ def test_a_day_in_two_parts_is_one_day():
     plants = np.arange(0, N, 7, dtype=np.int32)
     found, detects = plants % 5 == 0, np.full(len(plants), 0.84)
     first = Ancestry.of(GRID, FLAT)
-    once, chance = first.learn(plants, found, detects).overnight(0.3)
+    once, chance = first.learn(plants, found, detects).overnight(ToldNight(0.3))
     twice = first.learn(plants[:20], found[:20], detects[:20])
-    twice, same = twice.learn(plants[20:], found[20:], detects[20:]).overnight(0.3)
+    twice, same = twice.learn(plants[20:], found[20:], detects[20:]).overnight(ToldNight(0.3))
     assert (chance == same).all()
     assert (once.missed == twice.missed).all()
 
@@ -217,7 +220,7 @@ def test_it_is_left_out_where_it_does_not_hold():
     plants, found = np.array([3], np.int32), np.ones(1, bool)
     flagged = belief.learn(plants, found, Learning(treated=False))
     assert flagged.ancestry is None
-    assert belief.of_pest(Pest("mite")).ancestry is None
+    assert belief.of_pest(Pest("mite", mortality_per_day=0.1)).ancestry is None
     assert TracedPairs.of(rectangle(101, 100), np.full(10_100, 0.01)).ancestry is None
 
 
@@ -236,7 +239,7 @@ def test_both_maps_are_pooled():
     found = plants % 11 == 0
     belief = TracedPairs.of(GRID, FLAT).learn(plants, found, Learning())
     alone = replace(belief, ancestry=None).overnight(SPREAD)
-    _, chance = belief.ancestry.overnight(0.3)
+    _, chance = belief.ancestry.overnight(ToldNight(0.3))
     pooled = belief.overnight(SPREAD).chance
     odds = [p / (1.0 - p) for p in (chance, alone.chance, pooled)]
     assert odds[2] == pytest.approx(1.15 * odds[0] ** 0.63 * odds[1] ** 0.42)
@@ -287,7 +290,7 @@ def test_by_the_evening_it_is_known_what_was_inspected_that_day():
     plants = np.arange(N)
     evening = known.learn(plants, plants == 22, np.full(N, 0.95))
     assert evening.waits
-    so_far, (morning, _) = evening.overnight(0.0)[0], evening.overnight(0.3)
+    so_far, (morning, _) = evening.overnight(ToldNight(0.0))[0], evening.overnight(ToldNight(0.3))
     assert so_far.infested_at_start.value == pytest.approx(
         morning.infested_at_start.value, rel=0.05
     )
@@ -299,7 +302,7 @@ def test_nights_without_inspections_teach_nothing_of_the_past():
     known, _ = after(np.arange(60), np.arange(60) % 10 == 0)
     first, numbers = known, []
     for _ in range(6):
-        known, _ = known.overnight(0.05)
+        known, _ = known.overnight(ToldNight(0.05))
         assert np.array_equal(known.rates.shares, first.rates.shares)
         assert known.rates[1:] == first.rates[1:]
         numbers.append(known.infested_at_start.value)
@@ -314,7 +317,7 @@ def test_nights_without_inspections_teach_nothing_of_the_past():
 def test_what_was_learnt_of_arrivals_and_jumps_outlives_a_beginning_anew():
     finds = [[21], *([20 * (2 * day + 1) + 7 * day % 19] for day in range(1, 9))]
     known = whole_plot(finds)
-    quiet, _ = known.anew(FLAT).overnight(0.3)
+    quiet, _ = known.anew(FLAT).overnight(ToldNight(0.3))
     assert quiet.arrivals.value == pytest.approx(known.arrivals.value)
     later, _ = after(np.arange(N), np.zeros(N, bool), known.anew(FLAT), 0.95)
     assert later.arrivals.value == pytest.approx(known.arrivals.value, rel=0.2)

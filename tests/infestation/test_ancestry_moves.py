@@ -1,6 +1,7 @@
 """Moves leave an ancestry of finds in order."""
 
 import numpy as np
+import pytest
 
 from fieldmon.infestation.ancestry_moves import Infestations, Weights
 from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
@@ -9,7 +10,8 @@ from fieldmon.infestation.squares import NOBODY
 from fieldmon.plot.layout import rectangle
 
 
-def test_an_ancestry_holds_together():
+@pytest.mark.parametrize("delay", [0, 2])
+def test_an_ancestry_holds_together(delay):
     """Parents begin before their children and end no sooner; nobody hangs on nothing."""
     rng = np.random.default_rng(4)
     plot = rectangle(12, 12)
@@ -26,7 +28,10 @@ def test_an_ancestry_holds_together():
     roots = np.full((144, mornings), 1e-4, np.float32)
     sends = np.full(mornings, 0.3)
     so_far = np.cumsum(kernel) / kernel.sum()
-    world = Weights(landing.cells, kernel, so_far, sends, roots, 3, -1, lasting)
+    grown = np.minimum(np.arange(mornings) + delay, mornings - 1)
+    grown[:4] = np.arange(4)
+    grown_by = np.searchsorted(grown, np.arange(mornings), side="right") - 1
+    world = Weights(landing.cells, kernel, so_far, sends, roots, 3, -1, grown, grown_by, lasting)
     at, drawn = np.full(144, NOBODY), DrawnSums.none(mornings, 144, len(kernel))
     draw_ancestries(made, at, world, last_find, (2, 50, 10), drawn)
     there = np.flatnonzero(made.there)
@@ -38,7 +43,7 @@ def test_an_ancestry_holds_together():
         if made.parent[i] != NOBODY:
             parent = made.parent[i]
             assert made.there[parent]
-            assert made.begins[parent] < made.begins[i] <= made.ends[parent]
+            assert grown[made.begins[parent]] < made.begins[i] <= made.ends[parent]
     hidden = there[~made.found[there]]
     assert len(hidden) > 0
     assert (at[made.plant[hidden]] == hidden).all()

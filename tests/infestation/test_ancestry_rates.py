@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.ancestry_rates import BEFORE, SHARES, DrawnEvidence, Rates
+from fieldmon.infestation.ancestry_rates import DrawnEvidence, Rates
+from fieldmon.infestation.course import BEFORE
 from fieldmon.infestation.drawn_ancestry import DrawnSums
-from fieldmon.infestation.landing import landing_of
-from fieldmon.infestation.origins import ARRIVE
+from fieldmon.infestation.landing import SHARES, landing_of
+from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(40, 40)
@@ -28,9 +29,9 @@ def evidence(drawn, seen=1.0, start=FLAT, kernel=KERNEL, unseen=None):
         nothing + seen,
         nothing,
         drawn,
-        drawn.active,
+        drawn.there,
         nothing if unseen is None else unseen,
-        ARRIVE,
+        (ARRIVE, ARRIVE_BY_EDGE),
         np.zeros((2, 10)),
     )
 

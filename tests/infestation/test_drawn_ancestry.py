@@ -19,7 +19,7 @@ N, MORNINGS, PLACES = len(ROW), 4, 8
 SEASON = 1
 
 
-def believed(seed=0):
+def believed(seed=0, grown=(0, 1, 2, 3)):
     """Return what some ancestries are weighed by, in which all may come from each other."""
     rng = np.random.default_rng(seed)
     landing = landing_of(ROW)
@@ -28,7 +28,11 @@ def believed(seed=0):
     sends = rng.uniform(0.5, 3.0, MORNINGS)
     lasting = rng.uniform(0.2, 1.0, (N + PLACES, MORNINGS)).astype(np.float32)
     roots = rng.uniform(0.01, 0.3, (N, MORNINGS)).astype(np.float32)
-    return Weights(landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, -1, lasting)
+    grown = np.array(grown)
+    grown_by = np.searchsorted(grown, np.arange(MORNINGS), side="right") - 1
+    return Weights(
+        landing.cells, kernel, np.cumsum(kernel), sends, roots, SEASON, -1, grown, grown_by, lasting
+    )
 
 
 def with_finds(finds):
@@ -60,7 +64,11 @@ def all_ancestries(world, finds, last_find):
         for begins in product(*(range(low, e + 1) for _, low, e in ends)):
             choices = [
                 [NOBODY]
-                + [j for j, b in enumerate(begins) if j != i and b < begins[i] <= ends[j][2]]
+                + [
+                    j
+                    for j, b in enumerate(begins)
+                    if j != i and world.grown[b] < begins[i] <= ends[j][2]
+                ]
                 for i in range(len(ends))
             ]
             for parents in product(*choices):
@@ -84,28 +92,35 @@ def all_ancestries(world, finds, last_find):
                 )
 
 
+@pytest.mark.parametrize("grown", [(0, 1, 2, 3), (0, 2, 3, 3)])
 @pytest.mark.parametrize("finds", [[(0, 3)], [(1, 2)], [(0, 3), (2, 2)], [(1, 1), (1, 3), (3, 3)]])
-def test_ancestries_are_drawn_as_often_as_they_are_likely(finds):
+def test_ancestries_are_drawn_as_often_as_they_are_likely(finds, grown):
     """Four moves that fit together: each sum is that over all ancestries there are."""
-    world = believed(len(finds))
+    world = believed(len(finds), grown)
+    delays = grown != (0, 1, 2, 3)
     made, last_find = with_finds(finds)
     if finds[0][0] == finds[-2 % len(finds)][0] and len(finds) == 3:
         made.earliest[1] = made.ends[0] + 1
-    active, hidden, roots = np.zeros((MORNINGS, N)), np.zeros(N), np.zeros((2, N))
+    there, active = np.zeros((2, MORNINGS, N))
+    hidden, roots = np.zeros(N), np.zeros((2, N))
     total = 0.0
     for weight, nodes in all_ancestries(world, finds, last_find):
         if len(finds) == 3 and nodes[1][1] <= finds[0][1]:
             continue  # the plant was found before
         total += weight
         for k, (plant, begins, end, parent) in enumerate(nodes):
-            active[begins:end, plant] += weight
+            there[begins:end, plant] += weight
+            active[world.grown[begins] : end, plant] += weight
             hidden[plant] += weight * (k >= len(finds))
             roots[int(begins > SEASON), plant] += weight * (parent == NOBODY)
-    drawn = DrawnSums.none(MORNINGS, N, len(world.kernel))
+    drawn = DrawnSums.none(MORNINGS, N, len(world.kernel), delays=delays)
     kept = draw_ancestries(made, np.full(N, NOBODY), world, last_find, (1, 100_000, 1_000), drawn)
     assert kept == 99_000
     assert drawn.hidden / kept == pytest.approx(hidden / total, abs=0.015)
-    assert drawn.active / kept == pytest.approx(active / total, abs=0.02)
+    assert drawn.there / kept == pytest.approx(there / total, abs=0.02)
+    assert (drawn.active is not None) == delays
+    if drawn.active is not None:
+        assert drawn.active / kept == pytest.approx(active / total, abs=0.02)
     assert drawn.roots / kept == pytest.approx(roots / total, abs=0.02)
     # whatever does not come from none has jumped
     assert drawn.jumps.sum() + drawn.roots.sum() == pytest.approx(

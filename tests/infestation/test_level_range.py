@@ -87,5 +87,5 @@ def test_however_few_there_may_be_what_is_certain_is_and_the_others_keep_a_thous
 @pytest.mark.parametrize("share", [0.02, 0.4, 0.9])
 def test_of_a_flat_map_the_odds_are_doubted_as_much_whatever_share_it_has(share):
     found = level_range(doubting(np.full(400, share), 0.4, "a pest"), 0.8)
-    told = np.quantile(doubted_level(0.4, named=True), [0.1, 0.9])
+    told = np.quantile(doubted_level(0.4), [0.1, 0.9])
     assert [found.low, found.high] == pytest.approx(told)

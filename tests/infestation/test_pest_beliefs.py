@@ -10,11 +10,17 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.colonies import Colonies
 from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Increase, Movement, Pest, Stage
 from fieldmon.pests.weather import weather_of
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
+from fieldmon.samplers import sampler
+from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.start import Start
 
 GRID = rectangle(24, 24)
 N = len(GRID)
@@ -171,3 +177,26 @@ def test_a_day_is_planned_by_what_can_be_seen():
     assert (seen.pair_chance <= morning.pair_chance + 1e-12).all()
     usual = TracedPairs.of(GRID, np.full(N, 0.02))
     assert usual.in_sight is usual
+
+
+@pytest.mark.parametrize("stages", [(), (EGG,)])
+def test_a_map_that_is_told_its_pest_holds_the_number_of_insects_that_do_as_told(stages):
+    """Finds tell of their relatives: before, the map expected half of them, and was sure of it."""
+    kind = replace(pest(kernel="exponential", per_day=0.25, reach_m=6.0), stages=stages)
+    held, expected, true, robot = [], 0.0, 0, kind.seen_by(Robot(hours=4.0))
+    settings = SeasonSettings(n_days=9, pest=PestInWeather(kind))
+    for seed in range(4):
+        infested = np.random.default_rng(seed).random(N) < 0.03
+        start = Start(infested, np.full(N, 0.03))
+        belief = TracedPairs.of(GRID, start.chance).of_pest(kind)
+        for day in simulated_days(
+            Aisles.of(GRID), robot, sampler("naive"), start, settings, RandomStreams(seed)
+        ):
+            there, said = int(day.infested.sum()), estimate_of(GRID, belief)
+            if day.number:
+                held.append(said.low <= there <= said.high)
+                expected, true = expected + said.expected, true + there
+            evening = belief.learn(day.work.plant, day.work.found, Learning(robot.detects))
+            belief = evening.overnight(settings.pest.spread(day.number, GRID.frame))
+    assert expected > 0.75 * true
+    assert np.mean(held) > 0.8

@@ -1,7 +1,6 @@
 """How many are still infested, and is the plot clean."""
 
 import itertools
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,12 +8,12 @@ from scipy.stats import binom
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.plot_estimate import (
     PlotEstimate,
     doubted_level,
     draw_fields,
+    drawn_numbers,
     estimate_plot,
 )
 from fieldmon.plot.layout import rectangle
@@ -113,40 +112,43 @@ def test_no_doubt_makes_more_infested_plants_than_there_are():
     assert 0 <= many.low < many.expected < many.high <= 400
 
 
-def test_of_a_pest_that_is_named_the_doubt_is_not_itself_in_doubt():
-    grid = rectangle(40, 40)
-    chance = np.full(1600, 0.05)
-    wide, named = (estimate_plot(grid, chance, doubt=0.4, named=each) for each in (False, True))
-    assert named.low < named.expected < named.high
-    assert named.high / named.low < wide.high / wide.low
-    halves = [estimate_plot(grid, chance, sure=0.5, doubt=0.4, named=n) for n in (False, True)]
-    assert halves[0].high - halves[0].low == pytest.approx(halves[1].high - halves[1].low, rel=0.25)
-    of = {"chance": chance, "doubt": 0.4, "since_inspected": None}
-    ends = [level_range(SimpleNamespace(**of, pest=each)) for each in (None, "a pest")]
-    assert ends[1].low < 1.0 < ends[1].high
-    assert ends[1].high / ends[1].low < ends[0].high / ends[0].low
-
-
-@pytest.mark.parametrize("named", [True, False])
 @pytest.mark.parametrize("sure", [0.5, 0.9])
-def test_intervals_of_a_few_plants_hold_as_many_whole_numbers_as_they_say(named, sure):
+def test_intervals_of_a_few_plants_hold_as_many_whole_numbers_as_they_say(sure):
     draws, held = np.random.default_rng(3), []
     for mean in np.linspace(3.0, 15.0, 25):
         chance = np.full(400, mean / 400)
         alone = np.repeat(chance, np.diff(GRID.adjacent.start)) * chance[GRID.adjacent.plant]
-        made = estimate_plot(GRID, chance, alone, sure, doubt=0.5, named=named)
-        level = draws.permutation(np.tile(doubted_level(0.5, named=named), 10))
+        made = estimate_plot(GRID, chance, alone, sure, doubt=0.5)
+        level = draws.permutation(np.tile(doubted_level(0.5), 10))
         number = np.rint(draws.binomial(400, mean / 400, level.size) * level)
         held.append(np.mean((made.low <= number) & (number <= made.high)))
     # a whole number at either end counts with all of its chance
     assert np.mean(held) == pytest.approx(sure, abs=0.07)
 
 
-@pytest.mark.parametrize("named", [True, False])
 @pytest.mark.parametrize("doubt", [0.5, 5.0, 50.0, 500.0])
-def test_in_any_doubt_a_plot_that_may_be_infested_all_over_has_an_interval(doubt, named):
+def test_in_any_doubt_a_plot_that_may_be_infested_all_over_has_an_interval(doubt):
     grid = rectangle(1, 3)
     for chance in (0.3, 0.5, 0.7, 0.9):
         with np.errstate(all="raise", under="ignore"):
-            every = estimate_plot(grid, np.full(3, chance), doubt=doubt, named=named)
+            every = estimate_plot(grid, np.full(3, chance), doubt=doubt)
         assert 0 <= every.low <= every.high <= 3
+
+
+def test_plants_that_were_found_and_left_do_not_make_a_clean_rest_impossible():
+    """They were taken to be clean, which made their neighbours certain: a chance of 1e-30."""
+    chance, found = np.full(400, 0.004), np.zeros(400, bool)
+    found[[110, 113, 205, 305]] = True
+    chance[found] = 1.0 - 1e-6
+    start, other = GRID.adjacent
+    own = np.repeat(np.arange(400), np.diff(start))
+    # beside a find one of three is infested, so both of such a pair are
+    chance[other[found[own] & ~found[other]]] = 0.3
+    both = np.minimum(chance[own], chance[other]) * np.where(found[own] | found[other], 1.0, 0.2)
+    numbers, none = drawn_numbers(GRID, (chance, both), ~found)
+    assert np.exp(none) == pytest.approx(np.mean(numbers == 0.0), abs=0.03)
+    told = PlotEstimate(3.4, 0, 10, 0.16, found=27)
+    assert told.sentence() == (
+        "About 3 plants are infested (between 0 and 10) beside the 27 that were found and only "
+        "flagged; the chance that there is no other is 16 %."
+    )

@@ -11,7 +11,7 @@ from fieldmon.infestation.forecast import forecast
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.unwatched import LEVEL_DOUBT, OF_A_PEST, RATE_DOUBT, Unwatched
+from fieldmon.infestation.unwatched import LEVEL_DOUBT, RATE_DOUBT, Unwatched
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(20, 20)
@@ -48,7 +48,7 @@ def test_a_season_that_is_inspected_daily_is_in_no_more_doubt(evening):
     belief = evening
     for _ in range(3):
         morning = belief.overnight(NIGHT)
-        assert morning.unwatched.variance(named=False) == 0.0
+        assert morning.unwatched.variance() == 0.0
         assert morning.since_inspected is None
         belief = inspected(morning)
 
@@ -61,7 +61,7 @@ def test_nothing_is_learnt_from_no_inspections(evening):
 
 def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
     mornings = [nights(evening, number) for number in range(1, 6)]
-    more = [one.unwatched.variance(named=False) for one in mornings]
+    more = [one.unwatched.variance() for one in mornings]
     grown = [np.log(one.chance.sum() / mornings[0].chance.sum()) for one in mornings]
     assert more[0] == 0.0
     shares = [one.unwatched.arrived for one in mornings]
@@ -77,19 +77,13 @@ def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
     assert wide[0] < wide[2] < wide[4]
 
 
-def test_of_a_named_pest_a_little_less():
-    idle = Unwatched(days=1, grown=0.4)
-    less = idle.variance(named=False) - idle.variance(named=True)
-    assert less == pytest.approx(LEVEL_DOUBT**2 - OF_A_PEST**2)
-
-
 @pytest.mark.parametrize(("found", "left"), [(0.0, 1.0), (1 / 0.13, 0.5), (1e9, 0.0)])
 def test_inspections_take_the_doubt_as_far_as_finds_were_to_be_expected(found, left):
     idle = Unwatched(days=1, grown=0.4)
-    assert idle.variance(named=False) == pytest.approx(0.13)
-    after = idle.inspected(found, idle.variance(named=False))
-    assert after.variance(named=False) == pytest.approx(0.13 * left, abs=1e-6)
-    assert after.overnight(2.0, 3.0).variance(named=False) == after.left
+    assert idle.variance() == pytest.approx(0.13)
+    after = idle.inspected(found, idle.variance())
+    assert after.variance() == pytest.approx(0.13 * left, abs=1e-6)
+    assert after.overnight(2.0, 3.0).variance() == after.left
 
 
 def test_a_look_at_one_plant_hardly_narrows_the_interval_and_a_day_does(evening):
@@ -116,7 +110,7 @@ def test_plants_that_are_known_to_be_infested_tell_nothing_of_the_number(evening
     known = evening.learn(EVERY_PLANT[:9], np.ones(9, np.bool_), Learning(0.8, treated=False))
     morning = nights(known, 3)
     again = morning.learn(EVERY_PLANT[:9], np.ones(9, np.bool_), Learning(0.8, treated=False))
-    before, after = (each.unwatched.variance(named=False) for each in (morning, again))
+    before, after = (each.unwatched.variance() for each in (morning, again))
     assert after == before > LEVEL_DOUBT**2
     unknown = known.chance < 0.99
     first = nights(known, 1)

@@ -15,11 +15,13 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season, day_figures
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
+from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.layout import rectangle
-from tests.monitoring.seasons import BEGINS
+from tests.monitoring.seasons import BEGINS, a_season
 
 LAST = 21
 
@@ -313,3 +315,26 @@ def test_of_a_change_the_days_before_it_stay_figures_of_the_version_before(path)
         day_figures.note_rules(db, "now", 3)
         assert [day_figures.holds(db, "now", day) for day in (2, 3, 12)] == [False, True, True]
         assert not day_figures.holds(db, "before", 12)
+
+
+def test_a_season_of_a_named_pest_keeps_its_mornings_until_its_weather_is_another(tmp_path):
+    days = np.arange("2026-04-01", "2026-05-01", dtype="datetime64[D]").astype("datetime64[s]")
+    warm, warmer = (
+        weather_of(days, DAY_S, temperature_c=np.full(len(days), t), zone="Asia/Jerusalem")
+        for t in (20.0, 26.0)
+    )
+    path = tmp_path / "s.gpkg"
+    season = a_season(path, pest=shipped_pest("green-peach-aphid"), weather=warm)
+    for day in range(12):
+        season.record(found_on(day, season), f"day {day}")
+    assert kept(path) == [0, 8, 10, 11]
+    anew = all_over(season)
+    assert anew[11].cohorts.ages
+    for day in (8, 10, 11, 13):
+        again = of_day(Season(path), day)
+        assert the_same(again, anew[day]), day
+        assert again.cohorts.ages == anew[day].cohorts.ages
+    assert Season(path).verify() == ()
+    season.change(replace(season.settings, weather=warmer), season.settings)
+    assert not the_same(of_day(Season(path), 11), anew[11])
+    assert the_same(of_day(Season(path), 11), all_over(season)[11])

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shlex
 import shutil
 
 import pytest
@@ -44,6 +45,7 @@ def test_two_share_the_plots_by_a_table(run, seasons, tmp_path):
     }  # fmt: skip
     named = {name for row in rows.values() for name in row["file"].split()}
     assert {path.name for path in made} == named | {"monday", "plan.csv"}
+    assert "From plot to plot takes 15 minutes, wherever they lie" in out
     for row in rows.values():
         main, gpx = row["file"].split()
         line, *stops = json.loads((tmp_path / "monday" / main).read_text())["features"]
@@ -99,6 +101,21 @@ def test_the_seasons_robot_works_where_nobody_else_is_told(run, seasons, tmp_pat
     assert "must work with one robot, but they have several" in err
     code, _, err, _ = run(*words, other, "--hours", 1, "--scout", "-o", "two")
     assert code == 0, err
+
+
+def test_what_the_season_would_read_otherwise_is_said_with_its_way_out(run, season, tmp_path):
+    (tmp_path / "low crew.csv").write_text("name,who,hours,detection\nBen,scout,1,0.3\n")
+    words = ("share", season, "--date", BEGINS, "--robots", "low crew.csv")
+    code, out, err, _ = run(*words, "-o", "day")
+    assert code == 0, err
+    assert "reads results as its own team or robot finds: Ben's by 84 %, not 30 %" in err
+    assert "From plot to plot" not in out
+    told = shlex.split(err.partition("set the crew: ")[2].partition("\n")[0])
+    code, _, err, _ = run(*told[1:])
+    assert code == 0, err
+    code, _, err, _ = run(*words, "-o", "again")
+    assert code == 0, err
+    assert "reads results" not in err
 
 
 def test_days_of_several_lengths_are_asked_for_one(run, seasons):

@@ -124,7 +124,7 @@ def _tell_read_otherwise(
     from fieldmon.compute.wording import joined, written
     from fieldmon.monitoring.estate_day import read_otherwise
 
-    for season, _ in due:
+    for season, plot in due:
         there = {one.who for one in made.routes if one.plot == _name(season)}
         if not (others := read_otherwise(season, [one for one in members if one.name in there])):
             continue
@@ -136,6 +136,9 @@ def _tell_read_otherwise(
         said = ["--robots", options.robots] if not (options.robots or "1").isdecimal() else []
         pasted = shlex.join(["fieldmon", "change", str(season.path), *map(str, said)])
         how = pasted if said else f"{pasted} --robots CREW.csv, a table of who works"
+        if season.planned_and_done(plot.on) is not None:  # results are read by the last plan
+            again = shlex.join(["fieldmon", "plan", str(season.path), "--date", str(plot.on)])
+            how += f"; then, as that day was planned there before, plan it again: {again}"
         typer.echo(
             f"seen: {_name(season)} reads results as its own team or robot finds: {each}, as this "
             f"route was planned. Before they are recorded, set the crew: {how}",

@@ -94,7 +94,7 @@ def test_whose_results_a_season_would_read_otherwise_is_said(said, tmp_path):
     assert [one.otherwise for one in made] == [(), (("robot-1", "Gate"),)]
     sharing_plots._say(replace(made[1], turns=()))
     assert "but \u2068robot-1\u2069 would find another share" in said[-1]
-    assert said[-1].endswith("with `fieldmon change --robots` in: \u2068Gate\u2069.")
+    assert said[-1].endswith("and then plan the day again, in: \u2068Gate\u2069.")
     many = tuple(("robot-1", f"plot {k}") for k in range(40))
     sharing_plots._say(shared_plots.SharedPlots((), otherwise=many))
     assert said[-1].endswith("in 40 seasons.")

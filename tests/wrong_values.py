@@ -422,6 +422,7 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "corrections_in": {"copy": season.path},
         "effects": on | {"units": None},
         "is_copy": {"file": season.path},
+        "is_of_one_plot": {"file": season.path},
         "keep_labels": who | {"labels": (), "source": ""},
         "kept_route": on | who,
         "merge": {"other": season},

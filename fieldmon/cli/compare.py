@@ -144,7 +144,7 @@ def robot_numbers(text: str) -> list[int]:
 
 def _scenarios(options: CompareOptions) -> list[TeamScenario]:
     """Return every plot with every spread."""
-    from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
     from fieldmon.studies.teams.seasons import (
         TeamScenario,
         square_plot,
@@ -170,7 +170,7 @@ def _scenarios(options: CompareOptions) -> list[TeamScenario]:
             robot, options.infested, options.days, pest_in_weather, options.visit_every,
         )
         for plot, chance in known
-        for rate in options.spread or [0.1]
+        for rate in options.spread or [SIMULATED_PER_DAY]
     ]  # fmt: skip
 
 

@@ -32,7 +32,8 @@ _NAMED = 5
 def opened(files: Iterable[Path]) -> list[Season]:
     """Open the seasons that go into one table or report.
 
-    Raise `SettingError` where two are copies of one: what both hold would stand there twice.
+    Raise `SettingError` where two are copies of one: what both hold would stand there twice. Say
+    where two seasons are of one plot.
     """
     from fieldmon.monitoring import Season
 
@@ -45,7 +46,22 @@ def opened(files: Iterable[Path]) -> list[Season]:
                 "copies of one: what both hold would stand there twice. Leave one away, or bring "
                 f"them together first: fieldmon merge {pasted}"
             )
+        if one.is_of_one_plot(other.path):
+            _tell_of_one_plot(one, other)
     return seasons
+
+
+def _tell_of_one_plot(one: Season, other: Season) -> None:
+    named = [
+        season.path.stem if pest is None else f"{season.path.stem} ({pest.name})"
+        for season in (one, other)
+        for pest in [season.settings.pest]
+    ]
+    typer.echo(
+        f"seen: {named[0]} and {named[1]} are two seasons of one plot, begun apart: each counts. "
+        "If somebody began one of them a second time, leave it away.",
+        err=True,
+    )
 
 
 def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:

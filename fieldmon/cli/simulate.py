@@ -95,11 +95,11 @@ class SimulateOptions:
 
     def season(self, pest_in_weather: PestInWeather | None) -> SeasonSettings:
         """Return what happens in the season."""
-        from fieldmon.infestation.spread import Spread
+        from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
         from fieldmon.simulation.season import SeasonSettings
 
         self.pest_options.check_alone(spread=self.spread)
-        rate = 0.1 if self.spread is None else self.spread
+        rate = SIMULATED_PER_DAY if self.spread is None else self.spread
         return SeasonSettings(
             n_days=self.days,
             spread=Spread(rate),

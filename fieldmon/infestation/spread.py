@@ -24,6 +24,11 @@ _TO = {"each": _EACH, "one": _ONE, "all": _ALL}
 _COINS, _ARRIVAL = 16, 15
 
 
+#: chance per night to infest each neighbour where simulations are told nothing (our choice; the
+#: thesis's, which `Spread` has, is far more)
+SIMULATED_PER_DAY = 0.1
+
+
 @dataclass(frozen=True)
 class Spread:
     """The thesis's adjacent-plant rule: a missed insect may spread to the plants next to it.

@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from itertools import combinations, count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -122,9 +123,10 @@ class MergedCopy(NamedTuple):
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     """Put all that another copy holds into `db`.
 
-    Raise `FileProblem` if it is no copy of the same season.
+    Raise `FileProblem` if it is no copy of the same season, or is of another pest by now.
     """
     refuse_strangers(db, other)
+    _refuse_another_pest(db, other)
     less = [table for table in TAKEN if table is not schema.INSPECTIONS]
     copies = [{table.name: _rows(one, table) for table in less} for one in (db, other)]
     phones = [phone_tables.brought(one) for one in (db, other)]
@@ -210,9 +212,7 @@ def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
             )
         )
     for table in SAME:
-        names = ", ".join(table.names)
-        wanted = f"SELECT {names} FROM {table.name} ORDER BY fid"  # noqa: S608 - names of ours
-        if db.execute(wanted).fetchall() != other.execute(wanted).fetchall():
+        if not _is_same(db, other, table):
             raise FileProblem(
                 worded(
                     "Two copies of one season can be merged, but these differ in the layer {name}: "
@@ -221,6 +221,52 @@ def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
                     name=table.name,
                 )
             )
+    at, other_at = (settings_log.begun_at(one) for one in (db, other))
+    if at and other_at and at != other_at:
+        raise FileProblem(
+            worded(
+                "Two copies of one season can be merged, but one was begun at {at} and the other "
+                "at {other_at} (UTC): they are two seasons of one plot. Leave each in its file. If "
+                "both look for the same, record what was found in the one into the other with: "
+                "fieldmon record",
+                at=_moment(at),
+                other_at=_moment(other_at),
+            )
+        )
+    if not (at and other_at):  # too old to say it
+        _refuse_another_pest(db, other)
+
+
+def _moment(at: str) -> str:
+    """Return a moment as people read it, as far as two seasons may differ in it."""
+    return at.replace("T", " ").removesuffix("Z")[:21]
+
+
+def _refuse_another_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
+    """Raise `FileProblem` where the two are of different pests: finds would be of the wrong one."""
+    here, there = (settings_log.pest(one) for one in (db, other))
+    if here and there and here != there:
+        raise FileProblem(
+            worded(
+                "Two copies of one season can be merged if both look for one pest, but one looks "
+                "for {here} and the other for {there}: finds would become those of another pest. "
+                "Leave each in its file; where one of them names the wrong pest, name the right "
+                "one there first with: fieldmon change --pest",
+                here=here,
+                there=there,
+            )
+        )
+
+
+def are_of_one_plot(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
+    """Return whether two seasons have the same rows and plants."""
+    return all(_is_same(db, other, table) for table in (schema.ROWS, schema.PLANTS))
+
+
+def _is_same(db: sqlite3.Connection, other: sqlite3.Connection, table: GeoPackageTable) -> bool:
+    names = ", ".join(table.names)
+    wanted = f"SELECT {names} FROM {table.name} ORDER BY fid"  # noqa: S608 - names of ours
+    return bool(db.execute(wanted).fetchall() == other.execute(wanted).fetchall())
 
 
 def _rows(db: sqlite3.Connection, table: GeoPackageTable, after: int = 0) -> list[Row]:
@@ -560,6 +606,29 @@ def _members(team: str) -> str:
     return ", ".join(each) or "none"
 
 
+def _chosen(name: str, ours: str, theirs: str) -> tuple[str, str]:
+    """Return two values of the setting called `name`, short enough to be read."""
+    if name == "team":
+        return _members(ours), _members(theirs)
+    if name not in ("pest", "weather"):
+        return _apart(ours, theirs)
+    short = _pest if name == "pest" else _weather
+    here, there = short(ours), short(theirs)
+    if here != there:
+        return here, there
+    return f"{here} (this copy's figures)", f"{there} (the other copy's figures)"
+
+
+def _pest(pest: str) -> str:
+    return str((json.loads(pest) or {"name": "none"})["name"])
+
+
+def _weather(weather: str) -> str:
+    """Return until when weather is, in UTC."""
+    at = (json.loads(weather) or {}).get("at", ())
+    return f"until {datetime.fromtimestamp(max(at), UTC):%Y-%m-%d}" if at else "none"
+
+
 def _differing(copies: list[dict[str, list[Row]]], merged: list[Row]) -> tuple[str, ...]:
     """Return a sentence for each setting that both chose, unknown to each other, differently."""
     known = [{_key(row, _CHOICE) for row in copied["settings"]} for copied in copies]
@@ -575,7 +644,7 @@ def _differing(copies: list[dict[str, list[Row]]], merged: list[Row]) -> tuple[s
     for name in sorted(chosen[0] & chosen[1]):
         values = ours[name], theirs[name]
         if values[0] != values[1]:
-            here, there = map(_members, values) if name == "team" else _apart(*values)
+            here, there = _chosen(name, *values)
             said.append(
                 f"The setting {name} differs: {here} here, {there} there. What was chosen last "
                 f"counts: {here if now[name] == values[0] else there}."

@@ -317,7 +317,10 @@ class SeasonRecords(OpenSeason):
         self._refresh(db, settings.day(news.date.min().item()))
 
     def is_copy(self, file: Path) -> bool:
-        """Return whether a file is this season or a copy of it, however far they went apart."""
+        """Return whether a file is this season or a copy of it, however far they went apart.
+
+        Seasons begun apart are no copies, even of one plot and one day.
+        """
         if file.resolve() == self.path.resolve():
             return True
         with self.store.reading() as db, Store(file).reading() as theirs:
@@ -326,6 +329,11 @@ class SeasonRecords(OpenSeason):
             except FileProblem:
                 return False
         return True
+
+    def is_of_one_plot(self, file: Path) -> bool:
+        """Return whether the season in a file has the same rows and plants as this one."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            return merging.are_of_one_plot(db, theirs)
 
     def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
         """Return what another program changed of inspections in a copy of this season.

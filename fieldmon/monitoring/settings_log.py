@@ -74,6 +74,21 @@ def begun(db: sqlite3.Connection) -> str:
     return said
 
 
+def begun_at(db: sqlite3.Connection) -> str:
+    """Return the moment (UTC) at which the season was begun; "" where a file says nothing of it.
+
+    Copies share it, however far they went apart; seasons begun apart do not, even on one day.
+    """
+    row = db.execute("SELECT changed FROM settings ORDER BY fid LIMIT 1").fetchone()
+    return "" if row is None else str(row[0] or "")
+
+
+def pest(db: sqlite3.Connection) -> str:
+    """Return the name of the pest that is looked for now; "" where nobody said."""
+    chosen = json.loads(now(db).get("pest", "null"))
+    return "" if chosen is None else str(chosen["name"])
+
+
 def write(db: sqlite3.Connection, parts: Parts) -> list[str]:
     """Keep what differs from what counts now; return the names of what does."""
     before, at = now(db), utc_text()

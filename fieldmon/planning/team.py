@@ -202,6 +202,13 @@ def plan_team(
         key=lambda each: _expected(each.days),
     )
     if not _expected(timed.days):
+        if not chance.any():
+            raise SettingError(
+                worded(
+                    "Some plant must have a chance of infestation above 0, but none has: there is "
+                    "nothing to look for. Give chances as of a chance map."
+                )
+            )
         raise SettingError(
             worded(
                 "The hours of some member must be long enough to reach a plant and come back, "

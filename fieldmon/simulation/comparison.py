@@ -12,6 +12,7 @@ from fieldmon.compute.arguments import chances_of, must_be_in, must_hold_shapes,
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import PAIRED, SHARE
 from fieldmon.errors import SettingError
+from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.answers import Checked, must_name_plants
@@ -37,6 +38,13 @@ if TYPE_CHECKING:
 
 # arrays of a comparison, as they are called in a season
 _COLUMNS = "detection_pct", "visited_pct", "found", "left", "worked_h"
+# whom an infested plant infests, by `Spread.to`
+_WHOM = {"each": "each neighbour", "one": "one neighbour", "all": "all neighbours"}
+
+
+def _usual_season() -> SeasonSettings:
+    """Return a season as the commands simulate it."""
+    return SeasonSettings(spread=Spread(SIMULATED_PER_DAY))
 
 
 @dataclass(frozen=True)
@@ -52,7 +60,9 @@ class CompareSettings:
     robot
         Who inspects.
     season
-        Days, visits, and what insects do at night.
+        Days, visits, and what insects do at night. By default an infested plant infests each
+        neighbour with a chance of 0.1 a night, as in ``fieldmon compare`` and ``simulate``; a
+        `SeasonSettings` of your own has the thesis's 0.5 unless you give `spread`.
 
     Examples
     --------
@@ -60,12 +70,14 @@ class CompareSettings:
     >>> settings = fm.CompareSettings(seeds=50, season=fm.SeasonSettings(n_days=10))
     >>> settings.robot.hours
     12.0
+    >>> fm.CompareSettings().season.spread.rate_per_day
+    0.1
     """
 
     seeds: int = 20
     share: float = 0.02
     robot: Robot = field(default_factory=Robot)
-    season: SeasonSettings = field(default_factory=SeasonSettings)
+    season: SeasonSettings = field(default_factory=_usual_season)
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A comparison's")
@@ -96,6 +108,8 @@ class Comparison:
         ``(k, s, d)`` infested plants after each day's work.
     worked_h
         ``(k, s, d)`` hours worked on each day.
+    season
+        What the seasons were; None: nobody said.
 
     Examples
     --------
@@ -115,11 +129,12 @@ class Comparison:
     found: NDArray[np.int64]
     left: NDArray[np.int64]
     worked_h: NDArray[np.float64]
+    season: SeasonSettings | None = None
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A comparison's")
         days = len(self.samplers), len(self.seeds), self.left.shape[-1]
-        arrays = [name for name in vars(self) if name not in ("samplers", "seeds")]
+        arrays = [name for name in vars(self) if name not in ("samplers", "seeds", "season")]
         must_hold_shapes(self, "A comparison's", dict.fromkeys(arrays, days))
 
     def __repr__(self) -> str:
@@ -192,7 +207,7 @@ class Comparison:
         return pd.DataFrame({"sampler": names, "seed": self.seeds[seed], "day": day + 1, **columns})
 
     def sentence(self, against: str) -> str:
-        """Return the ratios for people, and whether the seasons are too few to choose by.
+        """Return the ratios for people, what insects did, and whether the seasons are too few.
 
         Parameters
         ----------
@@ -207,10 +222,23 @@ class Comparison:
         ratios, n = self.ratios(against), len(self.seeds)
         if not n:
             return "No seed has been met by every sampler yet."
-        said = "; ".join(f"{name} {ratio}" for name, ratio in ratios.items())
         seasons = self._seasons("simulated season")
-        first = f"Infested plant-days over those of {against}, in {seasons}: {said}."
+        if not ratios:
+            return f"Only {against} was compared, in {seasons}: there is no other to hold it to."
+        said = "; ".join(f"{name} {ratio}" for name, ratio in ratios.items())
+        of = "" if self.season is None else f" ({_insects(self.season)})"
+        first = f"Infested plant-days over those of {against}, in {seasons}{of}: {said}."
         return f"{first} {too_few_sentence(n, 'seeds')}".rstrip()
+
+
+def _insects(season: SeasonSettings) -> str:
+    """Return for people what the insects of a season do at night."""
+    if season.pest is not None:
+        return f"pest {season.pest.pest.name}"
+    if season.pests is not None:
+        return "insects of your own"
+    whom, rate = _WHOM[season.spread.to], 100 * season.spread.rate_per_day
+    return f"infested plants infest {whom} with a chance of {rate:.3g} % a night"
 
 
 @checked
@@ -287,7 +315,8 @@ def compare(
             must_name_plants(sampler, plot.aisles, chosen.robot)
     shape = len(decide), len(by_seed), chosen.season.n_days
     columns: dict[str, Any] = {name: _column(name, by_seed.values(), shape) for name in _COLUMNS}
-    return Comparison(tuple(decide), np.array([*by_seed], np.int64), **columns)
+    seeds = np.array([*by_seed], np.int64)
+    return Comparison(tuple(decide), seeds, **columns, season=chosen.season)
 
 
 def _column(

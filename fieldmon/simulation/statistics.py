@@ -72,15 +72,17 @@ class Ratio:
     Parameters
     ----------
     value
-        Mean of one over mean of the other; NaN where both are 0.
+        Mean of one over mean of the other; infinite where only the other is 0, NaN where both are.
     low, high
-        Ends of the interval; NaN for fewer than 2 seeds.
+        Ends of the interval, infinite likewise; NaN for fewer than 2 seeds.
 
     Examples
     --------
     >>> import fieldmon as fm
     >>> print(fm.Ratio(0.451, 0.398, 0.52))
     0.45 (0.40-0.52)
+    >>> print(fm.Ratio(float("inf"), 3.2, float("inf")))
+    infinite (3.20-infinite)
     """
 
     value: float
@@ -91,23 +93,37 @@ class Ratio:
         """Return the ratio as it is printed."""
         if math.isnan(self.value):
             return "0 of 0"
-        if math.isnan(self.low):
-            return f"{self.value:.2f}"
-        return f"{self.value:.2f} ({self.low:.2f}-{self.high:.2f})"
+        value, low, high = ("infinite" if math.isinf(one) else f"{one:.2f}"
+                            for one in (self.value, self.low, self.high))  # fmt: skip
+        if math.isnan(self.low) or math.isinf(self.low):
+            return value
+        return f"{value} ({low}-{high})"
 
 
 def paired_ratio(one: NDArray[np.float64], other: NDArray[np.float64]) -> Ratio:
-    """Return mean of one over mean of the other, ``(seeds,)`` paired."""
+    """Return mean of one over mean of the other, ``(seeds,)`` paired.
+
+    Where only the other is 0 it is infinite, and so are those of its draws where that is so.
+
+    Examples
+    --------
+    >>> print(paired_ratio(np.array([3.0, 4.0]), np.zeros(2)))
+    infinite
+    """
     if not one.any() and not other.any():
         return Ratio(math.nan, math.nan, math.nan)
-    value = float(one.mean() / max(other.mean(), 1e-9))
+    value = float(one.mean() / other.mean()) if other.any() else math.inf
     if len(one) < 2:
         return Ratio(value, math.nan, math.nan)
     draws = np.random.default_rng(0).integers(0, len(one), (_RESAMPLES, len(one)))
     means, others = one[draws].mean(axis=1), other[draws].mean(axis=1)
     # where nobody lost anything there is nothing to compare
-    ratios = (means / np.maximum(others, 1e-9))[(means > 0) | (others > 0)]
-    low, high = np.quantile(ratios, [0.025, 0.975])
+    compared = (means > 0) | (others > 0)
+    with np.errstate(divide="ignore"):
+        ratios = means[compared] / others[compared]
+    # between a number and infinity there is nothing
+    how = "linear" if np.isfinite(ratios).all() else "inverted_cdf"
+    low, high = np.quantile(ratios, [0.025, 0.975], method=how)  # type: ignore[call-overload]
     return Ratio(value, float(low), float(high))
 
 

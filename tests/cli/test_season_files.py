@@ -10,7 +10,7 @@ import pytest
 from fieldmon.cli.season_files import opened
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import Season
-from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in, table
+from tests.cli.estate import BEGINS, MITES, ZIP, begin_next_year, filled_in, table
 from tests.cli.test_merge import worked
 
 
@@ -39,6 +39,31 @@ def test_a_season_is_not_taken_twice_nor_beside_its_copy(run, season, tmp_path):
             code, _, err, made = run(words[0], season, other, *words[1:])
             assert (code, made) == (2, set())
             assert "copies of one" in err
+
+
+def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp_path):
+    words = ("--feature", "Nursery", "--observations", MITES, "--begins", BEGINS, "--hours", "1")
+    code, _, err, _ = run("init", "flies.gpkg", ZIP, *words)
+    assert code == 0, err
+    flies = tmp_path / "flies.gpkg"
+    worked(run, flies, "a.csv", {0, 1}, "Ann")
+    assert not Season(season).is_copy(flies)
+    assert Season(season).is_copy(shutil.copy(season, tmp_path / "copy.gpkg"))
+    for words in (("share", "--all", "--date", BEGINS, "-o", "day"),
+                  ("export", "-o", "all.csv", "--of", "inspections"),
+                  ("report", "-o", "all.html", "--certification")):  # fmt: skip
+        code, _, err, _ = run(words[0], season, flies, *words[1:])
+        assert code == 0, err
+        assert "season and flies are two seasons of one plot, begun apart" in err
+    before = season.read_bytes()
+    code, _, err, _ = run("merge", season, flies)
+    assert code == 2
+    assert "they are two seasons of one plot. Leave each in its file" in err
+    assert season.read_bytes() == before
+    # the way out that is named
+    code, out, err, _ = run("record", season, flies)
+    assert code == 0, err
+    assert "6 new" in out
 
 
 def test_seasons_of_their_own_go_into_one_table(run, season, tmp_path):

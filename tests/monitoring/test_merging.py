@@ -18,6 +18,7 @@ import pytest
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import (
     Season,
     batches,
@@ -755,6 +756,50 @@ def copies_of(n):
     settings_log.write(one, as_json(SETTINGS))
     season_log.begin(one, "a new season")
     return [one, *(copied(one) for _ in range(n - 1))]
+
+
+def begun_again(at, db, other):
+    """Let another copy be of a season that was begun at another moment; "": too old to say it."""
+    other.execute("UPDATE settings SET changed = ?", (at,))
+    if not at:
+        db.execute("UPDATE settings SET changed = ''")
+
+
+def looks_for(db, name):
+    """Let a season look for a pest from now on."""
+    chosen = from_json(settings_log.now(db))
+    settings_log.change(db, replace(chosen, pest=replace(shipped_pest("spider-mite"), name=name)))
+
+
+def test_seasons_begun_apart_are_none_and_copies_of_another_pest_are_not_merged():
+    one, other = copies_of(2)
+    merging.refuse_strangers(one, other)
+    begun_again("2026-04-05T06:00:00.000000Z", one, other)
+    with pytest.raises(FileProblem, match=r"other at 2026-04-05 06:00:00.0 \(UTC\): they are two"):
+        merging.merge(one, other)
+    one, other = copies_of(2)
+    looks_for(one, "mites")
+    merging.merge(copied(one), other)  # one named its pest later
+    looks_for(other, "flies")
+    merging.refuse_strangers(one, other)
+    wrong = "looks for mites and the other for flies: finds would become those of another pest"
+    with pytest.raises(FileProblem, match=wrong):
+        merging.merge(one, other)
+    begun_again("", one, other)
+    with pytest.raises(FileProblem, match=wrong):
+        merging.refuse_strangers(one, other)
+
+
+def test_a_pest_that_both_chose_differently_is_named_not_dumped():
+    one, other = copies_of(2)
+    looks_for(one, "mites")
+    chosen = from_json(settings_log.now(one))
+    settings_log.change(other, replace(chosen, pest=replace(chosen.pest, detection=0.5)))
+    (said,) = merging.merge(one, other).differing
+    assert said == (
+        "The setting pest differs: mites (this copy's figures) here, mites (the other copy's "
+        "figures) there. What was chosen last counts: mites (the other copy's figures)."
+    )
 
 
 def counting(db):

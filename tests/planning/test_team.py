@@ -129,6 +129,8 @@ def test_a_gate_from_which_nobody_drives_and_what_is_no_chance_are_refused():
         plan_team(plot, chances(plot) + 1.0, team_of(2))
     with pytest.raises(SettingError, match="'members' of plan_team must be a sequence of"):
         plan_team(plot, chances(plot), 2)
+    with pytest.raises(SettingError, match="chance of infestation above 0, but none has"):
+        plan_team(plot, 0.0 * chances(plot), team_of(2))
 
 
 @pytest.mark.parametrize("detection", [0.5, 1.0])

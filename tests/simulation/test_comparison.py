@@ -7,10 +7,14 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
+from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.samplers.base import Sampler, Stops
 from fieldmon.samplers.sweeps import Bouncy, Naive
 from fieldmon.simulation.comparison import CompareSettings, Comparison, compare
 from fieldmon.simulation.library import draw_start, simulate
+from fieldmon.simulation.season import SeasonSettings
 from tests.simulation.test_library import CHANCE, PLOT, ROBOT, SHORT
 
 SETTINGS = CompareSettings(seeds=4, share=0.1, robot=ROBOT, season=SHORT)
@@ -79,6 +83,27 @@ def test_a_frame_has_a_line_for_each_sampler_seed_and_day():
     assert (last.sampler, last.seed, last.day, last.left) == ("other", 4, 3, 23)
     lost = lines.groupby(["sampler", "seed"]).left.sum().loc["one"]
     np.testing.assert_array_equal(lost, made.infested_plant_days[0])
+
+
+def test_seasons_are_those_of_the_commands_and_a_sentence_says_what_insects_did():
+    assert CompareSettings().season.spread == Spread(SIMULATED_PER_DAY) == Spread(0.1)
+    made = compared(np.ones((2, 20, 3), int))
+    worlds = {
+        "each neighbour with a chance of 10 % a night): ": {"spread": Spread(0.1)},
+        "one neighbour with a chance of 30 % a night): ": {"spread": Spread(0.3, "one")},
+        "(pest spider-mite): ": {"pest": PestInWeather(shipped_pest("spider-mite"))},
+        "(insects of your own): ": {"pests": lambda _grid, infested, _key: infested},
+    }
+    for words, chosen in worlds.items():
+        told = dataclasses.replace(made, season=SeasonSettings(n_days=3, **chosen))
+        assert words in told.sentence("one")
+    assert compare(PLOT, CHANCE, ("naive", "bouncy"), SETTINGS).season == SHORT
+
+
+def test_one_alone_is_held_to_nobody():
+    assert compared(np.ones((1, 4, 3), int), ("one",)).sentence("one") == (
+        "Only one was compared, in 4 simulated seasons: there is no other to hold it to."
+    )
 
 
 def test_few_seasons_are_said_to_be_few():

@@ -90,6 +90,17 @@ def test_of_nothing_there_is_no_ratio_and_seasons_of_nothing_do_not_widen_its_in
     assert (same.value, same.low, same.high) == (1.0, 1.0, 1.0)
 
 
+def test_over_one_who_lost_nothing_a_ratio_is_infinite():
+    some, nothing = np.array([3.0, 4.0]), np.zeros(2)
+    over = paired_ratio(some, nothing)
+    assert (over.value, over.low, over.high) == (math.inf, math.inf, math.inf)
+    assert str(over) == "infinite"
+    at_times = paired_ratio(np.array([3.0, 4.0, 5.0]), np.array([0.0, 0.0, 1.0]))
+    assert (at_times.value, at_times.high) == (12.0, math.inf)
+    assert str(at_times) == f"12.00 ({at_times.low:.2f}-infinite)"
+    assert str(paired_ratio(nothing, some)) == "0.00 (0.00-0.00)"
+
+
 def test_only_fewer_than_twenty_seasons_are_said_to_be_too_few():
     assert too_few_sentence(20, "--seeds") == ""
     assert too_few_sentence(19, "--seeds").startswith("With 19 seasons")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.monitoring.cautions import harvest_unsaid
 from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
 
 from ..state import chosen_day
@@ -65,7 +66,9 @@ def show_treatments(choices: Choices) -> None:
     """Show when harvest may begin, and what inspections tell of each treatment."""
     season, units = choices.season, choices.units.in_sentences(choices.on)
     first = season.harvest_from(choices.on)
-    if first is not None:
+    if first is not None and first[0] is None:
+        st.markdown(in_words(harvest_unsaid(first[1], units)))
+    elif first is not None:
         st.markdown(texts.HARVEST_FROM.format(day=choices.units.said_day(first[0], choices.on)))
     effects = season.effects(choices.on, units)
     if effects:

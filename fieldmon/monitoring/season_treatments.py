@@ -217,10 +217,11 @@ class SeasonTreatments(OpenSeason):
         rules = RulesToKeep(labels, settings.harvest, settings.starts)
         return done, rules if units is None else replace(rules, units=units)
 
-    def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
+    def harvest_from(self, on: date) -> tuple[date | None, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.
 
-        None: no treatment is known to need a wait.
+        The day is None where nobody said how long to wait from a treatment: that one, or the last
+        of them. None: there was no treatment.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             done = [one for one in self._treatments(db) if one.on <= on]

@@ -352,7 +352,7 @@ def treatment_table(
                 one.application.product,
                 figure(int(np.count_nonzero(one.place.plants))),
                 figure(one.efficacy, ".0%"),
-                "" if first is None else units.day(first),
+                words.CERT_NOT_SAID if first is None else units.day(first),
             )
         )
     table = Table(
